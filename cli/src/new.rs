@@ -29,7 +29,7 @@ pub(crate) struct NewArguments {
     /// The controller of the program [default: computed-torque on a fixed base, pd on a floating one]
     #[arg(long, value_enum)]
     controller: Option<Controller>,
-    /// The folder of the crate `articulated` [default: that of this command's source, if it exists, else the version on crates.io]
+    /// The folder of the crate `articulated` [default: beside the command's source, else crates.io]
     #[arg(long, value_name = "FOLDER")]
     library: Option<PathBuf>,
 }

@@ -26,7 +26,7 @@ struct Kind {
     joint: Joint,
     /// How far the body is behind its parent, in bodies.
     behind: usize,
-    /// How far its numbers are behind those of its branch's first body, in q and v; these tell whom it follows, if it follows.
+    /// Offsets in q and v from the branch's first body; of a follower, those of its leader.
     at: (usize, usize),
     follows: bool,
     is_link: bool,
@@ -152,7 +152,7 @@ mod tests {
         assert_eq!(roots(tree(&LEGS, &[(5, 3)]), 2), []);
     }
 
-    /// Whatever the others look like: what is outside may be the trunk, or another branch, to which all follow alike.
+    /// The leader may be in the trunk or in another branch.
     #[test]
     fn a_branch_that_is_followed_from_outside_stands_alone() {
         assert_eq!(roots(tree(&LEGS, &[(1, 3)]), 2), []);

@@ -92,7 +92,8 @@ fn warn_of_lengths(tag: &Tag<'_>, xyz: [f64; 3], log: &mut Diagnostics) {
     }
 }
 
-/// The rotation with angles near a multiple of π/2 replaced by it. A rotation without such angles keeps its form.
+/// The rotation with angles near a multiple of π/2 replaced by that multiple. A rotation without
+/// such angles keeps its form.
 fn snapped(rotation: Rotation, snap: Option<f64>, place: &Place<'_>, log: &mut Diagnostics) -> Rotation {
     let Some(tolerance) = snap else {
         return rotation;

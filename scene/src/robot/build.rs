@@ -319,7 +319,7 @@ mod tests {
     /// An inertia that no body has, which is a warning.
     const LINK: &str = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='3'/></inertial>";
 
-    /// A link that turns on another, between these bounds, with a colour that nobody uses; its axis
+    /// A link that turns on another, between these bounds, with an unused colour; its axis
     /// is nearly that of z.
     fn robot(name: &str) -> String {
         format!(

@@ -147,7 +147,7 @@ fn read(from: Option<impl Read>) -> io::Result<String> {
     Ok(String::from_utf8_lossy(&said).into_owned())
 }
 
-/// Ends all that run. The list stays locked for as long as the guard lives, so that nobody starts
+/// Ends all running processes. The guard keeps the list locked, so that no thread starts
 /// another.
 pub(crate) fn kill() -> MutexGuard<'static, Vec<Child>> {
     let mut children = children();

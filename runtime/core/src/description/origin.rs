@@ -91,8 +91,9 @@ impl Origin {
     }
 }
 
-/// R of a quaternion of any length. With n = |q|² each entry is a difference of squares or a sum of products over n, so
-/// that a quarter turn about an axis, written with two equal numbers, has entries 0 and ±1 exactly.
+/// R of a quaternion of any length. With n = |q|² each entry is a difference of squares or a sum of
+/// products over n. So a quarter turn about an axis, written with two equal numbers, has the exact
+/// entries 0 and ±1.
 fn from_any_quaternion<S: Scalar>(quaternion: [f64; 4]) -> Matrix3<S> {
     let largest = quaternion.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let [x, y, z, w] = quaternion.map(|x| S::from_f64(x) / S::from_f64(largest));
@@ -113,9 +114,15 @@ fn from_any_quaternion<S: Scalar>(quaternion: [f64; 4]) -> Matrix3<S> {
     )
 }
 
-/// Roll, pitch and yaw of a quaternion (x, y, z, w) of any length but zero. With r, p, y for half the angles:
-/// w + y = (cos p + sin p) cos(r − y), x − z = (cos p + sin p) sin(r − y), w − y = (cos p − sin p) cos(r + y),
-/// x + z = (cos p − sin p) sin(r + y). So no digit is lost near a pitch of ±π/2.
+/// Roll, pitch and yaw of a quaternion (x, y, z, w) of any length but zero. With r, p, y for half
+/// the angles:
+///
+/// ```text
+/// w + y = (cos p + sin p) cos(r − y)        x − z = (cos p + sin p) sin(r − y)
+/// w − y = (cos p − sin p) cos(r + y)        x + z = (cos p − sin p) sin(r + y)
+/// ```
+///
+/// So no digit is lost near a pitch of ±π/2.
 fn rpy_of_quaternion([x, y, z, w]: [f64; 4]) -> [f64; 3] {
     let length = |a: f64, b: f64| {
         let largest = a.abs().max(b.abs());
@@ -128,7 +135,8 @@ fn rpy_of_quaternion([x, y, z, w]: [f64; 4]) -> [f64; 3] {
     [within(sum + difference), 2.0 * angle(plus, minus) - FRAC_PI_2, within(sum - difference)]
 }
 
-/// A unit quaternion (x, y, z, w) of a rotation matrix: from the largest of its four numbers, so that nothing cancels.
+/// A unit quaternion (x, y, z, w) of a rotation matrix, from the largest of its four numbers, so
+/// that nothing cancels.
 /// Shepperd, J. Guidance and Control 1, 1978.
 fn quaternion_of(r: &Matrix3<f64>) -> [f64; 4] {
     let diagonal = [r.m11, r.m22, r.m33, r.trace()];

@@ -153,7 +153,8 @@ impl<S: Scalar> Model<S> {
         &self.frames
     }
 
-    /// The joints that are coordinates, in the order of their coordinates. Joints that follow others are not among them.
+    /// The joints that have coordinates of their own, in the order of these coordinates: all but
+    /// followers.
     #[inline(always)]
     pub fn joints(&self) -> &[JointInfo] {
         &self.joints
