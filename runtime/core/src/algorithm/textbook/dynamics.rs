@@ -1,99 +1,38 @@
-//! Inverse dynamics in the plain matrix form; what follows from it by linearity.
+//! Inverse dynamics, and what follows from it by linearity.
 
 use alloc::vec;
 use alloc::vec::Vec;
 
-use nalgebra::{Matrix6, Vector3, Vector6};
+use nalgebra::{Vector3, Vector6};
 
 use super::Textbook;
-use super::joint::sum;
-use super::matrix::{ad, adjoint_of_inverse, halves, stack};
+use super::matrix::{halves, stack};
+use super::rnea::{inward, needed, outward, rnea};
 use super::solve::Factor;
 use crate::Scalar;
 use crate::spatial::{Placement, Reference};
 
-/// What the sweep outward finds, body by body.
-pub(super) struct Sweep<S> {
-    /// Ad(T_iλ).
-    adjoint: Vec<Matrix6<S>>,
-    /// Columns of S_i.
-    screws: Vec<Vec<Vector6<S>>>,
-    /// V_i.
-    pub(super) twist: Vec<Vector6<S>>,
-    /// V̇_i, less gravity.
-    pub(super) acceleration: Vec<Vector6<S>>,
-}
-
 impl<S: Scalar> Textbook<S> {
-    /// Twists and accelerations; V̇_0 = [0; −g].
-    pub(super) fn outward(&self, q: &[S], v: &[S], a: &[S]) -> Sweep<S> {
-        let n = self.bodies.len();
-        let (mut twist, mut acceleration) = (vec![Vector6::<S>::zeros(); n], vec![Vector6::<S>::zeros(); n]);
-        let relative = |b: &super::Link<S>| b.placement.compose(&b.joint.placement(q));
-        // Ad(T_iλ) with T_iλ = (T_λi)⁻¹
-        let adjoint: Vec<Matrix6<S>> = self.bodies.iter().map(|b| adjoint_of_inverse(&relative(b))).collect();
-        let screws: Vec<Vec<Vector6<S>>> = self.bodies.iter().map(|b| b.joint.screws(q)).collect();
-        for (i, body) in self.bodies.iter().enumerate() {
-            let (v_parent, a_parent) = match body.parent {
-                Some(p) => (twist[p], acceleration[p]),
-                None => (Vector6::zeros(), stack(Vector3::zeros(), -self.gravity)),
-            };
-            let rate = sum(&screws[i], &body.joint.rates(v));
-            // V_i = Ad(T_iλ) V_λ + S_i q̇_i
-            twist[i] = adjoint[i] * v_parent + rate;
-            // V̇_i = Ad(T_iλ) V̇_λ + S_i q̈_i + Ṡ_i q̇_i + ad(V_i) S_i q̇_i
-            let own = sum(&screws[i], &body.joint.rates(a)) + body.joint.bias(q, v);
-            acceleration[i] = adjoint[i] * a_parent + own + ad(&twist[i]) * rate;
-        }
-        Sweep { adjoint, screws, twist, acceleration }
-    }
-
-    /// F_i = G_i V̇_i − ad(V_i)ᵀ G_i V_i, for a G of each body.
-    pub(super) fn needed(sweep: &Sweep<S>, i: usize, g: &Matrix6<S>) -> Vector6<S> {
-        g * sweep.acceleration[i] - ad(&sweep.twist[i]).transpose() * (g * sweep.twist[i])
-    }
-
-    /// τ of the wrenches that the bodies need, which become the wrenches that the joints pass.
-    pub(super) fn inward(&self, sweep: &Sweep<S>, wrench: &mut [Vector6<S>]) -> Vec<S> {
-        let mut tau = self.rest();
-        for (i, body) in self.bodies.iter().enumerate().rev() {
-            // τ_i = S_iᵀ F_i
-            body.joint.add_torque(&sweep.screws[i], &wrench[i], &mut tau);
-            if let Some(p) = body.parent {
-                // F_λ += Ad(T_iλ)ᵀ F_i
-                let below = sweep.adjoint[i].transpose() * wrench[i];
-                wrench[p] += below;
-            }
-        }
-        tau
-    }
-
-    /// Wrenches needed by every body.
-    fn all_needed(&self, sweep: &Sweep<S>) -> Vec<Vector6<S>> {
-        self.bodies.iter().enumerate().map(|(i, body)| Self::needed(sweep, i, &body.inertia)).collect()
-    }
-
     /// τ = M(q)·a + h(q, v), `[nv]`.
     pub fn inverse_dynamics(&self, q: &[S], v: &[S], a: &[S]) -> Vec<S> {
-        let sweep = self.outward(q, v, a);
-        self.inward(&sweep, &mut self.all_needed(&sweep))
+        rnea(&self.at(q, v), v, a, &[])
     }
 
     /// τ = M(q)·a + h(q, v) − Σ Jᵀw, `[nv]`; wrenches `[frames][6]`: what the world gives to a body, its joint need not.
     pub fn inverse_dynamics_with_wrenches(&self, q: &[S], v: &[S], a: &[S], wrenches: &[S]) -> Vec<S> {
-        let (sweep, poses) = (self.outward(q, v, a), self.poses(q));
-        let mut needed = self.all_needed(&sweep);
+        let (poses, mut on_bodies) = (self.poses(q), vec![Vector6::zeros(); self.bodies.len()]);
         for (&body, w) in self.frames.iter().zip(wrenches.chunks_exact(6)) {
-            needed[body] -= body_wrench(self.wrench_reference, &poses[body], &Vector6::from_column_slice(w));
+            on_bodies[body] += body_wrench(self.wrench_reference, &poses[body], &Vector6::from_column_slice(w));
         }
-        self.inward(&sweep, &mut needed)
+        rnea(&self.at(q, v), v, a, &on_bodies)
     }
 
     /// What each joint passes to its child link, `[links][6]`, in the link's frame.
     pub fn joint_wrenches(&self, q: &[S], v: &[S], a: &[S]) -> Vec<S> {
-        let sweep = self.outward(q, v, a);
-        let mut wrenches = self.all_needed(&sweep);
-        self.inward(&sweep, &mut wrenches);
+        let tree = self.at(q, v);
+        let motion = outward(&tree, v, a);
+        let mut wrenches: Vec<Vector6<S>> = tree.bodies.iter().zip(&motion).map(|(b, m)| needed(&b.inertia, m)).collect();
+        inward(&tree, &mut wrenches);
         self.moving_links().flat_map(|i| wrenches[i].iter().copied().collect::<Vec<_>>()).collect()
     }
 

@@ -221,12 +221,9 @@ impl<S: Scalar> Joint<S> {
         }
     }
 
-    /// τ += Sᵀ F; what a follower feels goes to its leader, by equal power.
-    pub(super) fn add_torque(&self, screws: &[Vector6<S>], wrench: &Vector6<S>, tau: &mut [S]) {
-        for (k, screw) in screws.iter().enumerate() {
-            let power = screw.dot(wrench);
-            tau[self.seat.v + k] += self.seat.follow.map_or(power, |(multiplier, _)| power * multiplier);
-        }
+    /// Its own rates for a rate of one: the multiplier of a joint that follows another, or one.
+    pub(super) fn multiplier(&self) -> S {
+        self.seat.follow.map_or_else(S::one, |(multiplier, _)| multiplier)
     }
 
     pub(super) fn lift(&self) -> Joint<Dual<S>> {
@@ -234,11 +231,6 @@ impl<S: Scalar> Joint<S> {
         let follow = follow.map(|(multiplier, offset)| (Dual::constant(multiplier), Dual::constant(offset)));
         Joint { motion: self.motion.lift(), seat: Seat { q, v, follow } }
     }
-}
-
-/// S·x˙.
-pub(super) fn sum<S: Scalar>(screws: &[Vector6<S>], rates: &[S]) -> Vector6<S> {
-    screws.iter().zip(rates).fold(Vector6::zeros(), |sum, (s, &rate)| sum + s * rate)
 }
 
 fn basis<S: Scalar>(k: usize) -> Vector6<S> {

@@ -3,10 +3,15 @@
 //! What moves is differentiated ([`Dual`]) and not derived; what is linear is applied to unit vectors; what is a sum over links is that sum. Inverse dynamics
 //! is the plain matrix form with 6×6 Adjoint and inertia matrices and one set of screw axes a joint (Lynch & Park, *Modern Robotics*, 2017,
 //! §8.3.2). It shares no formula with the algorithms beside it, and is what they are measured against, in big floats where it matters. It is not meant to be fast.
+//!
+//! The three recursions are a page each: [`rnea`], [`crba`] and [`aba`]. They read a [`Tree`], the
+//! robot at one configuration, which [`Textbook::at`] makes.
 
+pub mod aba;
 mod build;
 mod call;
 mod coriolis;
+pub mod crba;
 mod derivatives;
 mod dynamics;
 mod energy;
@@ -14,10 +19,12 @@ mod joint;
 mod kinematics;
 mod manifold;
 mod manifold_derivatives;
-mod matrix;
+pub mod matrix;
 mod momentum;
 mod regressor;
+pub mod rnea;
 mod solve;
+mod tree;
 
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -29,6 +36,7 @@ use crate::dual::Dual;
 use crate::model::JointInfo;
 use crate::spatial::{Placement, Reference};
 use joint::Joint;
+pub use tree::{Tree, TreeBody};
 
 /// A described robot with every link a body and every joint a joint, fixed ones too. Constants are computed in the scalar `S`
 /// from the numbers of the file.

@@ -9,7 +9,8 @@ use alloc::vec::Vec;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 use super::Textbook;
-use super::matrix::{adjoint_of_inverse, blocks, cross_matrix, mass_and_moment};
+use super::matrix::{blocks, cross_matrix, inverse_adjoint, mass_and_moment};
+use super::rnea::{inward, needed, outward};
 use crate::Scalar;
 use crate::spatial::{Placement, Reference};
 
@@ -55,7 +56,7 @@ impl<S: Scalar> Textbook<S> {
                 _ => (i, Placement::identity()),
             };
             // Gᵖ = Ad(T_ip)ᵀ G Ad(T_ip)
-            let adjoint = adjoint_of_inverse(&seat.1);
+            let adjoint = inverse_adjoint(&seat.1);
             inertia[seat.0] += adjoint.transpose() * body.inertia * adjoint;
             seats.push(seat);
         }
@@ -69,11 +70,12 @@ impl<S: Scalar> Textbook<S> {
 
     /// Y with τ = Y π, `[nv][links][10]`.
     pub fn torque_regressor(&self, q: &[S], v: &[S], a: &[S]) -> Vec<S> {
-        let sweep = self.outward(q, v, a);
+        let tree = self.at(q, v);
+        let motion = outward(&tree, v, a);
         let column = |(i, g): (usize, Matrix6<S>)| {
             let mut wrench = vec![Vector6::zeros(); self.bodies.len()];
-            wrench[i] = Self::needed(&sweep, i, &g);
-            self.inward(&sweep, &mut wrench)
+            wrench[i] = needed(&g, &motion[i]);
+            inward(&tree, &mut wrench)
         };
         let columns: Vec<Vec<S>> = self.unit_links().map(column).collect();
         (0..self.nv).flat_map(|i| columns.iter().map(move |c| c[i])).collect()

@@ -2,8 +2,10 @@
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::Argument;
+use articulated_core::algorithm::textbook::{aba::aba, crba::crba, rnea::rnea};
 use articulated_reference::Big;
 use articulated_test_support::random_tree::Flavour;
+use nalgebra::Vector6;
 use num_traits::Zero;
 
 use super::{
@@ -71,6 +73,33 @@ fn forward_dynamics_solves_the_equations_of_motion() {
             let column = apply(&inverse, &unit(n, k), n);
             same("M M⁻¹", &apply(&m, &column, n), &unit(n, k), EXACT);
         }
+    });
+}
+
+/// Of any tree, with joints that follow others: two bodies then share a rate.
+#[test]
+fn composite_bodies_give_the_mass_matrix_of_n_recursions() {
+    for_each_scene(20, SMALL, |_, scene| {
+        let ([q, v, ..], n) = (scene.motion(), scene.size[1]);
+        let m = crba(&scene.book.at(q, v));
+        let found: Vec<Big> = (0..n * n).map(|k| m[(k / n, k % n)]).collect();
+        same("M", &found, &scene.call("mass_matrix", &[q]), EXACT);
+    });
+}
+
+#[test]
+fn articulated_bodies_give_the_acceleration_that_inverse_dynamics_undoes() {
+    for_each_scene(20, REGULAR, |case, scene| {
+        let ([q, v, ..], tau) = (scene.motion(), scene.given(Argument::Tau));
+        let tree = scene.book.at(q, v);
+        // Any wrench on each body
+        let wrench = |i: usize| Vector6::from_fn(|k, _| Big::from_f64((1 + i * 6 + k) as f64).sin_cos().0);
+        let wrenches: Vec<Vector6<Big>> = (0..tree.bodies.len()).map(wrench).collect();
+        let followers = case.description.joints.iter().any(|j| j.mimic.is_some() && j.locked.is_none());
+        let Some(a) = aba(&tree, v, tau, &wrenches) else { return assert!(followers, "no joint follows another") };
+        assert_eq!(a.len(), scene.size[1]);
+        same("τ", &rnea(&tree, v, &a, &wrenches), tau, EXACT);
+        same("q̈", &aba(&tree, v, tau, &[]).expect("as before"), &scene.call("forward_dynamics", &[q, v, tau]), EXACT);
     });
 }
 
