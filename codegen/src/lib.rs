@@ -26,7 +26,7 @@ mod request;
 pub mod scene;
 mod size;
 mod spec;
-mod sym;
+pub mod sym;
 pub mod target;
 mod trace;
 

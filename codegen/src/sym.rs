@@ -27,7 +27,21 @@ impl Sym {
 }
 
 /// Runs `program` and returns the graph that it built, with what it returned as outputs.
-pub(crate) fn trace(program: impl FnOnce() -> Vec<Sym>) -> Graph {
+///
+/// Any function over [`Scalar`] can be traced:
+///
+/// ```
+/// use articulated_codegen::core::Scalar;
+/// use articulated_codegen::sym::{Sym, trace};
+///
+/// let graph = trace(|| {
+///     let q = Sym::input(0, 0);
+///     vec![q.sin_cos().0 * Sym::from_f64(9.81) + Sym::from_f64(0.0)]
+/// });
+/// // Adding zero costs nothing.
+/// assert_eq!((graph.counts().multiplications(), graph.counts().additions()), (1, 0));
+/// ```
+pub fn trace(program: impl FnOnce() -> Vec<Sym>) -> Graph {
     let outer = GRAPH.take();
     let outputs = program();
     let mut graph = GRAPH.replace(outer);

@@ -8,7 +8,9 @@ use articulated::description::Description;
 use articulated::{Base, Model};
 
 mod counted;
+mod formula;
 pub use counted::{Counted, count};
+pub use formula::formulas;
 
 /// A robot in all forms that the book uses.
 #[derive(Clone, Debug)]
