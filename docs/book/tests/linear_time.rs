@@ -10,7 +10,8 @@ use articulated_book::{Counted, Robot, chain, count, robot};
 use articulated_lab::plot::{Anchor, Axis, Drawing, INK, SMALL, Text};
 
 const LENGTHS: [usize; 10] = [1, 2, 4, 8, 15, 30, 60, 125, 250, 500];
-const NAMES: [(&str, &str); 3] = [("CRBA: mass matrix", "#b5541c"), ("ABA: forward dynamics", "#1b6ca8"), ("RNEA: inverse dynamics", "#3a7d2c")];
+const NAMES: [(&str, &str); 3] =
+    [("CRBA: mass matrix", "#b5541c"), ("ABA: forward dynamics", "#1b6ca8"), ("RNEA: inverse dynamics", "#3a7d2c")];
 const ROBOTS: [&str; 3] = ["simple_pendulum", "golfer", "humanoid"];
 
 /// Operations of CRBA, ABA and RNEA.
