@@ -3,7 +3,7 @@
 
 use articulated_codegen::model_pass::{FoldedRotations, ModelPass, View, model_passes, no_joint_moves_origin};
 use articulated_core::Scalar;
-use articulated_core::algorithm::{AngularKinematics, Argument, Function, Needs, function, functions};
+use articulated_core::algorithm::{AngularKinematics, Function, function, functions};
 use articulated_core::description::{self, Base, Description, Inertial, JointKind, Link, Origin};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::joint::{Angle, Joint};
@@ -12,18 +12,12 @@ use articulated_core::monitor::orthonormality;
 use articulated_core::spatial::{Matrix3, SpatialInertia, Vector3, to_z_axis};
 use articulated_reference::Big;
 use articulated_test_support::case::{Case, State, cast, for_each_bundled, for_each_tree, placements};
+use articulated_test_support::every_function::{difference, for_each_function, tolerance};
 use articulated_test_support::measure::{U, distance, scale, torque_scale};
 use articulated_test_support::random::Random;
 use articulated_test_support::random_effects::random_effects;
 use articulated_test_support::random_tree::Flavour;
 use num_traits::Zero;
-
-/// What the library's constants allow, which are double precision in any scalar. Seen: 2·10⁻¹⁵.
-const NEAR: f64 = 2e-14;
-
-/// The same for what is solved with the mass matrix, whose condition number comes in. Seen:
-/// 9·10⁻¹⁵.
-const SOLVED: f64 = 2e-13;
 
 /// Errors allowed, in units of u times the magnitude of the terms.
 const FEW: f64 = 16.0;
@@ -43,35 +37,6 @@ fn call(view: &View<f64>, name: &str, arguments: &[&[f64]]) -> Vec<f64> {
     out
 }
 
-/// The largest difference, relative to the largest entry or to one.
-fn difference(found: &[Big], expected: &[Big]) -> f64 {
-    assert_eq!(found.len(), expected.len());
-    let largest = expected.iter().map(|e| e.to_f64().abs()).fold(1.0, f64::max);
-    let one = |(f, e): (&Big, &Big)| (*f - *e).to_f64().abs() / largest;
-    found.iter().zip(expected).map(one).fold(0.0, |worst, d| if d <= worst { worst } else { d })
-}
-
-fn near(row: &Function<Big>) -> f64 {
-    if row.inverts_mass_matrix() { SOLVED } else { NEAR }
-}
-
-/// Each function that the model has, with its arguments.
-fn each(case: &Case, model: &Model<Big>, state: &State, mut visit: impl FnMut(&'static Function<Big>, &[&[Big]])) {
-    let arguments: Vec<(Argument, Vec<Big>)> = Argument::ALL.iter().map(|&a| (a, cast(state.argument(a)))).collect();
-    let bound = case.model.frames().iter().any(|f| case.model.freedoms_of(f.body).len() < 6);
-    let has = |f: &Function<Big>| match f.needs {
-        Needs::FreeFrames => !bound,
-        Needs::Mass => case.model.moving_mass() > 0.0,
-        Needs::Nothing | Needs::MassMatrix => true,
-    };
-    for row in functions::<Big>().iter().filter(|f| has(f)) {
-        let given = |a: &Argument| arguments.iter().find(|(b, _)| a == b).map(|(_, x)| x.as_slice());
-        let given: Vec<&[Big]> = row.takes.iter().filter_map(given).collect();
-        visit(row, &given);
-    }
-    assert_eq!(model.nv(), case.model.nv());
-}
-
 fn run(row: &Function<Big>, way: usize, view: &View<Big>, given: &[&[Big]]) -> Vec<Big> {
     let mut out = vec![Big::from_f64(f64::NAN); row.len(view.model.shape())];
     view.call_by(row, &row.ways[way], given, &mut out).expect("arguments of the right lengths");
@@ -86,10 +51,10 @@ fn model_passes_change_no_function_that_allows_them() {
             // In many digits, so that passes that only nearly keep the physics show.
             let model = case.model.cast::<Big>();
             let passed = View::new(model.clone()).passed();
-            each(case, &model, &state, |row, given| {
+            for_each_function(case, &model, &state, |row, given| {
                 if row.regrouped {
                     let off = difference(&run(row, 0, &passed, given), &run(row, 0, &View::new(model.clone()), given));
-                    assert!(off <= near(row), "{}: off by {off:e}", row.name);
+                    assert!(off <= tolerance(row), "{}: off by {off:e}", row.name);
                 }
             });
         });
@@ -99,11 +64,11 @@ fn model_passes_change_no_function_that_allows_them() {
 /// Holds the functions that need torques alone, in all ways, on a view to what they are on a model.
 fn same_without_frames(case: &Case, state: &State, one: &View<Big>, other: &Model<Big>) {
     let plain = View::new(other.clone());
-    each(case, other, state, |row, given| {
+    for_each_function(case, other, state, |row, given| {
         if row.regrouped && !row.asks_for_frames() {
             for k in (0..row.ways.len()).filter(|&k| (row.ways[k].applies)(other)) {
                 let off = difference(&run(row, k, one, given), &run(row, k, &plain, given));
-                assert!(off <= near(row), "{} {}: off by {off:e}", row.name, row.ways[k].name);
+                assert!(off <= tolerance(row), "{} {}: off by {off:e}", row.name, row.ways[k].name);
             }
         }
     });
@@ -204,9 +169,9 @@ fn rates_may_be_found_by_the_axes_of_joints() {
             let plain = View::new(model.clone());
             let by_axes = plain.clone().with_axis_accelerations();
             seen.borrow_mut().extend(by_axes.formulation.kinematics.iter().skip(1).copied());
-            each(case, &model, &state, |row, given| {
+            for_each_function(case, &model, &state, |row, given| {
                 let off = difference(&run(row, 0, &by_axes, given), &run(row, 0, &plain, given));
-                assert!(off <= near(row), "{}: off by {off:e}", row.name);
+                assert!(off <= tolerance(row), "{}: off by {off:e}", row.name);
             });
         });
     });

@@ -6,6 +6,7 @@
 //! The crate depends on the core, the reference and the reader alone: the laws of the core are tests of the core.
 
 pub mod case;
+pub mod every_function;
 pub mod jet;
 pub mod measure;
 pub mod random;
