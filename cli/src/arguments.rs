@@ -107,13 +107,14 @@ pub(crate) struct GenerateArguments {
     /// Also generate batch functions, for many states at once, with these number types: f64, f32
     #[arg(long, value_name = "TYPES", value_delimiter = ',', value_parser = real)]
     pub(crate) batch: Vec<Real>,
-    /// The language. C is C99 for numbers alone: a header and a source
-    #[arg(long, value_enum, default_value_t = Language::Rust)]
-    pub(crate) target: Language,
+    /// The language. C is C99, which needs math.h alone
+    #[arg(long, alias = "target", value_enum, default_value_t = Language::Rust)]
+    pub(crate) language: Language,
     /// The prefix of all names in C [default: the robot's name]
     #[arg(long, value_name = "PREFIX")]
     pub(crate) prefix: Option<String>,
-    /// The file to write instead of the standard output; for C the folder
+    /// The file to write instead of the standard output. C: a header (arm.h), or a folder for a
+    /// header and a source
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// Code that depends on nothing but core and std (this is the default)

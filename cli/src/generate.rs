@@ -40,8 +40,9 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
     types_of_batch(&arguments.batch)?;
     let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     robot.keeps_its_files("--output", arguments.output.as_deref())?;
-    match (arguments.target, arguments.output.as_deref()) {
+    match (arguments.language, arguments.output.as_deref()) {
         (Language::Rust, Some(path)) => output::file("--output", path)?,
+        (Language::C, Some(path)) if is_header(path) => output::file("--output", path)?,
         (Language::C, Some(path)) => output::folder("--output", path)?,
         (_, None) => {}
     }
@@ -62,7 +63,7 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
     let generated = generate(&request)?;
     robot.warn_of(generated.warnings.iter().chain(&generated.snapped));
     if let Some(path) = &arguments.output {
-        write(arguments.target, path, &generated)?;
+        write(arguments.language, path, &generated)?;
     }
     match (format, &arguments.output) {
         (Format::Json, _) => console::print(&json(&generated)),
@@ -74,17 +75,16 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
 /// The target language with its options. Errors: options of the other language, from the command
 /// line or the scene.
 fn target(arguments: &GenerateArguments, options: &mut Options) -> Result<(), Failure> {
-    if arguments.target == Language::Rust {
+    if arguments.language == Language::Rust {
         let rust = options.rust_mut();
         rust.forbid_unsafe |= arguments.forbid_unsafe;
         rust.no_std = arguments.no_std;
         rust.runtime = arguments.runtime.clone().filter(|_| !arguments.standalone);
-        let expected = "--target c beside it, or no --prefix";
+        let expected = "--language c beside it, or no --prefix";
         return arguments.prefix.as_ref().map_or(Ok(()), |prefix| Err(Failure::usage(format!("--prefix {prefix}: expected {expected}"))));
     }
     let of_rust = [
         ("--batch, or `batch` in the scene", !options.rust().batch.is_empty()),
-        ("--rename, or `rename` in the scene", !options.rename.is_empty()),
         ("--standalone", arguments.standalone),
         ("--forbid-unsafe", arguments.forbid_unsafe),
         ("--no-std", arguments.no_std),
@@ -92,15 +92,21 @@ fn target(arguments: &GenerateArguments, options: &mut Options) -> Result<(), Fa
     ];
     let found: Vec<&str> = of_rust.into_iter().filter_map(|(name, is_there)| is_there.then_some(name)).collect();
     if !found.is_empty() {
-        return Err(Failure::usage(format!("--target c: found {}, which are for Rust alone", found.join(", "))));
+        return Err(Failure::usage(format!("--language c: found {}, which are for Rust alone", found.join(", "))));
     }
-    options.target = Target::C(COptions { prefix: arguments.prefix.clone() });
+    let header_only = arguments.output.as_deref().is_none_or(is_header);
+    options.target = Target::C(COptions { prefix: arguments.prefix.clone(), header_only });
     Ok(())
+}
+
+/// Whether C goes to one header, and not to a header and a source in a folder.
+fn is_header(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e == "h" || e == "hpp")
 }
 
 /// Writes the file, or all files into a folder.
 fn write(language: Language, path: &Path, generated: &Generated) -> Result<(), Failure> {
-    if language == Language::Rust {
+    if language == Language::Rust || is_header(path) {
         return output::write(path, &generated.source);
     }
     output::folder("--output", path)?;

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-use articulated_codegen::Generated;
+use articulated_codegen::{File, Generated};
 use articulated_core::algorithm::{Shape, function};
 
 use crate::program::Program;
@@ -18,7 +18,28 @@ fn compiler() -> Command {
 
 /// Every warning is an error; products and sums are rounded one after the other, as the interpreter
 /// does.
-const FLAGS: [&str; 7] = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O1", "-ffp-contract=off"];
+const FLAGS: [&str; 9] = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror", "-O1", "-ffp-contract=off"];
+
+/// Whether a compiler is installed.
+#[must_use]
+pub fn is_there(compiler: &str) -> bool {
+    Command::new(compiler).arg("--version").output().is_ok_and(|answer| answer.status.success())
+}
+
+/// Checks that a header is free of warnings, in a file of its own.
+///
+/// # Panics
+/// If the compiler warns: its message is printed.
+pub fn check_header(compiler: &str, standard: &str, header: &File) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let is_cpp = standard.starts_with("c++");
+    let main = folder.path().join(if is_cpp { "main.cpp" } else { "main.c" });
+    std::fs::write(folder.path().join(&header.name), &header.text).expect("a folder that can be written");
+    std::fs::write(&main, format!("#include \"{0}\"\n#include \"{0}\"\nint main(void) {{ return 0; }}\n", header.name)).expect("as above");
+    let flags = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror", "-fsyntax-only"];
+    let answer = Command::new(compiler).arg(format!("-std={standard}")).args(flags).arg(main).output().expect("it is there");
+    assert!(answer.status.success(), "{compiler} refused {}: {}", header.name, String::from_utf8_lossy(&answer.stderr));
+}
 
 /// Compiles the C of several robots, whose names are their prefixes, as one program.
 ///

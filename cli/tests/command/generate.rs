@@ -41,23 +41,29 @@ fn flags_arrive_in_the_request() {
 fn c_is_a_header_and_a_source_in_a_folder() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("arm");
-    let words = ["generate", "cart_pole", "--functions", "inverse_dynamics", "--target", "c"];
+    let words = ["generate", "cart_pole", "--functions", "inverse_dynamics", "--language", "c"];
     let made = run(&[&words[..], &["-o", path.to_str().unwrap()]].concat());
     assert_eq!((made.status, made.out.as_str()), (0, ""), "{}", made.err);
     let [header, source] = ["cart_pole.h", "cart_pole.c"].map(|name| std::fs::read_to_string(path.join(name)).unwrap());
     assert!(header.contains("void cart_pole_inverse_dynamics(") && source.contains("#include \"cart_pole.h\""));
-    assert!(run(&words).out == header + &source);
+    // One header, to a file or to the standard output.
+    let single = folder.path().join("single.h");
+    assert_eq!(run(&[&words[..], &["-o", single.to_str().unwrap()]].concat()).status, 0);
+    let text = std::fs::read_to_string(single).unwrap();
+    assert!(text.contains("static inline void cart_pole_inverse_dynamics(") && run(&words).out == text);
+    let renamed = run(&[&words[..], &["--rename", "slide=cart"]].concat());
+    assert!(renamed.out.contains("CART_POLE_JOINT_CART = 0"), "{}{}", renamed.out, renamed.err);
     assert!(run(&[&words[..], &["--prefix", "my"]].concat()).out.contains("void my_inverse_dynamics("));
     for (more, told) in [
-        (&["--no-std", "--batch", "f64"][..], "--target c: found --batch, or `batch` in the scene, --no-std, which are for Rust alone"),
-        (&["--rename", "slide=S"], "--target c: found --rename, or `rename` in the scene, which are for Rust alone"),
+        (&["--no-std", "--batch", "f64"][..], "--language c: found --batch, or `batch` in the scene, --no-std, which are for Rust alone"),
+        (&["--rename", "slyde=S"], "rename: found \"slyde\", expected the name of a joint or of a link"),
         (&["--level", "double_double"], "level: found double_double, expected for target \"c\": f64, f32 or f32_f64"),
         (&["--prefix", "1st"], "prefix: found \"1st\""),
     ] {
         let made = run(&[&words[..], more].concat());
         assert!(made.status != 0 && made.err.contains(told), "{}", made.err);
     }
-    assert!(run(&["generate", "cart_pole", "--prefix", "my"]).err.contains("--prefix my: expected --target c beside it"));
+    assert!(run(&["generate", "cart_pole", "--prefix", "my"]).err.contains("--prefix my: expected --language c beside it"));
 }
 
 #[test]

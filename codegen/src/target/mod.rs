@@ -88,7 +88,7 @@ impl Target {
     pub(crate) fn check_names(&self, model: &Model<f64>, request: &Request, log: &mut Diagnostics) {
         match self {
             Self::Rust(_) => rust::Names::check(model, request, log),
-            Self::C(_) => {}
+            Self::C(_) => c::check_names(model, request, log),
         }
     }
 

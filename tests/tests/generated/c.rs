@@ -18,9 +18,11 @@ const LONG: [&str; 2] = ["coriolis_matrix", "mass_matrix_inverse"];
 
 /// An arm in each level, every kind of joint on a floating base, limbs, joints that follow others,
 /// long functions, and a link alone.
-static ROBOTS: LazyLock<Vec<Robot>> = LazyLock::new(|| {
+static ROBOTS: LazyLock<Vec<Robot>> = LazyLock::new(|| robots(false));
+
+fn robots(header_only: bool) -> Vec<Robot> {
     let robot = |name: &str, urdf: &str, base: Base, level: &str, wanted: &dyn Fn(&str) -> bool| {
-        let target = Target::C(COptions { prefix: Some(name.to_owned()) });
+        let target = Target::C(COptions { prefix: Some(name.to_owned()), header_only });
         let options = Options { target, level: level.parse().expect("a level"), ..Options::default() };
         with(name.into(), urdf, base, false, options, wanted)
     };
@@ -38,7 +40,7 @@ static ROBOTS: LazyLock<Vec<Robot>> = LazyLock::new(|| {
         robot("humanoid", bundled("humanoid"), Base::Floating, "f64", &|name| LONG.contains(&name)),
         robot("stone", stone, Base::Fixed, "f64", &all),
     ]
-});
+}
 
 static PROGRAM: LazyLock<Program> = LazyLock::new(|| {
     let shape = |robot: &Robot| robot.case.model.shape();
@@ -88,6 +90,46 @@ fn c_computes_what_the_graph_does() {
     }
 }
 
+/// One header for each robot, by each compiler of C and C++ that is there.
+#[test]
+fn headers_compile_without_a_warning_as_c_and_as_cplusplus() {
+    let (robots, mut compilers) = (robots(true), 0);
+    for (compiler, language) in [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17"), ("clang++", "c++17")] {
+        if c_program::is_there(compiler) {
+            robots.iter().for_each(|robot| c_program::check_header(compiler, language, &robot.generated.files[0]));
+            compilers += 1;
+        } else {
+            println!("not run: {compiler}, which is not installed");
+        }
+    }
+    assert!(compilers > 0, "a compiler of C is there");
+}
+
+#[test]
+fn names_that_c_does_not_have_are_spelled_out() {
+    let link = |name: &str| format!("<link name='{name}'/>");
+    let joint = |name: &str, child: &str| {
+        format!("<joint name='{name}' type='continuous'><parent link='base'/><child link='{child}'/><axis xyz='0 0 1'/></joint>")
+    };
+    let names = ["a-b", "a b", "*/ int x;", "größe", "int", "1"];
+    let links: String = (0..names.len()).map(|k| link(&format!("l{k}"))).collect();
+    let joints: String = names.iter().enumerate().map(|(k, name)| joint(name, &format!("l{k}"))).collect();
+    let urdf = format!("<robot name='2 arms'>{}{links}{joints}</robot>", link("base"));
+    let mut request = articulated_codegen::Request::new("arms.urdf", urdf);
+    request.options.functions = vec!["mass_matrix".into()];
+    request.options.target = Target::C(COptions { header_only: true, ..COptions::default() });
+    let generated = generate(&request).expect("a robot");
+    for part in
+        ["ROBOT_2_ARMS_JOINT_AU2D_B = 0", "ROBOT_2_ARMS_JOINT_AU20_B = 1", "ROBOT_2_ARMS_JOINT_GR__E = 3", "ROBOT_2_ARMS_JOINT_INT = 4"]
+    {
+        assert!(generated.source.contains(part), "{part} in {}", generated.source);
+    }
+    c_program::check_header("cc", "c99", &generated.files[0]);
+    request.options.rename = vec![("a-b".to_owned(), "x".to_owned()).into(), ("a b".to_owned(), "x".to_owned()).into()];
+    let told = generate(&request).unwrap_err().to_string();
+    assert!(told.contains("found X for the joints \"a-b\" and \"a b\", expected another name for one of them"), "{told}");
+}
+
 #[test]
 fn every_function_is_in_the_header_with_its_units_and_lengths() {
     let arm = &ROBOTS[0].generated;
@@ -111,7 +153,7 @@ fn robot_functions() -> impl Iterator<Item = &'static str> {
 #[test]
 fn what_c_does_not_have_is_refused_with_what_it_has() {
     let mut request = articulated_codegen::Request::new("arm.urdf", articulated_models::robot("ur5_like").expect("a bundled robot").urdf);
-    request.options.target = Target::C(COptions { prefix: Some("2nd".into()) });
+    request.options.target = Target::C(COptions { prefix: Some("2nd".into()), ..COptions::default() });
     request.options.level = "double_double".parse().expect("a level");
     let told = generate(&request).unwrap_err().to_string();
     for part in ["level: found double_double, expected for target \"c\": f64, f32 or f32_f64", "prefix: found \"2nd\", expected a letter"] {

@@ -3,18 +3,20 @@
 //! Arrays are flat, row by row. Functions and constants begin with a prefix, by default the robot's
 //! name.
 
+mod constants;
 mod statements;
 
 use std::fmt::Write;
 
 use articulated_core::algorithm::Dim;
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
-use articulated_core::model::Model;
 
 use crate::capabilities::Capabilities;
+use crate::lir::Stmt;
 use crate::lir::function::{Argument, Ending, Function};
 use crate::target::{File, Module};
 use crate::{Arithmetic, Options, Precision, TrigAccuracy};
+pub(in crate::target) use constants::check_names;
 use statements::{Printer, Reals};
 
 /// Choices for C.
@@ -22,6 +24,8 @@ use statements::{Printer, Reals};
 pub struct COptions {
     /// What all names begin with; the robot's name in lower case if none is given.
     pub prefix: Option<String>,
+    /// One header with `static inline` functions in place of a header and a source.
+    pub header_only: bool,
 }
 
 /// Numbers, in pieces where a function is long. The compiler decides what waits in memory.
@@ -56,17 +60,16 @@ pub(super) fn identifier(name: &str) -> String {
 /// The header and the source.
 pub(super) fn print(module: &Module, c: &COptions) -> Vec<File> {
     let prefix = c.prefix.clone().unwrap_or_else(|| identifier(module.model.name()));
-    let printer = Source { module, upper: prefix.to_ascii_uppercase(), prefix };
-    vec![
-        File { name: format!("{}.h", printer.prefix), text: printer.header() },
-        File { name: format!("{}.c", printer.prefix), text: printer.source() },
-    ]
+    let printer = Source { module, upper: prefix.to_ascii_uppercase(), prefix, header_only: c.header_only };
+    let header = File { name: format!("{}.h", printer.prefix), text: printer.header() };
+    if c.header_only { vec![header] } else { vec![header, File { name: format!("{}.c", printer.prefix), text: printer.source() }] }
 }
 
 struct Source<'a> {
     module: &'a Module<'a>,
     prefix: String,
     upper: String,
+    header_only: bool,
 }
 
 impl Source<'_> {
@@ -85,11 +88,22 @@ impl Source<'_> {
     fn header(&self) -> String {
         let (mut out, upper) = (String::new(), &self.upper);
         self.origin(&mut out);
-        let _ = writeln!(out, "#ifndef {upper}_H\n#define {upper}_H\n\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n");
-        self.constants(&mut out);
+        let _ = writeln!(out, "#ifndef {upper}_H\n#define {upper}_H\n");
+        if self.header_only {
+            let _ = writeln!(out, "#include <math.h>\n");
+        }
+        let _ = writeln!(out, "#ifdef __cplusplus\nextern \"C\" {{\n#endif\n");
+        constants::declare(&mut out, self.module, &self.prefix, self.header_only);
         for function in &self.module.functions {
+            if self.header_only && function.body.pieces.len() > 1 {
+                self.pieces(&mut out, function);
+            }
             self.document(&mut out, function);
-            let _ = writeln!(out, "{};\n", self.declaration(function));
+            if self.header_only {
+                self.function(&mut out, function);
+            } else {
+                let _ = writeln!(out, "{};\n", self.declaration(function));
+            }
         }
         let _ = writeln!(out, "#ifdef __cplusplus\n}}\n#endif\n\n#endif");
         out
@@ -99,7 +113,13 @@ impl Source<'_> {
         let mut out = String::new();
         self.origin(&mut out);
         let _ = writeln!(out, "#include \"{}.h\"\n\n#include <math.h>\n", self.prefix);
-        self.module.functions.iter().for_each(|function| self.function(&mut out, function));
+        constants::define(&mut out, self.module, &self.prefix);
+        for function in &self.module.functions {
+            if function.body.pieces.len() > 1 {
+                self.pieces(&mut out, function);
+            }
+            self.function(&mut out, function);
+        }
         out
     }
 
@@ -115,23 +135,6 @@ impl Source<'_> {
             writeln!(out, "   Robot \"{}\", {floats} base, gravity ({x:?}, {y:?}, {z:?}) m/s^2 in the world frame.", text(model.name()));
         let _ = writeln!(out, "   SI units and radians. Arrays are flat, row by row; results must not overlap arguments.");
         let _ = writeln!(out, "   Functions allocate nothing. To generate another one, add it to the functions of the request. */\n");
-    }
-
-    fn constants(&self, out: &mut String) {
-        let (model, upper): (&Model<f64>, &str) = (self.module.model, &self.upper);
-        for (name, what, n) in [
-            ("NQ", "Number of coordinates: the length of q.", model.nq()),
-            ("NV", "Number of degrees of freedom: the length of v, a and tau.", model.nv()),
-            ("FRAMES", "Number of frames.", model.frames().len()),
-            ("LINKS", "Number of moving links.", model.links().count()),
-        ] {
-            let _ = writeln!(out, "/** {what} */\n#define {upper}_{name} {n}");
-        }
-        if !self.module.parameters.is_empty() {
-            let n: usize = self.module.parameters.iter().map(|p| p.nominal.len()).sum();
-            let _ = writeln!(out, "/** Number of parameters. */\n#define {upper}_PARAMETERS {n}");
-        }
-        out.push('\n');
     }
 
     fn document(&self, out: &mut String, function: &Function) {
@@ -168,7 +171,8 @@ impl Source<'_> {
     }
 
     fn declaration(&self, function: &Function) -> String {
-        let name = format!("void {}_{}", self.prefix, function.spec.name);
+        let linkage = if self.header_only { "static inline " } else { "" };
+        let name = format!("{linkage}void {}_{}", self.prefix, function.spec.name);
         let list = self.parameters(function, &self.results(function));
         let (one_line, indent) = (format!("{name}({})", list.join(", ")), " ".repeat(name.len() + 1));
         if one_line.len() <= 100 { one_line } else { format!("{name}({})", list.join(&format!(",\n{indent}"))) }
@@ -195,6 +199,26 @@ impl Source<'_> {
 
     fn function(&self, out: &mut String, function: &Function) {
         let (body, results) = (&function.body, self.results(function));
+        let names = self.names(function);
+        let _ = writeln!(out, "{} {{\n{}", self.declaration(function), unused(&names));
+        self.zeros(out, function, &results);
+        match body.pieces.as_slice() {
+            [piece] => self.statements(out, function, piece),
+            pieces => {
+                let _ = writeln!(out, "    {} m[{}];", self.reals().computed, body.kept);
+                (0..pieces.len()).for_each(|c| _ = writeln!(out, "    {}({}, m);", self.piece(function, c), names.join(", ")));
+            }
+        }
+        let _ = writeln!(out, "}}\n");
+    }
+
+    /// The names of the arguments and of the results.
+    fn names<'f>(&self, function: &'f Function) -> Vec<&'f str> {
+        function.arguments.iter().map(|a| a.name).chain(self.results(function)).collect()
+    }
+
+    fn statements(&self, out: &mut String, function: &Function, statements: &[Stmt]) {
+        let results = self.results(function);
         let place = |mut at: usize| {
             for (name, array) in results.iter().zip(&function.results) {
                 if at < array.numbers() {
@@ -204,35 +228,20 @@ impl Source<'_> {
             }
             String::new()
         };
-        let printer = Printer { body, arguments: &function.arguments, reals: self.reals(), places: &place };
-        let names: Vec<&str> = function.arguments.iter().map(|a| a.name).chain(results.iter().copied()).collect();
-        let unused: String = names.iter().map(|name| format!("    (void){name};\n")).collect();
-        let pieces = body.pieces.as_slice();
-        if pieces.len() > 1 {
-            self.pieces(out, function, &printer, &unused);
-        }
-        let _ = writeln!(out, "{} {{\n{unused}", self.declaration(function));
-        self.zeros(out, function, &results);
-        match pieces {
-            [piece] => printer.statements(out, piece),
-            _ => {
-                let _ = writeln!(out, "    {} m[{}];", self.reals().computed, body.kept);
-                (0..pieces.len()).for_each(|c| _ = writeln!(out, "    {}({}, m);", self.piece(function, c), names.join(", ")));
-            }
-        }
-        let _ = writeln!(out, "}}\n");
+        Printer { body: &function.body, arguments: &function.arguments, reals: self.reals(), places: &place }.statements(out, statements);
     }
 
     fn piece(&self, function: &Function, c: usize) -> String {
         format!("{}_{}_piece_{c}", self.prefix, function.spec.name)
     }
 
-    fn pieces(&self, out: &mut String, function: &Function, printer: &Printer, unused: &str) {
+    fn pieces(&self, out: &mut String, function: &Function) {
         let parameters = self.parameters(function, &self.results(function)).join(", ");
+        let (linkage, unused) = (if self.header_only { "static inline" } else { "static" }, unused(&self.names(function)));
         for (c, piece) in function.body.pieces.iter().enumerate() {
             let name = self.piece(function, c);
-            let _ = writeln!(out, "static void {name}({parameters}, {} *m) {{\n{unused}    (void)m;", self.reals().computed);
-            printer.statements(out, piece);
+            let _ = writeln!(out, "{linkage} void {name}({parameters}, {} *m) {{\n{unused}    (void)m;", self.reals().computed);
+            self.statements(out, function, piece);
             let _ = writeln!(out, "}}\n");
         }
     }
@@ -246,4 +255,9 @@ impl Source<'_> {
             let _ = writeln!(out, "    for (int k = 0; k < {}; k++) {{\n        {name}[k] = 0;\n    }}", array.numbers());
         }
     }
+}
+
+/// Statements that keep compilers from warnings about arguments that a function does not read.
+fn unused(names: &[&str]) -> String {
+    names.iter().map(|name| format!("    (void){name};\n")).collect()
 }
