@@ -1,11 +1,39 @@
-//! From a URDF to straight-line Rust.
+//! From a URDF to straight-line Rust or C.
 //!
-//! ```text
-//! urdf → model → (model passes) → trace → graph → (graph passes) → ledger → emit → source
+//! A build script calls [`Build::new`], then [`Build::functions`], then [`Build::write`]:
+//!
+//! ```no_run
+//! // build.rs
+//! fn main() {
+//!     articulated_codegen::Build::new("robots/arm.urdf").functions(["inverse_dynamics"]).write("arm"); // $OUT_DIR/arm.rs
+//! }
 //! ```
 //!
-//! [`generate`] is that list. The macro, the build-script interface ([`Build`]) and the command line all fill a [`Request`] and get the
-//! same source. There is no physics here: the algorithms are those of `articulated-core`, run on symbols.
+//! A program that has the file in memory fills a [`Request`] and calls [`generate`]. It gets the
+//! source as text, operation counts ([`Generated::ledger`]) and warnings:
+//!
+//! ```
+//! use articulated_codegen::{Request, generate};
+//!
+//! let urdf = r#"<robot name="pendulum"><link name="base"/><link name="bob"><inertial><origin xyz="0 0 -0.5"/><mass value="2"/>
+//!     <inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>
+//!     <joint name="swing" type="continuous"><parent link="base"/><child link="bob"/><axis xyz="0 1 0"/></joint></robot>"#;
+//! let mut request = Request::new("pendulum.urdf", urdf);
+//! request.options.functions = vec!["gravity_torque".into()];
+//! let generated = generate(&request)?;
+//! assert!(generated.source.contains("pub fn gravity_torque(q: &[f64; NQ]) -> [f64; NV]"));
+//! assert_eq!(generated.ledger.functions[0].emitted().multiplications(), 1); // 9.81 · sin q
+//! # Ok::<(), articulated_codegen::diagnostic::Diagnostics>(())
+//! ```
+//!
+//! The steps of [`generate`]:
+//!
+//! ```text
+//! urdf → model → (model passes) → trace → graph → (graph passes) → LIR → (LIR passes) → source
+//! ```
+//!
+//! The macro, the build script and the command all fill a [`Request`] and get the same source.
+//! There is no physics here: the algorithms are those of `articulated-core`, run on symbols.
 
 pub mod bound;
 mod build;
@@ -29,6 +57,8 @@ mod spec;
 pub mod sym;
 pub mod target;
 mod trace;
+
+use std::fmt::Write as _;
 
 use articulated_core::algorithm::{Function, functions};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Unused};
@@ -93,7 +123,7 @@ impl Generated {
     ///
     /// # Panics If the target is not Rust, or the source was changed and no longer parses.
     pub fn tokens(&self) -> proc_macro2::TokenStream {
-        self.source.parse().expect("the target is Rust")
+        with_doc_attributes(&self.source).parse().expect("the target is Rust")
     }
 
     /// Guaranteed bounds of the rounding error of each result of a function, given by its index in
@@ -110,6 +140,23 @@ impl Generated {
         };
         bound::bounds(graph, self.level, &input)
     }
+}
+
+/// Rust source with `#[doc = "…"]` in place of `///` at the beginning of a line. Both mean the same,
+/// but rust-analyzer 1.95 leaves a slash in comments that a macro parses: hover texts began with "/ ".
+fn with_doc_attributes(source: &str) -> String {
+    let mut out = String::with_capacity(source.len() + source.len() / 16);
+    for line in source.split_inclusive('\n') {
+        let text = line.trim_start();
+        match text.strip_prefix("///").filter(|doc| !doc.starts_with('/')) {
+            Some(doc) => {
+                out += &line[..line.len() - text.len()];
+                let _ = writeln!(out, "#[doc = {:?}]", doc.trim_end_matches(['\r', '\n']));
+            }
+            None => out += line,
+        }
+    }
+    out
 }
 
 /// Generates the requested code. Pure: reads and writes no files.
@@ -248,5 +295,12 @@ mod tests {
         assert!(function("nonLinearEffects").err().unwrap().to_string().ends_with("did you mean `bias_forces`?"));
         assert!(function("forward_kinematics").err().unwrap().to_string().ends_with("did you mean `placements`?"));
         assert!(function("RNEA").err().unwrap().to_string().ends_with("did you mean `inverse_dynamics`?"));
+    }
+
+    #[test]
+    fn comments_of_documentation_are_attributes_of_the_tokens() {
+        let source = "/// τ = \"a\"\\b.\n///\n//// none\nmod m {\n    /// Its `x`.\n    pub const X: f64 = 1.0; // /// none\n}\n";
+        let expected = "#[doc = \" τ = \\\"a\\\"\\\\b.\"]\n#[doc = \"\"]\n//// none\nmod m {\n    #[doc = \" Its `x`.\"]\n    pub const X: f64 = 1.0; // /// none\n}\n";
+        assert_eq!(with_doc_attributes(source), expected);
     }
 }

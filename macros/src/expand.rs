@@ -1,12 +1,13 @@
 //! From an invocation to a module.
 
+use std::collections::BTreeMap;
 use std::env;
 use std::path::{Path, PathBuf};
 
 use articulated_codegen::diagnostic::{At, Code, Diagnostic, Diagnostics, Span, summary};
 use articulated_codegen::scene::articulated_scene::{Loader, Robot, Scene, beside, folder_of};
-use articulated_codegen::{Generated, Request, check_words, scene};
-use proc_macro2::{Span as Word, TokenStream};
+use articulated_codegen::{FunctionSpec, Generated, Request, check_words, scene};
+use proc_macro2::{Delimiter, Group, Span as Word, TokenStream, TokenTree};
 use quote::{quote, quote_spanned};
 
 use crate::errors::Errors;
@@ -23,7 +24,7 @@ pub(crate) fn expand(input: TokenStream) -> TokenStream {
 
 fn module(invocation: Invocation) -> TokenStream {
     let Invocation { attributes, visibility, module, name, settings, mut errors } = invocation;
-    let contents = contents(&settings, &mut errors);
+    let contents = contents(&settings, module.span, &mut errors);
     let errors = errors.into_items();
     let doc = "\n\nThe module has the functions that its invocation lists. To get another function of `articulated::algorithm`, add it to `functions`.";
     // Lints about style are for code that somebody writes. First, so that the user's attributes have the last word.
@@ -32,11 +33,11 @@ fn module(invocation: Invocation) -> TokenStream {
 }
 
 /// The generated source and a mention of every file, by which the compiler knows that the module depends on them.
-fn contents(settings: &Settings, errors: &mut Errors) -> TokenStream {
+fn contents(settings: &Settings, module: Word, errors: &mut Errors) -> TokenStream {
     let mut reader = Reader { settings, log: Diagnostics::default(), loader: loader() };
     let (scene, request) = reader.request();
     let Reader { mut log, loader, .. } = reader;
-    let source = request.map(|request| source(&request, &scene, settings, &mut log));
+    let source = request.map(|request| source(&request, &scene, settings, module, &mut log));
     log.sort();
     log.errors.iter().for_each(|finding| errors.push(settings.error(finding, &scene)));
     let paths: Vec<String> = loader.files.iter().map(|path| path.display().to_string()).collect();
@@ -50,10 +51,11 @@ fn loader() -> Loader<'static> {
 }
 
 /// The generated source, or nothing and every error.
-fn source(request: &Request, scene: &Scene, settings: &Settings, log: &mut Diagnostics) -> TokenStream {
+fn source(request: &Request, scene: &Scene, settings: &Settings, module: Word, log: &mut Diagnostics) -> TokenStream {
     match articulated_codegen::generate(request) {
         Ok(generated) => {
-            let (code, warnings) = (generated.tokens(), warnings(&generated, settings.places.span(settings.at_robot(scene))));
+            let code = Words { module, functions: settings.functions(scene) }.place(generated.tokens(), true);
+            let warnings = warnings(&generated, settings.places.span(settings.at_robot(scene)));
             quote! { #code #warnings }
         }
         Err(findings) => {
@@ -138,7 +140,60 @@ impl Reader<'_> {
     }
 }
 
+/// Where editors find the definitions of generated names.
+struct Words {
+    /// The word `mod`. (At the module's name, editors would show all definitions as its meaning.)
+    module: Word,
+    /// The words that name the functions.
+    functions: BTreeMap<String, Word>,
+}
+
+impl Words {
+    /// The word for a name behind a keyword; `None` if the keyword defines nothing.
+    fn of(&self, keyword: &str, name: &str) -> Option<Word> {
+        let form = |end: &str| self.functions.get(name.strip_suffix(end)?);
+        match keyword {
+            "fn" => Some(*form("").or_else(|| form("_into")).or_else(|| form("_blocks")).unwrap_or(&self.module)),
+            "const" | "mod" | "struct" => Some(self.module),
+            _ => None,
+        }
+    }
+
+    /// The code with its public names at their words. What is private keeps its spans, which lead
+    /// editors nowhere.
+    fn place(&self, code: TokenStream, is_public: bool) -> TokenStream {
+        let mut last: [String; 3] = Default::default();
+        let placed = code.into_iter().map(|mut token| {
+            let mut word = None;
+            match &token {
+                TokenTree::Group(group) if last[1] == "mod" && group.delimiter() == Delimiter::Brace => {
+                    token = Group::new(Delimiter::Brace, self.place(group.stream(), last[0] == "pub")).into();
+                }
+                TokenTree::Ident(ident) => {
+                    last.rotate_left(1);
+                    last[2] = ident.to_string();
+                    word = self.of(&last[1], &last[2]);
+                }
+                _ => {}
+            }
+            if is_public {
+                // The name stays the macro's, and lints see a macro's code.
+                token.set_span(word.map_or(Word::call_site(), |word| Word::call_site().located_at(word)));
+            }
+            token
+        });
+        placed.collect()
+    }
+}
+
 impl Settings {
+    /// The words that name the functions.
+    fn functions(&self, scene: &Scene) -> BTreeMap<String, Word> {
+        let entries = scene.code.functions.iter().flatten().zip(&scene.code.places.functions);
+        let specs = entries.filter_map(|(entry, at)| Some((FunctionSpec::parse(entry).ok()?.name, self.places.span(*at))));
+        specs.collect()
+    }
+
     /// A finding at the word of the invocation that it is about; of a scene's file, where that is
     /// named; of another file, where the robot is named.
     fn error(&self, finding: &Diagnostic, scene: &Scene) -> syn::Error {

@@ -162,6 +162,7 @@ impl ::articulated::Dynamics<f64> for Robot {
 pub const WARNINGS: [&str; 0] = [];
 
 /// Bodies of the functions, and what they call.
+#[doc(hidden)]
 #[cfg_attr(rustfmt, rustfmt_skip)]
 #[allow(unsafe_code, unused_unsafe, dead_code, non_snake_case, unreachable_pub, unused_imports, unused_results, clippy::all, clippy::pedantic)]
 mod implementation {

@@ -38,4 +38,9 @@ pub struct Batches;
 #[doc = include_str!("../../docs/recipes.md")]
 pub struct Recipes;
 
+/// The examples of `docs/simulation.md`, compiled and run as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/simulation.md")]
+pub struct Simulation;
+
 pub use articulated_formats::urdf::write as urdf_text;

@@ -43,8 +43,3 @@ pub use error::{SimulateError, StateError};
 pub use event::{Action, ContactPoint, Direction, Event, Impact, Map, SLIDING, Struck};
 pub use recording::{Balance, Counts, Ended, Hit, Recording};
 pub use simulation::Simulation;
-
-/// The chapter's examples, compiled and run as documentation tests.
-#[cfg(doctest)]
-#[doc = include_str!("../../../docs/simulation.md")]
-pub struct Chapter;

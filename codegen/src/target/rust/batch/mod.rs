@@ -98,7 +98,7 @@ impl Way {
         let text: String = [source, tiles].iter().filter_map(|text| text(self.set, real, width)).collect();
         let float = if no_std { "use super::super::super::Float;\n\n" } else { "" };
         let text = float.to_owned() + &tree_shake(&text, calls);
-        let _ = writeln!(out, "#[cfg({})]\nmod {} {{\n    mod lanes {{\n{text}}}\n", self.cfg, self.module);
+        let _ = writeln!(out, "#[doc(hidden)]\n#[cfg({})]\nmod {} {{\n    mod lanes {{\n{text}}}\n", self.cfg, self.module);
         // Functions of the robot could bear names of the lanes': its constants alone are let in.
         let parameters = if functions.iter().any(|f| f.inputs().iter().any(|a| a.is_parameters)) { ", PARAMETERS" } else { "" };
         let _ = writeln!(

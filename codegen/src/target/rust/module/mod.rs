@@ -60,7 +60,7 @@ pub(crate) fn module(module: &Module, rust: &RustOptions) -> String {
     let lint = if forbid_unsafe { "" } else { "unsafe_code, unused_unsafe, " };
     let _ = write!(
         out,
-        "/// Bodies of the functions, and what they call.\n#[cfg_attr(rustfmt, rustfmt_skip)]\n\
+        "/// Bodies of the functions, and what they call.\n#[doc(hidden)]\n#[cfg_attr(rustfmt, rustfmt_skip)]\n\
          #[allow({lint}dead_code, non_snake_case, unreachable_pub, unused_imports, unused_results, clippy::all, clippy::pedantic)]\n\
          mod {IMPLEMENTATION} {{\nuse super::{{FRAMES, LINKS, NQ, NV{parameters}}};\n\n{}\n}}\n",
         implementation.trim_end()
