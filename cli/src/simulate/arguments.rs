@@ -12,7 +12,8 @@ pub(crate) struct SimulateArguments {
     /// Instead of one scene, how fast each bundled scene is, by generated and by generic code
     #[arg(long, conflicts_with_all = ["scene", "output", "generated", "against"])]
     pub(crate) all: bool,
-    /// The folder to write to; it is made if it is not there
+    /// The folder to write to, made if it is not there; or FILE.html, the page alone that plays the
+    /// motion
     #[arg(short, long, value_name = "FOLDER")]
     pub(crate) output: Option<PathBuf>,
     /// How many MB recording.csv may become; more is refused before the motion begins [default:

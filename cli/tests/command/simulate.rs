@@ -70,6 +70,22 @@ fn everything_is_written_and_can_be_read() {
     assert_eq!((motion["moving"].as_u64(), motion["joints"].as_array().unwrap().len()), (Some(2), 2));
 }
 
+/// A name that ends with .html is that of the page, and nothing else is written.
+#[test]
+fn the_page_alone_is_written_where_its_name_is_given() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("swing.html");
+    let write = |scene: &str, words: &[&str]| run(&[&["simulate", scene, "-o", page.to_str().unwrap()], words].concat());
+    let ended = write("cart_pole", &["--end", "0.1"]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    assert!(std::fs::read_to_string(&page).unwrap().contains("<title>cart_pole</title>"));
+    assert!(ended.out.contains("swing.html"), "{}", ended.out);
+    let scene = File::new("ends.toml", b"robot = \"cart_pole\"\n[simulation]\nend = 1\noutput = \"ends\"\n");
+    let ended = write(scene.name(), &[]);
+    assert!(ended.status == 2 && ended.err.contains("--every"), "{}", ended.err);
+}
+
 #[test]
 fn every_bundled_scene_runs() {
     for scene in articulated_models::SCENES {
