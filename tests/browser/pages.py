@@ -19,12 +19,15 @@ import tempfile
 import time
 from pathlib import Path
 
+import shapes
+
 HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parent.parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
 PLACE = TARGET / "browser"
 SIZE = (1280, 800)
 SCENES = [("arm", 0.5), ("golf_swing", None), ("humanoid_float", 0.2), ("quadruped_drop", 0.3)]
+FIRST = b"\x1aE\xdf\xa3"  # of a WebM file
 
 
 def ensure_packages():
@@ -88,7 +91,7 @@ def seek(browser, part):
     """Puts the slider at a part of its way, as a user does; the motion halts there."""
     put = "(s => { s.value = +s.min + %s * (s.max - s.min); s.dispatchEvent(new Event('input')); return +s.value; })"
     there = browser.value((put + "(document.getElementById('scrub'))") % part)
-    browser.value("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))")
+    browser.value(SHOWN)
     assert abs(time_of(browser) - there) < 1e-9, (time_of(browser), there)
 
 
@@ -113,6 +116,11 @@ def plays(browser, keep):
     return first
 
 
+# Resolves when the page has been drawn once more; and the part of the window without panels.
+SHOWN = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))"
+MIDDLE = (SIZE[0] // 3, SIZE[1] // 12, 4 * SIZE[0] // 5, 3 * SIZE[1] // 4)
+
+
 def turns(browser):
     """A drag turns the view, and the button returns to the whole view."""
     before = browser.screenshot()
@@ -134,6 +142,39 @@ def follows(browser):
     browser.click("follow")
 
 
+def toggles(browser, name):
+    """A toggle changes the picture, and changes it back."""
+    before = browser.screenshot()
+    for changed in [True, False]:
+        browser.click(name)
+        browser.value(SHOWN)
+        differs = differing(before.crop(MIDDLE), browser.screenshot().crop(MIDDLE)) > 100
+        assert differs == changed, f"{name}: {differs}"
+
+
+def saves(browser, folder):
+    """The buttons save a picture, and a video of the motion."""
+    import devtools
+    from PIL import Image
+
+    folder.mkdir(exist_ok=True)
+    browser("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(folder))
+    name = browser.value("document.title")
+    picture, video = folder / f"{name}.png", folder / f"{name}.webm"
+    browser.click("png")
+    found = devtools.wait(lambda: picture.exists() and picture.stat().st_size, 10, "the picture")
+    image = Image.open(picture).convert("RGB")
+    assert found and image.size[0] == SIZE[0] and drawn(image) > 2000, image.size
+    # Two seconds, or somewhat less.
+    length = browser.value("(s => s.max - s.min)(document.getElementById('scrub'))")
+    browser.value(f"(s => {{ s.selectedIndex = [...s.options].findIndex(o => +o.value >= {length / 2}); }})(document.getElementById('speed'))")
+    browser.click("video")
+    devtools.wait(lambda: video.exists() and video.stat().st_size, 30, "the video")
+    data = video.read_bytes()
+    assert data.startswith(FIRST) and len(data) > 5000, len(data)
+    assert browser.value("document.getElementById('video').textContent") == "Save video"
+
+
 @contextlib.contextmanager
 def opened(path, *, webgl=True):
     """A browser with a profile of its own."""
@@ -147,8 +188,15 @@ def opened(path, *, webgl=True):
             browser.close()
 
 
+def finish(browser, name):
+    """No complaint of the browser."""
+    assert browser.complaints() == [], f"{name}: {browser.complaints()}"
+    print(f"{name}: ok", flush=True)
+
+
 def check(browser, articulated, folder):
     """Every check on every page."""
+    saved = folder / "saved"
     for scene, end in SCENES:
         page = folder / f"{scene}.html"
         write(articulated, scene, page, *(["--end", str(end)] if end else []))
@@ -157,8 +205,46 @@ def check(browser, articulated, folder):
         plays(browser, lambda name, image: image.save(folder / f"{scene}_{name}.png"))
         turns(browser)
         follows(browser)
-        assert browser.complaints() == [], f"{scene}: {browser.complaints()}"
-        print(f"{scene}: ok")
+        if scene == "golf_swing":
+            toggles(browser, "names")
+            toggles(browser, "boxes")
+            assert "ball" in browser.value("document.getElementById('legend').textContent")
+            saves(browser, saved)
+        finish(browser, scene)
+
+
+def check_shapes(browser, articulated, folder):
+    """A robot with meshes of each kind, primitives, materials, and a mesh that is missing."""
+    scene = shapes.write(folder / "shapes")
+    page = folder / "shapes.html"
+    told = write(articulated, scene, page)
+    for part in ["elsewhere/box.dae", 'link "dae"', 'link "lost"', "--package", "shapes.urdf"]:
+        assert part in told, told
+    told = write(articulated, scene, page, "--package", f"elsewhere={folder / 'shapes' / 'other'}")
+    assert "elsewhere" not in told and "nowhere/lost.stl" in told and 'link "lost"' in told, told
+    browser.open(page)
+    plays(browser, lambda name, image: image.save(folder / f"shapes_{name}.png"))
+    for name in ["looks", "collision", "boxes"]:
+        toggles(browser, name)
+    legend = browser.value("document.getElementById('legend').textContent")
+    assert "steel" in legend and "red paint" in legend, legend
+    near = lambda pixel, color: all(abs(a - b) < 60 for a, b in zip(pixel, color))
+    image = browser.screenshot().crop(MIDDLE)
+    red = sum(n for n, pixel in image.getcolors(1 << 24) if near(pixel, (230, 25, 25)))
+    assert red > 200, f"{red} pixels have the colour of the material"
+    finish(browser, "shapes")
+
+
+def check_without_webgl(path, folder):
+    """The same pictures where the browser has no WebGL."""
+    with opened(path, webgl=False) as browser:
+        assert browser.value("document.createElement('canvas').getContext('webgl2')") is None
+        for name in ["shapes", "arm"]:
+            browser.open(folder / f"{name}.html")
+            plays(browser, lambda part, image: image.save(folder / f"{name}_{part}_plain.png"))
+            # That the browser has no WebGL it says itself.
+            assert [c for c in browser.complaints() if "WebGL" not in c] == [], browser.complaints()
+            print(f"{name} without WebGL: ok", flush=True)
 
 
 def main():
@@ -182,6 +268,8 @@ def main():
         folder.mkdir(parents=True, exist_ok=True)
         with opened(path) as browser:
             check(browser, articulated, folder)
+            check_shapes(browser, articulated, folder)
+        check_without_webgl(path, folder)
 
 
 if __name__ == "__main__":

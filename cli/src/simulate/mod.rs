@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     }
     motion::solvable(&session)?;
     let size = Size::look_ahead(session.model.shape(), &mut settings, arguments)?;
-    let files = arguments.output.as_deref().map(|path| Files::at(path, &settings)).transpose()?;
+    let files = arguments.output.as_deref().map(|path| Files::at(path, &arguments.package, &settings)).transpose()?;
     let progress = Progress::of_whole(format!("{}: motion", session.name));
     let (mut motion, code) = match arguments.generated {
         true => (by_generated_code(&session, &initial, &settings, &progress)?, "generated"),
