@@ -37,6 +37,10 @@ arm() { # where there is an emulator, which only an administrator can install, a
     fi
 }
 
+browser() { # where there is Chromium, which only an administrator can install
+    python3 tests/browser/pages.py --install
+}
+
 ensure fmt rustfmt
 ensure clippy clippy
 
@@ -52,4 +56,5 @@ step python3 tests/peers/chart.py --check
 step python3 tests/oracles/make.py --check
 step python3 tests/shipped/shipped.py --sample
 step readme_command
+step browser
 printf '\nall checks passed in %d s\n' $SECONDS

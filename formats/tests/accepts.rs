@@ -4,7 +4,7 @@ mod corpus;
 
 use std::f64::consts::FRAC_PI_2;
 
-use articulated_core::description::{Collision, CollisionShape, JointDynamics, JointKind, Limit, Mimic, Origin};
+use articulated_core::description::{Collision, CollisionShape, JointDynamics, JointKind, Limit, Mimic, Origin, Visual};
 use articulated_core::diagnostic::{Code, Subject};
 use articulated_formats::{Options, read};
 use corpus::{CRANE, accepted, crane, described, joint, options};
@@ -272,8 +272,10 @@ fn expressions_of_xacro_in_names_of_files_play_no_part() {
     let mut description = reading.description;
     // Meshes are named, and that is all.
     let named = std::mem::take(&mut description.links[3].collision);
-    let shape = CollisionShape::Mesh { file: "$(arg folder)/hook.stl".into() };
+    let shape = CollisionShape::Mesh { file: "$(arg folder)/hook.stl".into(), scale: [1.0; 3] };
     assert_eq!(named, [Collision { origin: Origin::default(), shape }]);
+    let seen = std::mem::take(&mut description.links[3].visual);
+    assert!(matches!(&seen[..], [Visual { shape: CollisionShape::Mesh { file, .. }, .. }] if file.ends_with("${name}.stl")), "{seen:?}");
     assert_eq!(description, described(CRANE));
 }
 

@@ -1,4 +1,5 @@
-//! Collision geometry of links: read where it is right, and a warning where it is not.
+//! Shapes of links: read where they are right. Collision geometry that is wrong is a warning, and
+//! appearance plays no part in the dynamics.
 
 mod corpus;
 
@@ -29,7 +30,7 @@ fn shapes_are_read_with_their_places_in_the_order_of_the_file() {
         <collision><geometry><box size='1 2.5 0'/></geometry></collision>
         <collision><geometry><cylinder length='2' radius='0.5'/></geometry><origin xyz='0 0 -1'/></collision>
         <collision><geometry><capsule radius='0.1' length='3'/></geometry></collision>
-        <collision><geometry><mesh filename='package://crane/hook.stl' scale='1 1 1'/></geometry></collision>
+        <collision><geometry><mesh filename='package://crane/hook.stl' scale='1 2 0.001'/></geometry></collision>
         <collision><geometry><drake:capsule radius='0.2' length='4'/></geometry></collision>";
     let reading = hook(text);
     assert!(reading.warnings.is_empty(), "{:?}", reading.warnings);
@@ -39,7 +40,7 @@ fn shapes_are_read_with_their_places_in_the_order_of_the_file() {
         (at([0.0; 3]), CollisionShape::Box { size: [1.0, 2.5, 0.0] }),
         (at([0.0, 0.0, -1.0]), CollisionShape::Cylinder { radius: 0.5, length: 2.0 }),
         (at([0.0; 3]), CollisionShape::Capsule { radius: 0.1, length: 3.0 }),
-        (at([0.0; 3]), CollisionShape::Mesh { file: "package://crane/hook.stl".into() }),
+        (at([0.0; 3]), CollisionShape::Mesh { file: "package://crane/hook.stl".into(), scale: [1.0, 2.0, 0.001] }),
         (at([0.0; 3]), CollisionShape::Capsule { radius: 0.2, length: 4.0 }),
     ];
     assert_eq!(of_hook(&reading), expected.map(|(origin, shape)| Collision { origin, shape }));
@@ -116,4 +117,24 @@ fn expressions_of_xacro_in_sizes_are_errors() {
     let text = crane("<link name=\"hook\"/>", &format!("<link name=\"hook\">{}</link>", geometry("<sphere radius='${r}'/>")));
     let problems = read(text.as_bytes(), &options()).unwrap_err();
     assert_eq!(problems.errors.iter().map(|e| (e.code, e.field.as_str())).collect::<Vec<_>>(), [(Code::Xacro, "sphere radius")]);
+}
+
+#[test]
+fn appearance_is_read_with_the_colours_of_materials_and_is_never_a_finding() {
+    let text = "<visual><origin xyz='0 0 1'/><geometry><box size='1 2 3'/></geometry><material name='steel'/></visual>
+        <visual><geometry><mesh filename='hook.dae'/></geometry><material name=''><color rgba='1 0 0 0.5'/></material></visual>
+        <visual><geometry><cone/></geometry><material name='unknown'/></visual>";
+    let with_link = crane("<link name=\"hook\"/>", &format!("<link name=\"hook\">\n{text}</link>"));
+    let end = "</robot>";
+    let reading = accepted(&with_link.replace(end, &format!("<material name='steel'><color rgba='0.5 0.5 2 1'/></material>{end}")));
+    assert!(reading.warnings.is_empty(), "{:?}", reading.warnings);
+    let [boxed, mesh, cone] = &reading.description.links[3].visual[..] else { panic!("three pieces") };
+    assert_eq!((boxed.origin, &boxed.shape), (Origin::at([0.0, 0.0, 1.0]), &CollisionShape::Box { size: [1.0, 2.0, 3.0] }));
+    assert_eq!((boxed.material.as_str(), boxed.color), ("steel", Some([0.5, 0.5, 1.0, 1.0])));
+    assert_eq!(mesh.shape, CollisionShape::Mesh { file: "hook.dae".into(), scale: [1.0; 3] });
+    assert_eq!((mesh.material.as_str(), mesh.color), ("", Some([1.0, 0.0, 0.0, 0.5])));
+    assert!(matches!(&cone.shape, CollisionShape::Unread { why } if why.contains("cone")), "{cone:?}");
+    assert_eq!(cone.color, None);
+    // It is listed among what is not used.
+    assert_eq!(reading.unused.iter().filter(|u| u.tag == "visual").count(), 3);
 }

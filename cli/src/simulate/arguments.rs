@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::page::Package;
+
 #[derive(Args, Debug)]
 pub(crate) struct SimulateArguments {
     /// A bundled scene's name, or the path of a scene
@@ -12,9 +14,14 @@ pub(crate) struct SimulateArguments {
     /// Instead of one scene, how fast each bundled scene is, by generated and by generic code
     #[arg(long, conflicts_with_all = ["scene", "output", "generated", "against"])]
     pub(crate) all: bool,
-    /// The folder to write to; it is made if it is not there
+    /// The folder to write to, made if it is not there; or FILE.html, the page alone that plays the
+    /// motion
     #[arg(short, long, value_name = "FOLDER")]
     pub(crate) output: Option<PathBuf>,
+    /// The folder of a ROS package, for meshes named package://NAME/…; of a FOLDER alone the last
+    /// component is the name. May be repeated
+    #[arg(long, value_name = "NAME=FOLDER", requires = "output", value_parser = Package::parse)]
+    pub(crate) package: Vec<Package>,
     /// How many MB recording.csv may become; more is refused before the motion begins [default:
     /// 1000]
     #[arg(long, value_name = "MB", requires = "output", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]

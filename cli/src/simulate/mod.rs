@@ -2,6 +2,7 @@
 
 mod all;
 pub(crate) mod arguments;
+mod files;
 mod label;
 mod monitor;
 pub(crate) mod motion;
@@ -14,26 +15,23 @@ mod summary;
 mod table;
 mod text;
 
-use std::path::Path;
-
-use articulated::simulate::{Output, Settings};
-use articulated_core::effect::EffectId;
+use articulated::simulate::Settings;
 use articulated_lab::against;
 use articulated_lab::compiled::Rustc;
 use articulated_lab::session::{Code, Session};
 use articulated_lab::straight::Straight;
-use articulated_motion::{InitialState, field};
+use articulated_motion::InitialState;
 
 use crate::arguments::Format;
 use crate::console::{self, Progress};
 use crate::failure::{Failure, INPUT, OK, OUT_OF_TOLERANCE};
+use crate::named_scene;
 use crate::robot::has_room;
-use crate::{named_scene, output};
 use arguments::SimulateArguments;
+use files::Files;
 use motion::Motion;
-use page::Setting;
 use size::Size;
-use summary::{Summary, Unit};
+use summary::Summary;
 
 /// Simulates and writes.
 pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
@@ -52,7 +50,7 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     }
     motion::solvable(&session)?;
     let size = Size::look_ahead(session.model.shape(), &mut settings, arguments)?;
-    arguments.output.as_deref().map_or(Ok(()), folder)?;
+    let files = arguments.output.as_deref().map(|path| Files::at(path, &arguments.package, &settings)).transpose()?;
     let progress = Progress::of_whole(format!("{}: motion", session.name));
     let (mut motion, code) = match arguments.generated {
         true => (by_generated_code(&session, &initial, &settings, &progress)?, "generated"),
@@ -62,9 +60,9 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
         *error += &format!("; {full}");
     }
     let mut summary = Summary::new(&session, &motion, &settings, code);
-    if let Some(folder) = &arguments.output {
+    if let Some(files) = &files {
         progress.doing(format!("{}: files", session.name));
-        write(&session, &motion, &mut summary, (folder, settings.output == Output::Ends))?;
+        files.write(&session, &motion, &mut summary)?;
     }
     drop(progress);
     console::print(&match format {
@@ -84,17 +82,6 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     })
 }
 
-/// The folder of `--output`, made if it is not there. Errors: the name of a Parquet file.
-fn folder(path: &Path) -> Result<(), Failure> {
-    if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("parquet")) {
-        return output::folder("--output", path);
-    }
-    Err(Failure::usage(format!(
-        "--output {}: found the name of a Parquet file, expected a folder: recording.csv is written into it, and pandas or polars make Parquet of that",
-        path.display()
-    )))
-}
-
 fn by_generated_code(session: &Session, initial: &InitialState, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
     let (generated, frames) = session.generate(settings.integrator)?;
     progress.doing(format!("{}: rustc", session.name));
@@ -109,82 +96,4 @@ fn by_generic_code(session: &Session, initial: &InitialState, settings: &Setting
         console::warn("this command was built without optimisation: its speed means little");
     }
     motion::run(session, initial, Code::Generic, settings, progress)
-}
-
-/// All files of a motion, of its ends alone without what draws it; their names go into the summary,
-/// which is the last of them.
-fn write(session: &Session, motion: &Motion, summary: &mut Summary, (folder, ends): (&Path, bool)) -> Result<(), Failure> {
-    let recording = &motion.recording;
-    let drawn = if ends { None } else { Some(Drawn::of(session, motion, summary)?) };
-    let pictures = drawn.as_ref().map_or(&[][..], |drawn| &drawn.pictures);
-    summary.pictures_left_out = plot::PICTURES.into_iter().filter(|name| pictures.iter().all(|p| p.name != *name)).collect();
-    summary.page_left_out = ends;
-    clear(folder, &summary.pictures_left_out, ends)?;
-    let mut save = |name: &str, bytes: &[u8]| {
-        summary.files.push(name.to_owned());
-        output::write(&folder.join(name), bytes)
-    };
-    let columns = table::columns(recording);
-    summary.columns = columns.iter().map(|c| Unit { column: c.title.clone(), unit: c.unit.clone() }).collect();
-    save("recording.csv", table::csv(&columns).as_bytes())?;
-    for picture in pictures {
-        save(&format!("{}.svg", picture.name), picture.svg.as_bytes())?;
-    }
-    if let Some(drawn) = &drawn {
-        save(PAGE, drawn.page.as_bytes())?;
-        save(ANIMATION, drawn.animation.as_bytes())?;
-    }
-    summary.files.push("summary.json".to_owned());
-    output::write(&folder.join("summary.json"), crate::json(summary))
-}
-
-const PAGE: &str = "motion.html";
-const ANIMATION: &str = "motion.svg";
-
-/// What draws a motion.
-struct Drawn {
-    page: String,
-    animation: String,
-    pictures: Vec<plot::Picture>,
-}
-
-impl Drawn {
-    fn of(session: &Session, motion: &Motion, summary: &Summary) -> Result<Self, Failure> {
-        let setting = setting(session, summary);
-        let page = page::html(&motion.recording, &setting).map_err(|e| Failure::tool(&e))?;
-        let animation = page::svg(&motion.recording, &setting).map_err(|e| Failure::tool(&e))?;
-        let pictures = plot::pictures(&motion.recording, &session.name);
-        Ok(Self { page, animation, pictures })
-    }
-}
-
-/// Removes pictures of an earlier motion, and its page and animation.
-fn clear(folder: &Path, pictures: &[&str], page: bool) -> Result<(), Failure> {
-    let pictures = pictures.iter().map(|name| format!("{name}.svg"));
-    for path in pictures.chain([PAGE, ANIMATION].into_iter().filter(|_| page).map(str::to_owned)).map(|name| folder.join(name)) {
-        match std::fs::remove_file(&path) {
-            Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(Failure::input([format!("{}: {e}", path.display())])),
-            _ => {}
-        }
-    }
-    Ok(())
-}
-
-/// What the page shows of a scene.
-fn setting<'a>(session: &'a Session, summary: &Summary) -> Setting<'a> {
-    let contacts = || session.effects_of(EffectId::contact);
-    let ball = |a: &articulated_core::effect::Applied| (a.on.clone(), a.at.xyz, field(a, "radius").first().copied().unwrap_or(0.0));
-    let plane = |a: &articulated_core::effect::Applied| {
-        let normal: [f64; 3] = field(a, "normal").try_into().ok()?;
-        Some((normal, *field(a, "height").first()?))
-    };
-    Setting {
-        title: &session.name,
-        note: format!("{}, {} base; {}", summary.robot, summary.base, summary.integrator.name),
-        description: &session.description,
-        model: &session.model,
-        base: session.base(),
-        balls: contacts().map(ball).collect(),
-        ground: contacts().next().and_then(plane),
-    }
 }

@@ -7,6 +7,7 @@ use articulated::simulate::{Output, Settings};
 use articulated_core::algorithm::Shape;
 
 use super::arguments::SimulateArguments;
+use super::files::is_page;
 use crate::console;
 use crate::failure::Failure;
 
@@ -51,7 +52,7 @@ impl Size {
     /// whose number only the motion shows, no more are made than there is room for. Errors: more
     /// than may be.
     pub(super) fn look_ahead(shape: Shape, settings: &mut Settings, arguments: &SimulateArguments) -> Result<Option<Self>, Failure> {
-        let Some(folder) = &arguments.output else { return Ok(None) };
+        let Some(folder) = arguments.output.as_ref().filter(|path| !is_page(path)) else { return Ok(None) };
         let size = Self::of(shape, arguments.max_output_size.unwrap_or(DEFAULT));
         match rows(settings) {
             Some(rows) if rows > size.most => return Err(Failure::input([size.refusal(folder, rows)])),

@@ -70,6 +70,98 @@ fn everything_is_written_and_can_be_read() {
     assert_eq!((motion["moving"].as_u64(), motion["joints"].as_array().unwrap().len()), (Some(2), 2));
 }
 
+/// A name that ends with .html is that of the page, and nothing else is written.
+#[test]
+fn the_page_alone_is_written_where_its_name_is_given() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("swing.html");
+    let write = |scene: &str, words: &[&str]| run(&[&["simulate", scene, "-o", page.to_str().unwrap()], words].concat());
+    let ended = write("cart_pole", &["--end", "0.1"]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    assert!(std::fs::read_to_string(&page).unwrap().contains("<title>cart_pole</title>"));
+    assert!(ended.out.contains("swing.html"), "{}", ended.out);
+    let scene = File::new("ends.toml", b"robot = \"cart_pole\"\n[simulation]\nend = 1\noutput = \"ends\"\n");
+    let ended = write(scene.name(), &[]);
+    assert!(ended.status == 2 && ended.err.contains("--every"), "{}", ended.err);
+}
+
+/// The data of a page.
+fn data(page: &Path) -> serde_json::Value {
+    let page = std::fs::read_to_string(page).unwrap();
+    serde_json::from_str(page.split("application/json\">").nth(1).unwrap().split("</script>").next().unwrap()).unwrap()
+}
+
+#[test]
+fn meshes_are_drawn_where_they_are_found_and_told_where_they_are_not() {
+    const PENDULUM: &str = r#"<robot name="pendulum"><link name="base"/>
+        <link name="rod"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+          <visual><geometry><mesh filename="package://parts/mesh/rod.stl"/></geometry><material name="red"><color rgba="1 0 0 1"/></material></visual>
+          <visual><geometry><mesh filename="fine.obj"/></geometry></visual>
+          <collision><geometry><box size="1 1 1"/></geometry></collision></link>
+        <joint name="hinge" type="continuous"><parent link="base"/><child link="rod"/><axis xyz="0 1 0"/></joint></robot>"#;
+    const STL: &str =
+        "solid rod\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid rod\n";
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::create_dir_all(at("robot")).unwrap();
+    std::fs::create_dir_all(at("store/mesh")).unwrap();
+    std::fs::write(at("robot/p.urdf"), PENDULUM).unwrap();
+    std::fs::write(at("robot/p.toml"), "urdf = \"p.urdf\"\n[simulation]\nend = 0.1\noutput = 0.01\n").unwrap();
+    std::fs::write(at("store/mesh/rod.stl"), STL).unwrap();
+    // A sheet of 180 by 180 squares.
+    let corners = (0..=180).flat_map(|i| (0..=180).map(move |k| format!("v {i} {k} 0\n")));
+    let square = |i: usize, k: usize| {
+        format!("f {0} {1} {2}\nf {1} {3} {2}\n", 181 * i + k + 1, 181 * i + k + 2, 181 * (i + 1) + k + 1, 181 * (i + 1) + k + 2)
+    };
+    let faces = (0..180).flat_map(|i| (0..180).map(move |k| square(i, k)));
+    std::fs::write(at("robot/fine.obj"), corners.chain(faces).collect::<String>()).unwrap();
+    let scene = at("robot/p.toml");
+    let write = |words: &[&str]| {
+        let page = at("p.html");
+        let ended = run(&[&["simulate", scene.to_str().unwrap(), "-o", page.to_str().unwrap(), "--format", "json"], words].concat());
+        assert_eq!(ended.status, 0, "{}", ended.err);
+        (data(&page), ended)
+    };
+    let count = |data: &serde_json::Value, kind: &str| data["solids"].as_array().unwrap().iter().filter(|s| s["kind"] == kind).count();
+
+    let (page, ended) = write(&[]);
+    assert_eq!((count(&page, "visual"), count(&page, "collision")), (1, 1));
+    for part in ["p.urdf: link \"rod\": mesh: found no file package://parts/mesh/rod.stl", "--package NAME=FOLDER"] {
+        assert!(ended.err.contains(part), "{}", ended.err);
+    }
+    let warnings = ended.json()["warnings"].to_string();
+    assert!(warnings.contains("fine.obj: a mesh of 64800 triangles, expected at most 20000"), "{warnings}");
+
+    let package = format!("parts={}", at("store").display());
+    let (page, ended) = write(&["--package", &package]);
+    assert_eq!(count(&page, "visual"), 2);
+    assert_eq!((&page["solids"][0]["material"], &page["solids"][0]["color"]), (&"red".into(), &serde_json::json!([1.0, 0.0, 0.0, 1.0])));
+    assert!(!ended.err.contains("rod.stl"), "{}", ended.err);
+    // Where the package stands beside the robot no option is needed.
+    std::fs::rename(at("store"), at("parts")).unwrap();
+    assert_eq!(count(&write(&[]).0, "visual"), 2);
+    assert_eq!(count(&write(&["--package", at("parts").to_str().unwrap()]).0, "visual"), 2);
+    // What is no mesh is told.
+    std::fs::write(at("parts/mesh/rod.stl"), "solid").unwrap();
+    let (page, ended) = write(&[]);
+    assert!(count(&page, "visual") == 1 && ended.err.contains("rod.stl"), "{}", ended.err);
+    let ended = run(&["simulate", "cart_pole", "-o", at("p.html").to_str().unwrap(), "--package", "parts=nowhere"]);
+    assert!(ended.status == 2 && ended.err.contains("nowhere"), "{}", ended.err);
+}
+
+#[test]
+fn the_ball_of_a_scene_is_on_its_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("swing.html");
+    assert_eq!(run(&["simulate", "golf_swing", "-o", page.to_str().unwrap()]).status, 0);
+    let ball = &data(&page)["projectile"];
+    assert_eq!(ball["place"], serde_json::json!([1.215, 0.15, 0.09]));
+    // The radius of a golf ball, to a tenth.
+    assert!((ball["radius"].as_f64().unwrap() / 0.02135 - 1.0).abs() < 0.1, "{ball}");
+    assert!(ball["time"].as_f64().unwrap() > 0.2 && ball["after"][1].as_f64().unwrap() > 50.0, "{ball}");
+}
+
 #[test]
 fn every_bundled_scene_runs() {
     for scene in articulated_models::SCENES {

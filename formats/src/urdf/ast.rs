@@ -1,6 +1,6 @@
 //! What was found in the file, before names are looked up.
 
-use articulated_core::description::{Collision, Inertial, JointDynamics, JointKind, Limit, Origin};
+use articulated_core::description::{Collision, Inertial, JointDynamics, JointKind, Limit, Origin, Visual};
 use articulated_core::diagnostic::{At, Subject};
 
 #[derive(Default)]
@@ -26,6 +26,7 @@ pub(crate) struct DraftLink {
     pub(crate) at: At,
     pub(crate) inertial: Option<Inertial>,
     pub(crate) collision: Vec<Collision>,
+    pub(crate) visual: Vec<Visual>,
 }
 
 pub(crate) struct DraftJoint {

@@ -58,9 +58,9 @@ fn read_link(link: &urdf_rs::Link, index: usize, draft: &Draft) -> Option<Link> 
     let name = found.name.clone()?;
     // urdf-rs does not tell a missing inertial from zeros.
     let inertial = found.inertial.is_some().then(|| read_inertial(&link.inertial));
-    // The plain documents have no collision geometry.
-    let collision = found.collision.clone();
-    (read_index(&link.name)? == index).then_some(Link { name, inertial, collision, ..Link::default() })
+    // The plain documents have neither collision geometry nor appearance.
+    let (collision, visual) = (found.collision.clone(), found.visual.clone());
+    (read_index(&link.name)? == index).then_some(Link { name, inertial, collision, visual, ..Link::default() })
 }
 
 fn read_joint(joint: &urdf_rs::Joint, index: usize, draft: &Draft) -> Option<Joint> {

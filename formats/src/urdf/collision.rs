@@ -42,7 +42,8 @@ fn collision(tag: &Tag<'_>, context: &Context<'_>, log: &mut Diagnostics) -> Col
     Collision { origin, shape }
 }
 
-fn shape(geometry: &Tag<'_>, log: &mut Diagnostics) -> Option<CollisionShape> {
+/// The one shape of a `<geometry>`.
+pub(crate) fn shape(geometry: &Tag<'_>, log: &mut Diagnostics) -> Option<CollisionShape> {
     unused::beside_tags(geometry, &[], log);
     let mut children = geometry.children();
     let (Some(tag), None) = (children.next(), children.next()) else {
@@ -61,7 +62,11 @@ fn shape(geometry: &Tag<'_>, log: &mut Diagnostics) -> Option<CollisionShape> {
     unused::rest(&tag, &[], attributes, log);
     match name.as_str() {
         "box" => Some(CollisionShape::Box { size: sizes(&tag, "size", log)? }),
-        "mesh" => Some(CollisionShape::Mesh { file: tag.required_attribute("filename", log)?.0.to_owned() }),
+        "mesh" => Some(CollisionShape::Mesh {
+            file: tag.required_attribute("filename", log)?.0.to_owned(),
+            // Contact needs no mesh: what is wrong with its scale plays no part.
+            scale: number::silently(&tag, "scale").unwrap_or([1.0; 3]),
+        }),
         "sphere" => sizes(&tag, "radius", log).map(|[radius]| CollisionShape::Sphere { radius }),
         _ => {
             let (radius, length) = (sizes(&tag, "radius", log), sizes(&tag, "length", log));

@@ -40,7 +40,7 @@ pub fn from_urdf_rs(robot: &Robot, options: &Options) -> Result<Reading, Convers
     read(text.as_bytes(), options).map_err(ConversionError::Diagnostics)
 }
 
-/// The robot as `urdf-rs` has it, without collision geometry.
+/// The robot as `urdf-rs` has it, without collision geometry and appearance.
 ///
 /// # Errors
 /// Joints of a type that `urdf-rs` does not know.

@@ -6,9 +6,9 @@ use articulated_core::diagnostic::{Code, Diagnostics, Subject};
 use super::ast::DraftLink;
 use super::element::Tag;
 use super::robot::Context;
-use super::{collision, frame, inertia, number, unused};
+use super::{collision, frame, inertia, number, unused, visual};
 
-/// A link with its mass properties and its collision geometry.
+/// A link with its mass properties, its collision geometry and its appearance.
 pub(crate) fn link(tag: &Tag<'_>, context: &Context<'_>, log: &mut Diagnostics) -> DraftLink {
     let subject = Subject::Link(tag.name_for_messages());
     let tag = tag.of(&subject);
@@ -16,7 +16,8 @@ pub(crate) fn link(tag: &Tag<'_>, context: &Context<'_>, log: &mut Diagnostics) 
     name.iter().for_each(|name| unused::warn_of_blanks(&tag, name, log));
     unused::rest(&tag, &["inertial"], &["name"], log);
     let inertial = tag.only("inertial", log).and_then(|tag| inertial(&tag, context, log));
-    DraftLink { name, at: tag.at(), inertial, collision: collision::all(&tag, context, log) }
+    let (collision, visual) = (collision::all(&tag, context, log), visual::all(&tag, context, log));
+    DraftLink { name, at: tag.at(), inertial, collision, visual }
 }
 
 fn inertial(tag: &Tag<'_>, context: &Context<'_>, log: &mut Diagnostics) -> Option<Inertial> {

@@ -8,8 +8,8 @@ use super::tree::Tree;
 /// The description that the draft amounts to; `None` where something of it is missing, which is an error already.
 pub(crate) fn lower(draft: &Draft, tree: &Tree, leaders: &[Option<usize>]) -> Option<Description> {
     let links = draft.links.iter().map(|link| {
-        let (name, collision) = (link.name.clone()?, link.collision.clone());
-        Some(Link { name, inertial: link.inertial, collision, ..Link::default() })
+        let (name, collision, visual) = (link.name.clone()?, link.collision.clone(), link.visual.clone());
+        Some(Link { name, inertial: link.inertial, collision, visual, ..Link::default() })
     });
     let joints = draft.joints.iter().enumerate().map(|(i, joint)| {
         let mimic = joint.mimic.as_ref().zip(leaders[i]).map(|(mimic, leader)| Mimic {

@@ -57,6 +57,7 @@ mod plain;
 mod robot;
 mod tree;
 mod unused;
+mod visual;
 mod write;
 mod xacro;
 

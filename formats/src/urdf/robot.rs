@@ -1,8 +1,10 @@
 //! The tag `<robot>`: only its direct children are links and joints.
 
+use std::collections::BTreeMap;
+
 use super::ast::{Draft, DraftLink, PassedOver};
 use super::element::Tag;
-use super::{frame, joints, links, lost, unused};
+use super::{frame, joints, links, lost, unused, visual};
 use crate::Options;
 use articulated_core::diagnostic::{Code, Diagnostics, Place, quote};
 
@@ -24,6 +26,8 @@ pub(crate) struct Context<'a> {
     pub(crate) version: Version,
     /// The longest distance from one frame to the next in the file, m; at most 1 m, and 1 m where all are zero.
     pub(crate) length: f64,
+    /// Colours of materials by their names.
+    pub(crate) materials: BTreeMap<String, [f64; 4]>,
 }
 
 /// All links and joints, with everything wrong about each of them reported.
@@ -31,7 +35,7 @@ pub(crate) fn draft(robot: &Tag<'_>, options: &Options, log: &mut Diagnostics) -
     let name = robot.required_name("name", log).unwrap_or_default();
     unused::warn_of_blanks(robot, &name, log);
     unused::rest(robot, &["link", "joint"], &["name", "version"], log);
-    let context = Context { options, version: version(robot, log), length: frame::longest(robot) };
+    let context = Context { options, version: version(robot, log), length: frame::longest(robot), materials: visual::materials(robot) };
     let mut draft = Draft { name, ..Draft::default() };
     for tag in robot.children() {
         if tag.is("link") {
@@ -70,7 +74,7 @@ fn declare_world(draft: &mut Draft, log: &mut Diagnostics) {
     let place = Place { at, subject: &subject, field: "parent" };
     let found = format!("{}, which is not a link of this file", quote(WORLD));
     log.warning(place, Code::UndeclaredWorld, found, "<link name=\"world\"/>; added as a link without mass");
-    draft.links.push(DraftLink { name: Some(WORLD.to_owned()), at, inertial: None, collision: Vec::new() });
+    draft.links.push(DraftLink { name: Some(WORLD.to_owned()), at, inertial: None, collision: Vec::new(), visual: Vec::new() });
 }
 
 fn version(robot: &Tag<'_>, log: &mut Diagnostics) -> Version {

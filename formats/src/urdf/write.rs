@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use articulated_core::description::{Description, Inertial, Joint, JointKind, Origin};
 
-/// The robot as a URDF, without collision geometry. Every number is printed so that reading gives
+/// The robot as a URDF, without collision geometry and appearance. Every number is printed so that reading gives
 /// the same double.
 #[must_use]
 pub fn write(description: &Description) -> String {

@@ -1,7 +1,7 @@
 //! A loaded scene with its robot: its start, its code, and its motion.
 
 use std::ops::Deref;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use articulated::Dynamics;
 use articulated::simulate::{Counts, IntegratorId, Settings};
@@ -24,6 +24,8 @@ pub struct Session {
     pub request: Request,
     /// Warnings about the robot.
     pub robot_warnings: Vec<String>,
+    /// Folders of the files that the robot was read from, its own first.
+    pub folders: Vec<PathBuf>,
     session: articulated_motion::Session,
 }
 
@@ -48,7 +50,7 @@ impl Session {
     /// The session of a scene that was read. `folder`: that of its file, for other files that it
     /// names.
     pub fn new(name: String, prepared: Prepared, folder: PathBuf) -> Result<Self, Error> {
-        let Prepared { scene, mut request, robot, .. } = prepared;
+        let Prepared { scene, mut request, robot, files } = prepared;
         let BuiltRobot { reading, model, resolved, effects, .. } = robot;
         // Variants of the request replace its effects.
         (request.scene, request.options.robot.effects) = (None, effects.clone());
@@ -58,7 +60,9 @@ impl Session {
         let robot_warnings = summary(robot_warnings.chain(&reading.snapped));
         let mut session = articulated_motion::Session::new(scene, reading.description, model, effects).in_folder(folder);
         session.report = resolved.report;
-        Ok(Self { name, request, robot_warnings, session })
+        // The first file is the scene's; a bundled scene has none.
+        let folders = files.iter().skip(1).chain(files.first()).filter_map(|file| file.parent()).map(Path::to_owned).collect();
+        Ok(Self { name, request, robot_warnings, folders, session })
     }
 
     /// Where the motion starts, and what controls it; warnings are printed. Errors: all that do not

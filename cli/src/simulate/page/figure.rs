@@ -1,10 +1,20 @@
-//! A robot as it is drawn: lines between joints, and for each link the box of even density that has its mass and inertia.
+//! A robot as it is drawn: lines between joints, the shapes of links, and for each link the box of
+//! even density that has its mass and inertia.
 
-use articulated_core::description::{Base, Description, Inertial, Origin};
+use std::collections::HashMap;
+
+use articulated_core::description::{Base, CollisionShape, Description, Inertial, Link, Origin};
 use articulated_core::model::{Frame, Model};
 use articulated_core::spatial::Placement;
 use nalgebra::{Matrix3, Rotation3, SymmetricEigen, Vector3};
 use serde::Serialize;
+
+use super::geometry::Geometry;
+use super::mesh::Meshes;
+use crate::simulate::label;
+
+/// Size of a joint's label, and the room for it, px.
+const LABEL: (f64, f64) = (11.0, 120.0);
 
 /// The drawn robot. Bodies are numbered: 0 does not move, k + 1 is the k-th of [`Figure::frames`].
 #[derive(Clone, Debug, Default, Serialize)]
@@ -19,6 +29,8 @@ pub(super) struct Figure {
     pub(super) joints: Vec<Mark>,
     pub(super) boxes: Vec<Box>,
     pub(super) balls: Vec<Ball>,
+    pub(super) geometries: Vec<Geometry>,
+    pub(super) solids: Vec<Solid>,
 }
 
 /// A line from a point of a body to one of another, or of the same.
@@ -36,6 +48,8 @@ pub(super) struct Mark {
     body: usize,
     place: [f64; 3],
     name: String,
+    /// The name, or as much of it as there is room for.
+    label: String,
 }
 
 /// A link's box: its centre, its axes as columns of a rotation, and half its edges.
@@ -49,6 +63,32 @@ pub(super) struct Box {
     mass: f64,
     /// Which of the base's limbs it belongs to, for its colour.
     pub(super) limb: usize,
+    /// No visual shape of the link is drawn: the box is all there is to see of it.
+    alone: bool,
+}
+
+/// A shape of a link: its place in the body, and what it looks like.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Solid {
+    pub(super) body: usize,
+    kind: Kind,
+    /// Which of [`Figure::geometries`].
+    pub(super) geometry: usize,
+    pub(super) center: [f64; 3],
+    /// As columns of a rotation.
+    axes: [[f64; 3]; 3],
+    name: String,
+    /// Empty where it has none.
+    material: String,
+    color: Option<[f64; 4]>,
+    limb: usize,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Kind {
+    Visual,
+    Collision,
 }
 
 /// A sphere that touches the ground.
@@ -60,8 +100,9 @@ pub(super) struct Ball {
 }
 
 impl Figure {
-    /// Of a robot; `model` has a frame for each link.
-    pub(super) fn of(description: &Description, model: &Model<f64>, base: Base) -> Self {
+    /// Of a robot; `model` has a frame for each link. The shapes of its links are drawn if `meshes`
+    /// are there.
+    pub(super) fn of(description: &Description, model: &Model<f64>, base: Base, meshes: Option<&Meshes<'_>>) -> Self {
         let mut figure = Self::default();
         let links = figure.links(description, model);
         figure.root = usize::from(base == Base::Floating && !figure.frames.is_empty());
@@ -72,25 +113,89 @@ impl Figure {
                 figure.sticks.push(Stick { from: parent.body, start, to: child.body, end });
             }
             if !joint.kind.is_fixed() && joint.locked.is_none() {
-                figure.joints.push(Mark { body: child.body, place: end, name: joint.name.clone() });
+                let (name, label) = (joint.name.clone(), String::new());
+                figure.joints.push(Mark { body: child.body, place: end, name, label });
             }
+        }
+        let names: Vec<String> = figure.joints.iter().map(|joint| joint.name.clone()).collect();
+        for (joint, label) in figure.joints.iter_mut().zip(label::told_apart(&names, LABEL.0, LABEL.1)) {
+            joint.label = label;
+        }
+        if let Some(meshes) = meshes {
+            figure.shapes(description, &links, meshes);
         }
         for (link, place) in description.links.iter().zip(&links) {
             let (Some(place), Some(inertial)) = (place, &link.inertial) else { continue };
             if inertial.mass > 0.0 {
-                figure.boxes.push(inertia_box(&link.name, inertial, place));
+                let alone = !figure.solids.iter().any(|solid| solid.kind == Kind::Visual && solid.name == link.name);
+                figure.boxes.push(inertia_box(&link.name, inertial, place, alone));
             }
         }
         figure
     }
 
+    /// Adds the visual and the collision shapes of all links.
+    fn shapes(&mut self, description: &Description, links: &[Option<Linked>], meshes: &Meshes<'_>) {
+        let is_mesh = |shape: &CollisionShape| usize::from(matches!(shape, CollisionShape::Mesh { .. }));
+        let of_link = |link: &Link| -> usize {
+            link.visual.iter().map(|v| is_mesh(&v.shape)).sum::<usize>() + link.collision.iter().map(|c| is_mesh(&c.shape)).sum::<usize>()
+        };
+        let pieces: usize = description.links.iter().map(of_link).sum();
+        let mut known: HashMap<String, Option<usize>> = HashMap::new();
+        for (link, place) in description.links.iter().zip(links) {
+            let Some(place) = place else { continue };
+            for visual in &link.visual {
+                let Some(geometry) = self.geometry(&link.name, &visual.shape, pieces, meshes, &mut known) else { continue };
+                let solid = solid(link, place, Kind::Visual, geometry, &visual.origin);
+                self.solids.push(Solid { material: visual.material.clone(), color: visual.color, ..solid });
+            }
+            for piece in &link.collision {
+                let Some(geometry) = self.geometry(&link.name, &piece.shape, pieces, meshes, &mut known) else { continue };
+                self.solids.push(solid(link, place, Kind::Collision, geometry, &piece.origin));
+            }
+        }
+    }
+
+    /// The index of a shape's geometry; equal meshes share one.
+    fn geometry(
+        &mut self,
+        link: &str,
+        shape: &CollisionShape,
+        pieces: usize,
+        meshes: &Meshes<'_>,
+        known: &mut HashMap<String, Option<usize>>,
+    ) -> Option<usize> {
+        let key = format!("{shape:?}");
+        if let CollisionShape::Mesh { .. } = shape
+            && let Some(index) = known.get(&key)
+        {
+            return *index;
+        }
+        let geometry = match shape {
+            CollisionShape::Mesh { file, scale } => meshes.mesh(link, file, pieces).map(|mesh| mesh.scaled(*scale)),
+            other => Geometry::of(other),
+        };
+        let index = geometry.map(|geometry| {
+            self.geometries.push(geometry);
+            self.geometries.len() - 1
+        });
+        known.insert(key, index);
+        index
+    }
+
     /// Points of a body that hold all that is drawn of it, each with how far around it that reaches, m.
     pub(super) fn points(&self, body: usize) -> Vec<(Vector3<f64>, f64)> {
-        let corners = self.boxes.iter().filter(|b| b.body == body).flat_map(Box::corners).map(|p| (p, 0.0));
+        // Of a link that is seen otherwise the box is hidden at first.
+        let corners = self.boxes.iter().filter(|b| b.body == body && b.alone).flat_map(Box::corners).map(|p| (p, 0.0));
         let starts = self.sticks.iter().filter(|s| s.from == body).map(|s| (Vector3::from(s.start), 0.0));
         let ends = self.sticks.iter().filter(|s| s.to == body).map(|s| (Vector3::from(s.end), 0.0));
         let balls = self.balls.iter().filter(|b| b.body == body).map(|b| (Vector3::from(b.center), b.radius));
-        corners.chain(starts).chain(ends).chain(balls).collect()
+        let solids = self.solids.iter().filter(|s| s.body == body && s.kind == Kind::Visual);
+        let shapes = solids.flat_map(|s| {
+            let place = s.placement();
+            self.geometries[s.geometry].bounds().into_iter().map(move |p| (place.transform(p), 0.0))
+        });
+        corners.chain(starts).chain(ends).chain(balls).chain(shapes).collect()
     }
 
     /// A sphere at a place of a link.
@@ -114,6 +219,12 @@ impl Figure {
             Linked { body: *body, place: relative(first, &frame.placement), limb: limb(model, frame.body) }
         };
         description.links.iter().map(|link| model.frames().iter().find(|f| f.name == link.name).map(&mut place)).collect()
+    }
+}
+
+impl Solid {
+    fn placement(&self) -> Placement<f64> {
+        Placement { rotation: Matrix3::from_columns(&self.axes.map(Vector3::from)), position: Vector3::from(self.center) }
     }
 }
 
@@ -158,7 +269,15 @@ fn placement(origin: &Origin) -> Placement<f64> {
     Placement { rotation: *Rotation3::from_euler_angles(roll, pitch, yaw).matrix(), position: Vector3::from(origin.xyz) }
 }
 
-fn inertia_box(name: &str, inertial: &Inertial, link: &Linked) -> Box {
+/// A shape of a link without colour.
+fn solid(link: &Link, linked: &Linked, kind: Kind, geometry: usize, origin: &Origin) -> Solid {
+    let place = linked.place.compose(&placement(origin));
+    let axes = [0, 1, 2].map(|k| place.rotation.column(k).into_owned().into());
+    let (name, material) = (link.name.clone(), String::new());
+    Solid { body: linked.body, kind, geometry, center: place.position.into(), axes, name, material, color: None, limb: linked.limb }
+}
+
+fn inertia_box(name: &str, inertial: &Inertial, link: &Linked, alone: bool) -> Box {
     let [xx, xy, xz, yy, yz, zz] = inertial.inertia;
     let principal = SymmetricEigen::new(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz));
     let place = link.place.compose(&placement(&inertial.origin));
@@ -172,6 +291,7 @@ fn inertia_box(name: &str, inertial: &Inertial, link: &Linked) -> Box {
         name: name.to_owned(),
         mass: inertial.mass,
         limb: link.limb,
+        alone,
     }
 }
 
@@ -206,7 +326,7 @@ mod tests {
     fn every_joint_that_moves_is_marked_and_every_mass_has_its_box() {
         for name in ["simple_pendulum", "gripper_arm", "quadruped", "humanoid"] {
             let (description, base) = bundled(name);
-            let figure = Figure::of(&description, &bundled_model(name), base);
+            let figure = Figure::of(&description, &bundled_model(name), base, None);
             let moving = description.joints.iter().filter(|j| !j.kind.is_fixed()).count();
             assert_eq!(figure.joints.len(), moving, "{name}");
             assert_eq!(figure.frames.len(), moving + usize::from(base == Base::Floating), "{name}");

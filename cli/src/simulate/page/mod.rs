@@ -3,6 +3,8 @@
 mod animation;
 mod clock;
 mod figure;
+mod geometry;
+mod mesh;
 mod track;
 
 use articulated_core::algorithm::FunctionError;
@@ -18,6 +20,8 @@ use serde::Serialize;
 use super::recording::{EventRecord, Recording};
 use animation::Room;
 use figure::Figure;
+pub(crate) use mesh::{Meshes, Package};
+pub(crate) use track::placement;
 use track::{Track, base64};
 
 const PAGE: &str = include_str!("page.html");
@@ -37,6 +41,25 @@ pub(super) struct Setting<'a> {
     pub(super) balls: Vec<(String, [f64; 3], f64)>,
     /// The plane that they touch: its normal, and its height along that.
     pub(super) ground: Option<([f64; 3], f64)>,
+    /// The ball that is hit.
+    pub(super) projectile: Option<Projectile>,
+}
+
+/// A ball that flies through one point: with one velocity before a time, and with another after it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct Projectile {
+    /// m.
+    pub(super) place: [f64; 3],
+    /// m.
+    pub(super) radius: f64,
+    /// When it is there, s from the start on; none, if it is not hit and rests.
+    pub(super) time: Option<f64>,
+    /// m/s.
+    pub(super) before: [f64; 3],
+    /// m/s.
+    pub(super) after: [f64; 3],
+    /// m/s², after it was hit.
+    pub(super) gravity: [f64; 3],
 }
 
 #[derive(Serialize)]
@@ -70,11 +93,12 @@ struct Motion<'a> {
     energy_names: Vec<&'static str>,
     energies: String,
     events: &'a [EventRecord],
+    projectile: Option<Projectile>,
 }
 
-/// The page's text.
-pub(super) fn html(r: &Recording, setting: &Setting<'_>) -> Result<String, FunctionError> {
-    let mut figure = Figure::of(setting.description, setting.model, setting.base);
+/// The page's text. What cannot be drawn is a warning of `meshes`.
+pub(super) fn html(r: &Recording, setting: &Setting<'_>, meshes: &Meshes<'_>) -> Result<String, FunctionError> {
+    let mut figure = Figure::of(setting.description, setting.model, setting.base, Some(meshes));
     for (link, center, radius) in &setting.balls {
         figure.ball(setting.description, setting.model, link, *center, *radius);
     }
@@ -115,6 +139,7 @@ pub(super) fn html(r: &Recording, setting: &Setting<'_>) -> Result<String, Funct
         energy_names: energies.iter().map(|e| e.0).collect(),
         energies: floats(&mut chosen.iter().flat_map(|&k| energies.map(|e| e.1.get(k).copied().unwrap_or(0.0)))),
         events: &r.events,
+        projectile: setting.projectile,
     };
     // A name cannot end the script that it stands in.
     let data = serde_json::to_string(&motion).unwrap_or_default().replace('<', "\\u003c");
@@ -124,7 +149,7 @@ pub(super) fn html(r: &Recording, setting: &Setting<'_>) -> Result<String, Funct
 
 /// The motion as a picture that moves.
 pub(super) fn svg(r: &Recording, setting: &Setting<'_>) -> Result<String, FunctionError> {
-    let figure = Figure::of(setting.description, setting.model, setting.base);
+    let figure = Figure::of(setting.description, setting.model, setting.base, None);
     let length = r.t.first().zip(r.t.last()).map_or(0.0, |(first, last)| last - first);
     let speed = clock::speed(length, &clock::speeds(length));
     let chosen = animation::chosen(&r.t, speed);
@@ -224,8 +249,9 @@ mod tests {
             base: bundled.base,
             balls: Vec::new(),
             ground: None,
+            projectile: None,
         };
-        html(recording, &setting).unwrap()
+        html(recording, &setting, &Meshes::new(Vec::new(), &[], "robot")).unwrap()
     }
 
     fn data(page: &str) -> serde_json::Value {

@@ -61,24 +61,58 @@
     const right = unit(cross(up, back));
     return { right, top: cross(back, right), back };
   }
+  // Shapes of links, and boxes of even density with a link's mass and inertia; `edges`: with lines along them.
+  const shapes = motion.geometries.map(([points, triangles]) => ({ points: new Float32Array(bytes(points)), triangles: new Uint32Array(bytes(triangles)) }));
+  const CORNERS = [0, 1, 2, 3, 4, 5, 6, 7].map(k => [k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1]);
+  const CUBE = {
+    points: new Float32Array(CORNERS.flat()),
+    triangles: new Uint32Array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]].flatMap(([a, b, c, d]) => [a, b, c, a, c, d])),
+    lines: new Uint32Array([0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 1, 3, 4, 6, 5, 7, 0, 4, 1, 5, 2, 6, 3, 7]),
+  };
+  const HUES = [208, 28, 150, 0, 270, 50, 190, 320];
+  // A colour of this hue, red, green and blue from 0 to 1.
+  function hue(angle, part, light) {
+    const most = part * Math.min(light, 1 - light), k = n => (n + angle / 30) % 12;
+    return [0, 8, 4].map(n => light - most * Math.max(-1, Math.min(k(n) - 3, 9 - k(n), 1)));
+  }
+  const COLLISION = [0.85, 0.35, 0.25];
+  const solids = motion.solids.map(x => {
+    const own = x.color ? x.color.slice(0, 3) : hue(HUES[x.limb % HUES.length], 0.3, 0.66), seen = x.kind === 'visual';
+    return { ...x, mesh: shapes[x.geometry], color: seen ? own : COLLISION, alpha: seen ? (x.color ? x.color[3] : 1) : 0.4 };
+  }).concat(motion.boxes.map(b => ({
+    ...b, kind: 'inertia', mesh: CUBE, axes: b.axes.map((axis, k) => scaled(axis, b.half[k])), color: hue(HUES[b.limb % HUES.length], 0.45, 0.66), alpha: 0.62,
+  })));
+  const isThere = kind => solids.some(x => x.kind === kind);
+  const isShown = (x, shown) => x.kind === 'inertia' ? shown.boxes || shown.looks && x.alone && isThere('visual') : x.kind === 'visual' ? shown.looks : shown.collision;
+
+  // The place of the ball that is hit.
+  const ball = motion.projectile;
+  function flight(t) {
+    const since = ball.time === null ? 0 : t - ball.time;
+    const way = add(ball.place, scaled(since < 0 ? ball.before : ball.after, since));
+    return since > 0 ? add(way, scaled(ball.gravity, since * since / 2)) : way;
+  }
+
+  // The corners of the box about a mesh, in its body.
+  function corners(x) {
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], all = x.mesh.points;
+    for (let k = 0; k < all.length; k++) { low[k % 3] = Math.min(low[k % 3], all[k]); high[k % 3] = Math.max(high[k % 3], all[k]); }
+    return CORNERS.map(sign => sign.reduce((p, side, k) => add(p, scaled(x.axes[k], side > 0 ? high[k] : low[k])), x.center));
+  }
   // What is drawn of each body: corners, ends, and spheres with their radius.
-  function points() {
+  const outline = (() => {
     const all = Array.from({ length: motion.moving + 1 }, () => []), put = (body, p, r) => all[body].push({ p, r });
-    for (const b of motion.boxes) for (let k = 0; k < 8; k++) {
-      const reach = [4, 2, 1].map((bit, i) => scaled(b.axes[i], (k & bit ? 1 : -1) * b.half[i]));
-      put(b.body, reach.reduce(add, b.center), 0);
-    }
+    for (const x of solids) if (x.kind === 'visual' || x.alone) corners(x).forEach(p => put(x.body, p, 0));
     for (const s of motion.sticks) { put(s.from, s.start, 0); put(s.to, s.end, 0); }
     for (const b of motion.balls) put(b.body, b.center, b.radius);
     return all;
-  }
-  // The nearest place from which nothing leaves the picture during the motion, as the eye looks: |a − x| ≤ k (d − c) for all points (a across, c towards the eye)
+  })();
+  // The nearest place from which nothing leaves the picture in these poses, as the eye looks: |a − x| ≤ k (d − c) for all points (a across, c towards the eye)
   // has its least d at x = k (A − B)/2, with the most A of c + a/k and B of c − a/k.
-  function fit(w, h) {
+  function fit(w, h, poses) {
     const { right, top, back } = axes(), room = 0.46 / focus(1, 1), least = Math.min(w, h);
     const most = [right, top].map((axis, i) => ({ axis, k: room * (i ? h : w) / least, A: -Infinity, B: -Infinity }));
-    const drawn = points(), stride = Math.max(1, Math.floor(frames / 600));
-    const reach = X => drawn.forEach((list, body) => list.forEach(({ p, r }) => {
+    for (const X of poses) outline.forEach((list, body) => list.forEach(({ p, r }) => {
       const place = less(at(X[body], p), motion.center), c = dot(place, back);
       for (const m of most) {
         const a = dot(place, m.axis) / m.k, wide = r * Math.hypot(1, 1 / m.k);
@@ -86,30 +120,40 @@
         if (c - a + wide > m.B) m.B = c - a + wide;
       }
     }));
-    for (let k = 0; k < frames; k += stride) reach(pose(times[k]));
-    reach(pose(last));
     const distance = Math.max(...most.map(m => (m.A + m.B) / 2)), known = Number.isFinite(distance);
     const target = most.reduce((sum, m) => known ? add(sum, scaled(m.axis, m.k * (m.A - m.B) / 2)) : sum, motion.center);
     return { target: [...target], distance: known ? Math.max(distance, 0.05 * motion.radius) : 3.3 * motion.radius };
   }
-  // Whether the eye is where `whole` put it.
-  let fitting = true;
-  function whole() {
-    Object.assign(eye, { azimuth: -0.9, elevation: 0.32 });
-    Object.assign(eye, fit(view.clientWidth || 1, open(view.clientHeight || 1)));
-    [following, fitting] = [null, true];
+  function* poses() {
+    const stride = Math.max(1, Math.floor(frames / 600));
+    for (let k = 0; k < frames; k += stride) yield pose(times[k]);
+    yield pose(last);
   }
-  // The height of the picture above the panel at its foot.
-  const open = h => Math.max(0.4 * h, Math.min(h, $('foot').offsetTop || h));
+  // Whether the eye is where one of these put it.
+  let fitting = null;
+  const sized = seen => fit(view.clientWidth || 1, view.clientHeight || 1, seen);
+  // The whole motion, or the robot as it is now.
+  function look(fitted, seen) {
+    Object.assign(eye, { azimuth: -0.9, elevation: 0.32 });
+    Object.assign(eye, sized(seen));
+    [following, fitting] = [null, fitted];
+  }
+  const whole = () => look(whole, poses()), near = () => look(near, [pose(state.t)]);
+  // At the start the whole motion, unless the robot would be small in it: then the robot, which is followed.
+  function begin() {
+    whole();
+    const far = eye.distance > 2.5 * sized([pose(first)]).distance;
+    $('follow').checked = far;
+    if (far) near();
+  }
   const focus = (w, h) => 1.5 * Math.min(w, h);
   function camera(w, h) {
     const { right, top, back } = axes(), from = add(eye.target, scaled(back, eye.distance));
-    const free = open(h), lens = focus(w, free);
-    const near = eye.distance * 0.02;
+    const lens = focus(w, h), near = eye.distance * 0.02;
     return {
-      from, right, top, near,
+      from, right, top, back, near, lens,
       depth: p => -dot(less(p, from), back),
-      show(p) { const d = less(p, from), z = Math.max(-dot(d, back), near); return [w / 2 + lens * dot(d, right) / z, 0.5 * free - lens * dot(d, top) / z, lens / z]; },
+      show(p) { const d = less(p, from), z = Math.max(-dot(d, back), near); return [w / 2 + lens * dot(d, right) / z, h / 2 - lens * dot(d, top) / z, lens / z]; },
     };
   }
 
@@ -138,31 +182,126 @@
     return mesh;
   }
 
-  const FACES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
   const LIGHT = unit(add(up, add(scaled(side, 0.5), scaled(ahead, -0.35))));
-  const HUES = [208, 28, 150, 0, 270, 50, 190, 320];
-  function faces(box, X, cam) {
-    const o = at(X, box.center), R = box.axes.map(a => turned(X.R, a));
-    const corner = k => add(o, add(scaled(R[0], (k & 4 ? 1 : -1) * box.half[0]), add(scaled(R[1], (k & 2 ? 1 : -1) * box.half[1]), scaled(R[2], (k & 1 ? 1 : -1) * box.half[2]))));
-    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map(corner);
-    const out = [];
-    for (const [f, ids] of FACES.entries()) {
-      const normal = scaled(R[f >> 1], f & 1 ? 1 : -1), points = ids.map(k => corners[k]);
-      if (dot(normal, less(points[0], cam.from)) >= 0 || points.some(p => cam.depth(p) < cam.near)) continue;
-      out.push({ depth: points.reduce((s, p) => s + cam.depth(p), 0) / 4, points, shade: 0.5 + 0.5 * dot(normal, LIGHT), hue: HUES[box.limb % HUES.length] });
+  // A solid in the world: its origin, and its axes.
+  const placed = (x, X) => ({ x, o: at(X[x.body], x.center), A: x.axes.map(axis => turned(X[x.body].R, axis)) });
+
+  // Solids by WebGL, in a picture of their own with what is between them left open; null without WebGL.
+  function painter() {
+    const canvas = document.createElement('canvas'), gl = canvas.getContext('webgl2', { antialias: true, preserveDrawingBuffer: true });
+    if (!gl) return null;
+    const VERTEX = `#version 300 es
+      in vec3 p; uniform mat3 A; uniform vec3 o, right, top, back; uniform vec4 lens; out vec3 place;
+      void main() {
+        place = A * p + o;
+        float z = -dot(place, back), n = lens.z, f = lens.w;
+        gl_Position = vec4(lens.x * dot(place, right), lens.y * dot(place, top), ((f + n) * z - 2.0 * n * f) / (f - n), z);
+      }`;
+    const FRAGMENT = `#version 300 es
+      precision highp float; in vec3 place; uniform vec3 light; uniform vec4 color; uniform float flatness; out vec4 seen;
+      void main() {
+        vec3 n = cross(dFdx(place), dFdy(place));
+        n = normalize(dot(n, place) > 0.0 ? -n : n);
+        float shade = mix(0.72 + 0.32 * dot(n, light), 1.0, flatness);
+        seen = vec4(min(color.rgb * shade, 1.0) * color.a, color.a);
+      }`;
+    const program = gl.createProgram();
+    for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
+      const shader = gl.createShader(kind); gl.shaderSource(shader, text); gl.compileShader(shader); gl.attachShader(program, shader);
     }
-    return out;
+    gl.bindAttribLocation(program, 0, 'p');
+    gl.linkProgram(program);
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) return null;
+    const place = Object.fromEntries(['A', 'o', 'right', 'top', 'back', 'lens', 'light', 'color', 'flatness'].map(name => [name, gl.getUniformLocation(program, name)]));
+    const buffer = (kind, data) => { const b = gl.createBuffer(); gl.bindBuffer(kind, b); gl.bufferData(kind, data, gl.STATIC_DRAW); return b; };
+    const kept = new Map();
+    const buffers = mesh => {
+      if (!kept.has(mesh)) kept.set(mesh, [buffer(gl.ARRAY_BUFFER, mesh.points), buffer(gl.ELEMENT_ARRAY_BUFFER, mesh.triangles), mesh.lines && buffer(gl.ELEMENT_ARRAY_BUFFER, mesh.lines)]);
+      return kept.get(mesh);
+    };
+    return (ctx, w, h, cam, all) => {
+      const scale = window.devicePixelRatio || 1, size = [Math.round(w * scale), Math.round(h * scale)];
+      if (gl.isContextLost()) return false;
+      if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
+      gl.viewport(0, 0, ...size);
+      gl.clearColor(0, 0, 0, 0); gl.depthMask(true); gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+      gl.enable(gl.DEPTH_TEST); gl.enable(gl.BLEND); gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA); gl.depthFunc(gl.LEQUAL);
+      gl.useProgram(program);
+      for (const name of ['right', 'top', 'back']) gl.uniform3fv(place[name], cam[name]);
+      gl.uniform3fv(place.light, LIGHT);
+      gl.uniform4f(place.lens, 2 * cam.lens / w, 2 * cam.lens / h, cam.near, eye.distance + 1e3 * motion.radius);
+      const open = s => s.x.alpha < 1, back = s => cam.depth(s.o);
+      // The far ones first of those that are seen through.
+      for (const s of [...all.filter(s => !open(s)), ...all.filter(open).sort((a, b) => back(b) - back(a))]) {
+        const [points, triangles, lines] = buffers(s.x.mesh);
+        gl.bindBuffer(gl.ARRAY_BUFFER, points); gl.enableVertexAttribArray(0); gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
+        gl.uniformMatrix3fv(place.A, false, s.A.flat()); gl.uniform3fv(place.o, less(s.o, cam.from));
+        gl.uniform4f(place.color, ...s.x.color, s.x.alpha); gl.uniform1f(place.flatness, 0);
+        gl.depthMask(!open(s));
+        if (open(s)) gl.enable(gl.CULL_FACE); else gl.disable(gl.CULL_FACE);
+        gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, triangles); gl.drawElements(gl.TRIANGLES, s.x.mesh.triangles.length, gl.UNSIGNED_INT, 0);
+        if (lines) {
+          gl.uniform4f(place.color, ...scaled(s.x.color, 0.5), 0.55); gl.uniform1f(place.flatness, 1);
+          gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, lines); gl.drawElements(gl.LINES, s.x.mesh.lines.length, gl.UNSIGNED_INT, 0);
+        }
+      }
+      ctx.drawImage(canvas, 0, 0, w, h);
+      return true;
+    };
   }
 
-  // Draws the motion at a time; gives the places of the boxes' centers on the screen, for names under the pointer.
-  function draw(ctx, w, h, t, shown) {
+  // The same without WebGL: the far triangles first.
+  function plainly(ctx, w, h, cam, all) {
+    const faces = [];
+    for (const { x, o, A } of all) {
+      const { points, triangles } = x.mesh, seen = [];
+      for (let k = 0; k < points.length; k += 3) seen.push(add(o, add(scaled(A[0], points[k]), add(scaled(A[1], points[k + 1]), scaled(A[2], points[k + 2])))));
+      for (let k = 0; k < triangles.length; k += 3) {
+        const [a, b, c] = [0, 1, 2].map(i => seen[triangles[k + i]]), depth = [a, b, c].map(cam.depth), n = unit(cross(less(b, a), less(c, a)));
+        if (depth.some(d => d < cam.near) || dot(n, less(a, cam.from)) >= 0) continue;
+        faces.push({ depth: depth[0] + depth[1] + depth[2], points: [a, b, c].map(cam.show), shade: 0.72 + 0.32 * dot(n, LIGHT), x });
+      }
+    }
+    for (const f of faces.sort((a, b) => b.depth - a.depth)) {
+      ctx.fillStyle = `rgba(${f.x.color.map(part => Math.round(255 * Math.min(1, part * f.shade)))}, ${f.x.alpha})`;
+      ctx.beginPath(); f.points.forEach(([x, y], k) => { if (k) ctx.lineTo(x, y); else ctx.moveTo(x, y); }); ctx.closePath(); ctx.fill();
+    }
+    return true;
+  }
+  const paint = painter();
+
+  // Names of joints: each beside its joint where it covers neither a panel, nor a joint, nor another name; the nearest to the eye first, and none where there is no
+  // such place. A name stays on its side as long as it can.
+  const SIDES = [[9, -6], [9, 16], [-9, -6], [-9, 16], [0, -12], [0, 22], [14, 5], [-14, 5]], sides = new Map();
+  function names(ctx, w, h, marks, panels) {
+    ctx.font = '11px "DejaVu Sans", Verdana, Arial, sans-serif';
+    const meet = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
+    const taken = [...panels, ...marks.map(({ spot: [x, y] }) => [x - 5, y - 5, x + 5, y + 5])], written = [];
+    for (const { joint, spot: [x, y] } of marks.slice().sort((a, b) => a.depth - b.depth)) {
+      const wide = ctx.measureText(joint.label).width, old = sides.get(joint);
+      const box = ([dx, dy]) => { const left = dx > 0 ? x + dx : dx < 0 ? x + dx - wide : x - wide / 2; return [left - 2, y + dy - 10, left + wide + 2, y + dy + 3]; };
+      const free = b => b[0] >= 0 && b[1] >= 0 && b[2] <= w && b[3] <= h && !taken.some(other => meet(b, other));
+      const there = [...(old ? [old] : []), ...SIDES].find(s => free(box(s)));
+      if (!there) { sides.delete(joint); continue; }
+      sides.set(joint, there);
+      const b = box(there);
+      taken.push(b); written.push({ name: joint.name, box: b });
+      label(ctx, joint.label, b[0] + 2, b[3] - 3);
+    }
+    return written;
+  }
+
+  // Draws the motion at a time; gives the places of links and joints on the screen, for names under the pointer.
+  function draw(ctx, w, h, t, shown, panels) {
     const X = pose(t);
     if (shown.follow && motion.moving) {
-      if (following) eye.target = add(eye.target, less(X[motion.root].p, following));
-      following = X[motion.root].p;
+      // The base, if it moves; else the middle of all.
+      const middle = motion.root ? X[motion.root].p : scaled(X.slice(1).reduce((sum, x) => add(sum, x.p), [0, 0, 0]), 1 / motion.moving);
+      if (following) eye.target = add(eye.target, less(middle, following));
+      following = middle;
     } else following = null;
     const cam = camera(w, h), spots = [];
-    ctx.clearRect(0, 0, w, h);
+    ctx.fillStyle = '#f4f6f8'; ctx.fillRect(0, 0, w, h);
     ctx.lineCap = ctx.lineJoin = 'round';
     const mesh = grid(ctx, cam);
     const stick = s => [at(X[s.from], s.start), at(X[s.to], s.end)];
@@ -175,22 +314,32 @@
       ctx.lineWidth = Math.max(1.5, 0.02 * motion.size * z1);
       ctx.beginPath(); ctx.moveTo(x1, y1); ctx.lineTo(x2, y2); ctx.stroke();
     }
-    if (shown.boxes) {
-      const all = motion.boxes.flatMap(box => faces(box, X[box.body], cam)).sort((a, b) => b.depth - a.depth);
-      for (const f of all) {
-        ctx.beginPath();
-        f.points.forEach((p, k) => { const [x, y] = cam.show(p); if (k) ctx.lineTo(x, y); else ctx.moveTo(x, y); });
-        ctx.closePath();
-        ctx.fillStyle = `hsla(${f.hue}, 45%, ${45 + 30 * f.shade}%, .62)`; ctx.fill();
-        ctx.strokeStyle = `hsla(${f.hue}, 45%, 30%, .55)`; ctx.lineWidth = 0.8; ctx.stroke();
-      }
-    }
+    const all = solids.filter(x => isShown(x, shown)).map(x => placed(x, X));
+    if (!paint || !paint(ctx, w, h, cam, all)) plainly(ctx, w, h, cam, all);
     for (const b of motion.balls) {
       const p = at(X[b.body], b.center); if (cam.depth(p) < cam.near) continue;
       const [x, y, z] = cam.show(p);
       ctx.strokeStyle = 'rgba(160, 40, 40, .8)'; ctx.lineWidth = 1;
       ctx.beginPath(); ctx.arc(x, y, Math.max(1, b.radius * z), 0, 2 * Math.PI); ctx.stroke();
     }
+    if (ball) {
+      // Its way since it was hit, and where it is.
+      const now = flight(t), from = ball.time !== null && t > ball.time;
+      ctx.strokeStyle = 'rgba(200, 120, 20, .8)'; ctx.lineWidth = 1.2; ctx.setLineDash([4, 4]); ctx.beginPath();
+      for (let k = 0; from && k <= 40; k++) {
+        const p = flight(ball.time + (t - ball.time) * k / 40);
+        if (cam.depth(p) < cam.near) break;
+        const [x, y] = cam.show(p);
+        if (k) ctx.lineTo(x, y); else ctx.moveTo(x, y);
+      }
+      ctx.stroke(); ctx.setLineDash([]);
+      if (cam.depth(now) > cam.near) {
+        const [x, y, z] = cam.show(now);
+        ctx.fillStyle = '#f2a93b'; ctx.strokeStyle = '#8a5410'; ctx.lineWidth = 1.2;
+        ctx.beginPath(); ctx.arc(x, y, Math.max(3, ball.radius * z), 0, 2 * Math.PI); ctx.fill(); ctx.stroke();
+      }
+    }
+    const marks = motion.joints.map(joint => ({ joint, p: at(X[joint.body], joint.place) })).map(m => ({ ...m, depth: cam.depth(m.p), spot: cam.show(m.p) })).filter(m => m.depth > cam.near);
     if (shown.sticks) {
       ctx.strokeStyle = '#26323e';
       for (const s of motion.sticks) {
@@ -200,15 +349,14 @@
         ctx.beginPath(); ctx.moveTo(x1, y1); ctx.lineTo(x2, y2); ctx.stroke();
       }
       ctx.strokeStyle = '#fff'; ctx.fillStyle = '#d9622b';
-      for (const j of motion.joints) {
-        const p = at(X[j.body], j.place); if (cam.depth(p) < cam.near) continue;
-        const [x, y, z] = cam.show(p);
+      for (const { spot: [x, y, z] } of marks) {
         ctx.lineWidth = 1; ctx.beginPath(); ctx.arc(x, y, Math.min(6, Math.max(2, 0.014 * motion.size * z)), 0, 2 * Math.PI); ctx.fill(); ctx.stroke();
       }
     }
+    const written = shown.names ? names(ctx, w, h, marks, panels) : [];
     for (const b of motion.boxes) spots.push({ at: cam.show(at(X[b.body], b.center)), name: `${b.name}, ${number(b.mass)} kg` });
-    for (const j of motion.joints) spots.push({ at: cam.show(at(X[j.body], j.place)), name: j.name });
-    return { spots, mesh };
+    for (const m of marks) spots.push({ at: m.spot, name: m.joint.name });
+    return { spots, mesh, written };
   }
 
   const number = x => Math.abs(x) >= 1e-3 && Math.abs(x) < 1e5 || x === 0 ? x.toPrecision(4) : x.toExponential(2);
@@ -260,8 +408,35 @@
 
   // From here on: buttons, mouse, clock.
   const view = $('view'), stripCanvas = $('strip'), scrub = $('scrub'), play = $('play'), tip = $('tip');
-  const state = { t: first, playing: true, before: null, spots: [], pointer: null };
-  const shown = () => ({ boxes: $('boxes').checked, sticks: $('sticks').checked, follow: $('follow').checked });
+  const state = { t: first, playing: true, before: null, spots: [], written: [], recorder: null, ending: false };
+  const TOGGLES = ['looks', 'collision', 'boxes', 'sticks', 'names', 'follow'];
+  const shown = () => Object.fromEntries(TOGGLES.map(name => [name, $(name).checked]));
+  // What is not there has no toggle; boxes are for robots without a look of their own.
+  $('boxes').checked = !isThere('visual');
+  for (const [name, kind] of [['looks', 'visual'], ['collision', 'collision'], ['boxes', 'inertia']]) $(name).parentElement.hidden = !isThere(kind);
+  const panels = () => ['head', 'numbers', 'legend'].map($).filter(panel => !panel.hidden).map(panel => panel.getBoundingClientRect()).map(b => [b.left, b.top, b.right, b.bottom]);
+  // The legend of what is shown: materials by their names, and all else by its kind.
+  function legend() {
+    const now = shown(), rows = new Map(), css = color => `rgb(${color.map(part => Math.round(255 * part))})`;
+    const put = (text, color, round) => { if (!rows.has(text)) rows.set(text, { color, round }); };
+    for (const x of solids.filter(x => x.kind === 'visual' && isShown(x, now))) put(x.material || 'link', css(x.color));
+    if (solids.some(x => x.kind === 'inertia' && isShown(x, now))) put('inertia box', css(hue(HUES[0], 0.45, 0.66)));
+    if (now.collision && isThere('collision')) put('collision shape', css(COLLISION));
+    if (motion.balls.length) put('contact sphere', '#a02828', true);
+    if (now.sticks && motion.joints.length) put('joint', '#d9622b', true);
+    if (ball) put('ball', '#f2a93b', true);
+    const all = [...rows], most = 12, box = $('legend');
+    box.replaceChildren(...all.slice(0, most).map(([text, { color, round }]) => {
+      const row = document.createElement('div'), swatch = document.createElement('i');
+      swatch.style.background = color; swatch.style.borderRadius = round ? '50%' : '2px';
+      row.append(swatch, text.length > 32 ? `${text.slice(0, 15)}…${text.slice(-15)}` : text);
+      return row;
+    }));
+    if (all.length > most) box.append(`and ${all.length - most} more`);
+    box.hidden = !all.length;
+  }
+  TOGGLES.forEach(name => $(name).addEventListener('change', legend));
+  legend();
   for (const x of motion.speeds) $('speed').add(new Option(`${x}×`, x, x === motion.speed, x === motion.speed));
   scrub.min = first; scrub.max = last;
   $('numbers').style.width = `${wide + 16}ch`;
@@ -272,9 +447,18 @@
     ctx.setTransform(scale, 0, 0, scale, 0, 0);
     return [ctx, w, h];
   }
+  // The picture; of one that is saved, panels cover nothing, and its title is in it.
+  function picture(saved) {
+    const [ctx, w, h] = fitted(view), text = `${document.title}   ${clock(state.t)} s`;
+    ctx.font = '13px "DejaVu Sans", Verdana, Arial, sans-serif';
+    const caption = [8, 8, 28 + ctx.measureText(text).width, 34];
+    const drawn = draw(ctx, w, h, state.t, shown(), saved ? [caption] : panels());
+    if (saved) { ctx.font = '13px "DejaVu Sans", Verdana, Arial, sans-serif'; ctx.fillStyle = '#222'; ctx.fillText(text, 16, 25); }
+    return drawn;
+  }
   function show() {
-    const { spots, mesh } = draw(...fitted(view), state.t, shown());
-    state.spots = spots;
+    const { spots, mesh, written } = picture(state.recorder !== null);
+    [state.spots, state.written] = [spots, written];
     strip(...fitted(stripCanvas), state.t);
     $('numbers').textContent = readout(state.t);
     $('note').textContent = `${motion.note}; squares of the ground ${Number(mesh.toPrecision(3))} m`;
@@ -284,16 +468,50 @@
   function tick(now) {
     if (state.playing && state.before !== null) {
       state.t += (now - state.before) / 1000 * Number($('speed').value);
-      if (state.t >= last) { if ($('loop').checked && last > first) state.t = first + (state.t - first) % (last - first); else { state.t = last; state.playing = false; } following = null; }
+      if (state.t >= last) { if ($('loop').checked && last > first && !state.recorder) state.t = first + (state.t - first) % (last - first); else { state.t = last; state.playing = false; } following = null; }
     }
     state.before = now;
     show();
+    if (state.recorder && state.t >= last && !state.ending) {
+      // The last picture stays for a while.
+      state.ending = true;
+      setTimeout(() => { if (state.recorder) state.recorder.stop(); }, 500);
+    }
     requestAnimationFrame(tick);
   }
   const go = t => { state.t = Math.min(last, Math.max(first, t)); following = null; };
   const toggle = () => { if (!state.playing && state.t >= last) go(first); state.playing = !state.playing; };
   play.onclick = toggle;
   $('home').onclick = whole;
+  $('near').onclick = near;
+
+  // Files: the picture, and the motion from its start to its end at the speed that is chosen.
+  function save(blob, ending) {
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(blob);
+    link.download = `${document.title.replace(/[^\p{L}\p{N}._-]+/gu, '_') || 'motion'}.${ending}`;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+  }
+  $('png').onclick = () => { picture(true); view.toBlob(blob => save(blob, 'png')); };
+  const VIDEO = ['video/webm;codecs=vp9', 'video/webm', 'video/mp4'].find(type => window.MediaRecorder && view.captureStream && MediaRecorder.isTypeSupported(type));
+  if (!VIDEO) { $('video').disabled = true; $('video').title = 'This browser records no video'; }
+  $('video').onclick = () => {
+    if (state.recorder) return state.recorder.stop();
+    const recorder = new MediaRecorder(view.captureStream(30), { mimeType: VIDEO, videoBitsPerSecond: 8e6 }), parts = [];
+    recorder.ondataavailable = e => parts.push(e.data);
+    recorder.onstop = () => {
+      [state.recorder, state.ending] = [null, false];
+      $('video').textContent = 'Save video';
+      if (parts.every(part => !part.size)) $('video').title = 'This browser recorded no picture: a slower speed gives it more time';
+      else save(new Blob(parts, { type: VIDEO.split(';')[0] }), VIDEO.includes('mp4') ? 'mp4' : 'webm');
+    };
+    go(first);
+    [state.recorder, state.playing] = [recorder, false];
+    recorder.onstart = () => { state.playing = true; };
+    $('video').textContent = 'End video';
+    recorder.start(1000);
+  };
   scrub.oninput = () => { state.playing = false; go(Number(scrub.value)); };
   const strike = e => { const box = stripCanvas.getBoundingClientRect(); state.playing = false; go(first + (e.clientX - box.left) / box.width * (last - first)); };
   stripCanvas.onpointerdown = e => { stripCanvas.setPointerCapture(e.pointerId); strike(e); };
@@ -307,7 +525,7 @@
     else if (e.key === 'Home') whole();
   });
   const pointers = new Map();
-  const nearer = factor => { fitting = false; eye.distance = Math.min(1e3 * motion.radius, Math.max(1e-2 * motion.radius, eye.distance * factor)); };
+  const nearer = factor => { fitting = null; eye.distance = Math.min(1e3 * motion.radius, Math.max(1e-2 * motion.radius, eye.distance * factor)); };
   const spread = () => { const [a, b] = [...pointers.values()]; return Math.hypot(a.x - b.x, a.y - b.y); };
   view.onpointerdown = e => { view.setPointerCapture(e.pointerId); pointers.set(e.pointerId, { x: e.clientX, y: e.clientY }); };
   view.onpointerup = view.onpointercancel = e => pointers.delete(e.pointerId);
@@ -315,12 +533,12 @@
   view.onpointermove = e => {
     const old = pointers.get(e.pointerId);
     if (!old) return name(e);
-    fitting = false;
+    fitting = null;
     const dx = e.clientX - old.x, dy = e.clientY - old.y, apart = pointers.size === 2 ? spread() : 0;
     pointers.set(e.pointerId, { x: e.clientX, y: e.clientY });
     if (pointers.size === 2) nearer(apart / (spread() || 1));
     else if (e.shiftKey || e.buttons & 6) {
-      const cam = camera(view.clientWidth, view.clientHeight), scale = eye.distance / (1.5 * Math.min(view.clientWidth, open(view.clientHeight)));
+      const cam = camera(view.clientWidth, view.clientHeight), scale = eye.distance / focus(view.clientWidth, view.clientHeight);
       eye.target = add(eye.target, add(scaled(cam.right, -dx * scale), scaled(cam.top, dy * scale)));
     } else {
       eye.azimuth -= dx * 0.008;
@@ -334,7 +552,7 @@
     tip.hidden = !near;
     if (near) { tip.textContent = near.name; tip.style.left = `${e.clientX + 14}px`; tip.style.top = `${e.clientY + 10}px`; }
   }
-  window.addEventListener('resize', () => { if (fitting && !$('follow').checked) whole(); });
-  whole();
+  window.addEventListener('resize', () => { if (fitting) fitting(); });
+  begin();
   requestAnimationFrame(tick);
 })();

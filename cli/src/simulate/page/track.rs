@@ -53,7 +53,7 @@ impl Track {
 }
 
 /// A row of twelve numbers: a rotation row by row, then a position.
-pub(super) fn placement(row: &[f64]) -> Placement<f64> {
+pub(crate) fn placement(row: &[f64]) -> Placement<f64> {
     Placement { rotation: Matrix3::from_row_slice(&row[..9]), position: Vector3::from_column_slice(&row[9..12]) }
 }
 

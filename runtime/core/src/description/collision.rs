@@ -1,4 +1,5 @@
-//! Collision geometry of links, and the points of it that touch the ground.
+//! Shapes of links: their appearance, their collision geometry, and the points of it that touch the
+//! ground.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -13,6 +14,19 @@ pub struct Collision {
     pub origin: Origin,
     /// The shape.
     pub shape: CollisionShape,
+}
+
+/// A piece of a link's appearance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Visual {
+    /// The shape's frame in the link's frame.
+    pub origin: Origin,
+    /// The shape.
+    pub shape: CollisionShape,
+    /// The name of its material; empty where it has none.
+    pub material: String,
+    /// The colour of its material, if the file says it: red, green, blue and opacity, 0 to 1.
+    pub color: Option<[f64; 4]>,
 }
 
 /// A shape about the origin of its frame. Sizes are finite and at least 0.
@@ -46,6 +60,8 @@ pub enum CollisionShape {
     Mesh {
         /// The file's name, as it is written.
         file: String,
+        /// Factors of the mesh's coordinates along x, y and z.
+        scale: [f64; 3],
     },
     /// What could not be read.
     Unread {
@@ -160,7 +176,7 @@ mod tests {
         assert_eq!(count(CollisionShape::Cylinder { radius: 0.0, length: 1.0 }), 2);
         assert_eq!(count(CollisionShape::Cylinder { radius: 1.0, length: 0.0 }), 8);
         assert_eq!(count(CollisionShape::Box { size: [0.0; 3] }), 1);
-        assert_eq!(count(CollisionShape::Mesh { file: "foot.stl".into() }), 0);
+        assert_eq!(count(CollisionShape::Mesh { file: "foot.stl".into(), scale: [1.0; 3] }), 0);
         assert_eq!(count(CollisionShape::Unread { why: "no size".into() }), 0);
     }
 

@@ -24,7 +24,7 @@ use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 
-pub use collision::{Collision, CollisionShape, ContactSphere, RIM_POINTS};
+pub use collision::{Collision, CollisionShape, ContactSphere, RIM_POINTS, Visual};
 pub use edit::{Editor, Payload};
 pub use error::EditError;
 pub use moments::PrincipalMoments;
@@ -54,6 +54,8 @@ pub struct Link {
     /// Collision geometry in the order of the file. The dynamics do not use it, unless effects
     /// are made of it.
     pub collision: Vec<Collision>,
+    /// Its appearance in the order of the file. The dynamics do not use it.
+    pub visual: Vec<Visual>,
     /// Whether the link only lies between two joints in sequence on one body. Such a link has no
     /// mass and no collision geometry, and is not a frame of the model.
     pub intermediate: bool,
