@@ -54,6 +54,7 @@ step python3 models/urdf/generate.py --check
 step python3 tests/peers/tables.py --check
 step python3 tests/peers/chart.py --check
 step python3 tests/oracles/make.py --check
+step python3 tests/oracles/external.py
 step python3 tests/shipped/shipped.py --sample
 step readme_command
 step browser

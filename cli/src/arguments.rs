@@ -91,6 +91,13 @@ pub(crate) enum Language {
     C,
 }
 
+/// An interface that generated C may have beside its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Abi {
+    /// CasADi's external
+    Casadi,
+}
+
 #[derive(Args, Debug)]
 pub(crate) struct GenerateArguments {
     #[command(flatten)]
@@ -113,6 +120,10 @@ pub(crate) struct GenerateArguments {
     /// The prefix of all names in C [default: the robot's name]
     #[arg(long, value_name = "PREFIX")]
     pub(crate) prefix: Option<String>,
+    /// Another interface to add to C. casadi: what casadi.external loads, with sparsity, and with
+    /// jac_F where F and F_derivatives are generated
+    #[arg(long, value_enum, value_name = "INTERFACE")]
+    pub(crate) abi: Option<Abi>,
     /// The file to write instead of the standard output. C: a header (arm.h), or a folder for a
     /// header and a source
     #[arg(short, long, value_name = "FILE")]

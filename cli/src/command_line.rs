@@ -48,6 +48,7 @@ pub(crate) enum Command {
         "articulated generate arm.urdf --level double_double -o src/arm_exact.rs",
         "articulated generate arm.urdf --language c -o arm.h",
         "articulated generate arm.urdf --language c --functions mass_matrix -o firmware/arm",
+        "articulated generate arm.urdf --language c --abi casadi --functions inverse_dynamics,inverse_dynamics_derivatives -o arm",
         "articulated generate arm.urdf --frames tool,camera --lock wrist=0 --payload tool=1.2@0,0,0.1:1e-3,0,0,1e-3,0,1e-3",
         "articulated generate arm.urdf --append gripper.urdf@tool --append gripper.urdf@tool:second_:0,0,0.2,0,0,1.5",
     ]))]

@@ -5,7 +5,7 @@ use std::path::Path;
 use articulated_codegen::{COptions, Generated, Options, Target, generate};
 use serde::Serialize;
 
-use crate::arguments::{Format, GenerateArguments, Language, types_of_batch};
+use crate::arguments::{Abi, Format, GenerateArguments, Language, types_of_batch};
 use crate::console;
 use crate::failure::Failure;
 use crate::ledger::{Stage, stages};
@@ -80,8 +80,9 @@ fn target(arguments: &GenerateArguments, options: &mut Options) -> Result<(), Fa
         rust.forbid_unsafe |= arguments.forbid_unsafe;
         rust.no_std = arguments.no_std;
         rust.runtime = arguments.runtime.clone().filter(|_| !arguments.standalone);
-        let expected = "--language c beside it, or no --prefix";
-        return arguments.prefix.as_ref().map_or(Ok(()), |prefix| Err(Failure::usage(format!("--prefix {prefix}: expected {expected}"))));
+        let of_c = [arguments.prefix.as_ref().map(|prefix| format!("prefix {prefix}")), arguments.abi.map(|_| "abi casadi".to_owned())];
+        let refuse = |given| Err(Failure::usage(format!("--{given}: expected --language c beside it, or no --{given}")));
+        return of_c.into_iter().flatten().next().map_or(Ok(()), refuse);
     }
     let of_rust = [
         ("--batch, or `batch` in the scene", !options.rust().batch.is_empty()),
@@ -94,8 +95,9 @@ fn target(arguments: &GenerateArguments, options: &mut Options) -> Result<(), Fa
     if !found.is_empty() {
         return Err(Failure::usage(format!("--language c: found {}, which are for Rust alone", found.join(", "))));
     }
-    let header_only = arguments.output.as_deref().is_none_or(is_header);
-    options.target = Target::C(COptions { prefix: arguments.prefix.clone(), header_only });
+    let casadi = arguments.abi == Some(Abi::Casadi);
+    let header_only = arguments.output.as_deref().map_or(!casadi, is_header);
+    options.target = Target::C(COptions { prefix: arguments.prefix.clone(), header_only, casadi });
     Ok(())
 }
 

@@ -22,7 +22,7 @@ static ROBOTS: LazyLock<Vec<Robot>> = LazyLock::new(|| robots(false));
 
 fn robots(header_only: bool) -> Vec<Robot> {
     let robot = |name: &str, urdf: &str, base: Base, level: &str, wanted: &dyn Fn(&str) -> bool| {
-        let target = Target::C(COptions { prefix: Some(name.to_owned()), header_only });
+        let target = Target::C(COptions { prefix: Some(name.to_owned()), header_only, casadi: false });
         let options = Options { target, level: level.parse().expect("a level"), ..Options::default() };
         with(name.into(), urdf, base, false, options, wanted)
     };
@@ -156,6 +156,11 @@ fn what_c_does_not_have_is_refused_with_what_it_has() {
     request.options.target = Target::C(COptions { prefix: Some("2nd".into()), ..COptions::default() });
     request.options.level = "double_double".parse().expect("a level");
     let told = generate(&request).unwrap_err().to_string();
+    request.options.target = Target::C(COptions { header_only: true, casadi: true, prefix: Some("2nd".into()) });
+    let with_casadi = generate(&request).unwrap_err().to_string();
+    for part in ["abi: found double_double, expected level f64", "abi: found one header, expected a header and a source"] {
+        assert!(with_casadi.contains(part), "{with_casadi}");
+    }
     for part in ["level: found double_double, expected for target \"c\": f64, f32 or f32_f64", "prefix: found \"2nd\", expected a letter"] {
         assert!(told.contains(part), "{told}");
     }

@@ -3,6 +3,7 @@
 //! Arrays are flat, row by row. Functions and constants begin with a prefix, by default the robot's
 //! name.
 
+mod casadi;
 mod constants;
 mod statements;
 
@@ -26,6 +27,8 @@ pub struct COptions {
     pub prefix: Option<String>,
     /// One header with `static inline` functions in place of a header and a source.
     pub header_only: bool,
+    /// The source also has each function in the interface of CasADi's `external`.
+    pub casadi: bool,
 }
 
 /// Numbers, in pieces where a function is long. The compiler decides what waits in memory.
@@ -40,6 +43,15 @@ pub(super) fn check(options: &Options, c: &COptions, log: &mut Diagnostics) {
     if !is_plain || options.level.sines != TrigAccuracy::Ulp1 {
         let expected = "for target \"c\": f64, f32 or f32_f64, with the sines of the mathematical library";
         error("level", Code::Level, options.level.to_string(), expected);
+    }
+    if c.casadi && options.level.arithmetic != Arithmetic::Double {
+        error("abi", Code::Level, options.level.to_string(), "level f64, the numbers of CasADi");
+    }
+    if c.casadi && !options.parameters.is_empty() {
+        error("abi", Code::Parameter, "parameters".into(), "none for CasADi: its functions take the arguments of the registry");
+    }
+    if c.casadi && c.header_only {
+        error("abi", Code::File, "one header".into(), "a header and a source: a folder to write to");
     }
     if let Some(prefix) = c.prefix.as_ref().filter(|prefix| !is_identifier(prefix)) {
         error("prefix", Code::Prefix, format!("{prefix:?}"), "a letter of ASCII, then letters, digits and _");
@@ -60,7 +72,7 @@ pub(super) fn identifier(name: &str) -> String {
 /// The header and the source.
 pub(super) fn print(module: &Module, c: &COptions) -> Vec<File> {
     let prefix = c.prefix.clone().unwrap_or_else(|| identifier(module.model.name()));
-    let printer = Source { module, upper: prefix.to_ascii_uppercase(), prefix, header_only: c.header_only };
+    let printer = Source { module, upper: prefix.to_ascii_uppercase(), prefix, header_only: c.header_only, casadi: c.casadi };
     let header = File { name: format!("{}.h", printer.prefix), text: printer.header() };
     if c.header_only { vec![header] } else { vec![header, File { name: format!("{}.c", printer.prefix), text: printer.source() }] }
 }
@@ -70,6 +82,7 @@ struct Source<'a> {
     prefix: String,
     upper: String,
     header_only: bool,
+    casadi: bool,
 }
 
 impl Source<'_> {
@@ -119,6 +132,9 @@ impl Source<'_> {
                 self.pieces(&mut out, function);
             }
             self.function(&mut out, function);
+        }
+        if self.casadi {
+            casadi::write(&mut out, &self.prefix, &self.module.functions);
         }
         out
     }

@@ -1,0 +1,144 @@
+#!/usr/bin/env python3
+"""Loads generated C by casadi.external, and solves the same motion with it and with CasADi's own expressions.
+
+    python3 tests/oracles/external.py [COMMAND]     COMMAND: the articulated command; built in a debug profile if absent
+
+Checks, for the bundled six-axis arm: values of every function against CasADi's own recursion, Jacobians against those of CasADi's automatic
+differentiation, sparsity against structural zeros, a function whose arguments are left out, and the solution of a reach by IPOPT. Prints the
+time of an iteration with either. Makes a virtual environment with CasADi in <repository>/.venv where CasADi is missing.
+"""
+
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+REPOSITORY = HERE.parent.parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "peers")]
+
+ROBOT = "ur5_like"
+FUNCTIONS = ["inverse_dynamics", "inverse_dynamics_derivatives", "forward_dynamics", "forward_dynamics_derivatives", "mass_matrix", "placements"]
+TOLERANCE = 1e-10
+SAME_SOLUTION = 1e-8  # of the torques, relative to the largest
+STEPS, SECONDS = 20, 1.0
+TORQUE = 50.0  # N m that weigh as much as an acceleration of 1 rad/s^2
+START, END = [0.0, -1.2, 1.0, 0.3, 0.2, 0.0], [0.8, -0.6, 0.4, -0.4, 0.6, 0.5]  # rad
+
+
+def library(command, folder):
+    """The path of the shared library of the arm."""
+    words = [*command, "generate", ROBOT, "--language", "c", "--abi", "casadi", "--functions", ",".join(FUNCTIONS), "-o", str(folder)]
+    subprocess.run(words, check=True, cwd=REPOSITORY)
+    shared = folder / "robot.so"
+    flags = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-O2", "-shared", "-fPIC"]
+    subprocess.run(["cc", *flags, str(folder / f"{ROBOT}.c"), "-o", str(shared), "-lm"], check=True)
+    return str(shared)
+
+
+def far(found, expected):
+    """The largest difference, relative to the largest entry."""
+    import numpy
+
+    found, expected = (numpy.array(casadi.DM(x).full()) for x in (found, expected))
+    assert found.shape == expected.shape, f"shape {found.shape}, expected {expected.shape}"
+    return float(abs(found - expected).max() / max(abs(expected).max(), 1e-300))
+
+
+def values(shared, own, generator):
+    """The largest differences of values and of Jacobians over states at random."""
+    worst = {}
+    for name in ("inverse_dynamics", "forward_dynamics", "mass_matrix"):
+        ours = casadi.external(name, shared)
+        theirs = own[name]
+        assert ours.n_in() == theirs.n_in() and ours.name_in(0) == "q", name
+        assert ours.size_out(0) == theirs.size_out(0), name
+        jacobians = [f.jacobian() for f in (ours, theirs)] if name != "mass_matrix" else []
+        for _ in range(10):
+            state = [generator.uniform(-2, 2, theirs.numel_in(k)) for k in range(theirs.n_in())]
+            at = ours(*state)
+            worst[name] = max(worst.get(name, 0), far(at, theirs(*state)))
+            if jacobians:
+                pairs = zip(*[f.call([*state, at]) for f in jacobians])
+                worst[f"jac_{name}"] = max(worst.get(f"jac_{name}", 0), *[far(x, y) for x, y in pairs])
+    return worst
+
+
+def check_sparsity(shared):
+    """A joint's acceleration has no part in others' torques that the mass matrix does not have; always-zero entries are left out."""
+    import numpy
+
+    derivatives = casadi.external("jac_inverse_dynamics", shared)
+    assert [derivatives.name_out(k) for k in range(3)] == ["jac_out_q", "jac_out_v", "jac_out_a"]
+    # Gravity does not depend on the first angle, and nothing does: its axis is along gravity.
+    first = derivatives.sparsity_out(0)
+    assert first.nnz() < first.numel() and not any(first.has_nz(row, 0) for row in range(6)), first
+    # What is left out is zero, and a call without arguments is one of zeros.
+    ours = casadi.external("inverse_dynamics", shared)
+    buffer, memory = ours.buffer()
+    result = numpy.zeros(6)
+    buffer.set_res(0, memoryview(result))
+    memory()
+    assert far(result, ours(0, 0, 0)) == 0.0
+
+
+def reach(torque):
+    """The motion of least torque and acceleration from one configuration to another, at rest at both ends, by IPOPT with the Gauss-Newton Hessian.
+
+    Torques, iterations, seconds. The unknowns are the configurations in between; rates and accelerations are their differences.
+    """
+    h, inner = SECONDS / STEPS, casadi.MX.sym("x", 6, STEPS - 1)
+    q = casadi.horzcat(casadi.DM(START), casadi.DM(START), inner, casadi.DM(END), casadi.DM(END))
+    v = (q[:, 1:] - q[:, :-1]) / h
+    a = (v[:, 1:] - v[:, :-1]) / h
+    tau = casadi.horzcat(*[torque(q[:, k + 1], v[:, k], a[:, k]) for k in range(STEPS + 1)])
+    x, residual = casadi.vec(inner), casadi.vertcat(casadi.vec(tau) / TORQUE, casadi.vec(a))
+    slopes = casadi.jacobian(residual, x)
+    factor = casadi.MX.sym("factor")
+    hessian = casadi.Function("hessian", [x, casadi.MX(0, 1), factor, casadi.MX(0, 1)], [2 * factor * casadi.triu(slopes.T @ slopes)])
+    options = {"print_level": 0, "sb": "yes", "tol": 1e-10, "max_iter": 300}
+    problem = {"x": x, "f": casadi.sumsqr(residual)}
+    solver = casadi.nlpsol("solver", "ipopt", problem, {"ipopt": options, "print_time": False, "hess_lag": hessian})
+    guess = [s + (e - s) * k / STEPS for k in range(1, STEPS) for s, e in zip(START, END)]
+    start = time.perf_counter()
+    solution = solver(x0=guess)
+    seconds = time.perf_counter() - start
+    statistics = solver.stats()
+    assert statistics["success"], statistics["return_status"]
+    torques = casadi.Function("torques", [x], [tau])(solution["x"]).full()
+    return torques, statistics["iter_count"], seconds
+
+
+def main():
+    import numpy
+    from casadi_code import Robot
+
+    command = sys.argv[1:] or ["cargo", "run", "--quiet", "-p", "articulated-cli", "--"]
+    read = Robot(REPOSITORY / "models" / "urdf" / f"{ROBOT}.urdf", False)
+    own = {name: casadi.Function(name, arguments, outputs(), {"cse": True}) for name, (arguments, outputs) in read.functions().items()
+           if name in ("inverse_dynamics", "forward_dynamics")}
+    own["mass_matrix"] = casadi.Function("mass_matrix", [read.q], [casadi.triu2symm(read.functions()["mass_matrix"][1]()[0])])
+    with tempfile.TemporaryDirectory() as folder:
+        shared = library(command, Path(folder))
+        for name, worst in values(shared, own, numpy.random.default_rng(1)).items():
+            print(f"{name:<24}{worst:9.1e} of the largest entry")
+            assert worst <= TOLERANCE, name
+        check_sparsity(shared)
+        ours, theirs = reach(casadi.external("inverse_dynamics", shared)), reach(own["inverse_dynamics"])
+    difference = abs(ours[0] - theirs[0]).max() / abs(theirs[0]).max()
+    for whose, (_, iterations, seconds) in (("generated C", ours), ("CasADi's expressions", theirs)):
+        print(f"IPOPT with {whose:<22}{iterations:5d} iterations{1e3 * seconds / iterations:9.2f} ms an iteration")
+    print(f"solutions differ by {difference:.1e} of the largest torque")
+    assert difference <= SAME_SOLUTION
+    print("1 passed, 0 failed")
+    return 0
+
+
+if __name__ == "__main__":
+    from make import ensure_casadi
+
+    ensure_casadi()
+    import casadi
+
+    sys.exit(main())
