@@ -161,6 +161,8 @@ def saves(browser, folder):
     browser("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(folder))
     name = browser.value("document.title")
     picture, video = folder / f"{name}.png", folder / f"{name}.webm"
+    for old in [picture, video]:
+        old.unlink(missing_ok=True)
     browser.click("png")
     found = devtools.wait(lambda: picture.exists() and picture.stat().st_size, 10, "the picture")
     image = Image.open(picture).convert("RGB")

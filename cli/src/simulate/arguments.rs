@@ -2,17 +2,18 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 
 use super::page::Package;
 
 #[derive(Args, Debug)]
+#[command(group = ArgGroup::new("written").args(["output", "mcap"]).multiple(true))]
 pub(crate) struct SimulateArguments {
     /// A bundled scene's name, or the path of a scene
     #[arg(value_name = "SCENE", required_unless_present = "all")]
     pub(crate) scene: Option<PathBuf>,
     /// Instead of one scene, how fast each bundled scene is, by generated and by generic code
-    #[arg(long, conflicts_with_all = ["scene", "output", "generated", "against"])]
+    #[arg(long, conflicts_with_all = ["scene", "output", "generated", "against", "mcap"])]
     pub(crate) all: bool,
     /// The folder to write to, made if it is not there; or FILE.html, the page alone that plays the
     /// motion
@@ -22,9 +23,13 @@ pub(crate) struct SimulateArguments {
     /// component is the name. May be repeated
     #[arg(long, value_name = "NAME=FOLDER", requires = "output", value_parser = Package::parse)]
     pub(crate) package: Vec<Package>,
-    /// How many MB recording.csv may become; more is refused before the motion begins [default:
+    /// Also write joint states and transforms of all links to this MCAP file, for Foxglove and
+    /// others
+    #[arg(long, value_name = "FILE")]
+    pub(crate) mcap: Option<PathBuf>,
+    /// How many MB recording.csv, or the MCAP file, may become; more is refused before the motion begins [default:
     /// 1000]
-    #[arg(long, value_name = "MB", requires = "output", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    #[arg(long, value_name = "MB", requires = "written", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub(crate) max_output_size: Option<u64>,
     /// By generated code, compiled by rustc, instead of generic code
     #[arg(long)]
@@ -46,7 +51,7 @@ pub(crate) struct SimulateArguments {
     pub(crate) atol: Option<f64>,
     /// Instead of writing a motion, measure how fast generated code gets to the scene's end at final errors of 1e-3, 1e-6 and 1e-9, beside
     /// peer libraries that take steps: one library, or a list of them. They are run: name only what you trust
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["output", "generated", "integrator", "step", "rtol", "atol", "every"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["output", "mcap", "generated", "integrator", "step", "rtol", "atol", "every"])]
     pub(crate) against: Option<PathBuf>,
     /// Record every so many seconds, instead of what the scene says (of a scene that records its
     /// ends only, nothing is drawn)

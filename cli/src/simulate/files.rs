@@ -14,7 +14,7 @@ use super::motion::Motion;
 use super::page::{self, Meshes, Package, Projectile, Setting};
 use super::recording::Recording;
 use super::summary::{Summary, Unit};
-use super::{plot, table};
+use super::{mcap, plot, table};
 use crate::failure::Failure;
 use crate::{console, output};
 
@@ -112,6 +112,20 @@ impl<'a> Files<'a> {
         let pictures = plot::pictures(&motion.recording, &session.name);
         Ok(Drawn { page, animation, pictures })
     }
+}
+
+/// Writes the MCAP file of a motion, of at most so many MB.
+pub(super) fn write_mcap(session: &Session, motion: &Motion, summary: &mut Summary, path: &Path, most: u64) -> Result<(), Failure> {
+    let bytes = mcap::bytes(&motion.recording, &session.description, &session.model, session.base(), most as usize * 1_000_000);
+    let Some(bytes) = bytes.map_err(|e| Failure::tool(&e))? else {
+        let expected = "record less often (--every, or `output` in [simulation]), or allow more by --max-output-size";
+        return Err(Failure::input([format!(
+            "--mcap {}: found more than {most} MB, expected at most {most} MB: {expected}",
+            path.display()
+        )]));
+    };
+    summary.files.push(path.display().to_string());
+    output::write(path, bytes)
 }
 
 /// Whether `--output` names a page instead of a folder.

@@ -4,6 +4,7 @@ mod all;
 pub(crate) mod arguments;
 mod files;
 mod label;
+mod mcap;
 mod monitor;
 pub(crate) mod motion;
 mod page;
@@ -25,8 +26,8 @@ use articulated_motion::InitialState;
 use crate::arguments::Format;
 use crate::console::{self, Progress};
 use crate::failure::{Failure, INPUT, OK, OUT_OF_TOLERANCE};
-use crate::named_scene;
 use crate::robot::has_room;
+use crate::{named_scene, output};
 use arguments::SimulateArguments;
 use files::Files;
 use motion::Motion;
@@ -51,6 +52,7 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     motion::solvable(&session)?;
     let size = Size::look_ahead(session.model.shape(), &mut settings, arguments)?;
     let files = arguments.output.as_deref().map(|path| Files::at(path, &arguments.package, &settings)).transpose()?;
+    arguments.mcap.as_deref().map_or(Ok(()), |path| output::file("--mcap", path))?;
     let progress = Progress::of_whole(format!("{}: motion", session.name));
     let (mut motion, code) = match arguments.generated {
         true => (by_generated_code(&session, &initial, &settings, &progress)?, "generated"),
@@ -63,6 +65,9 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     if let Some(files) = &files {
         progress.doing(format!("{}: files", session.name));
         files.write(&session, &motion, &mut summary)?;
+    }
+    if let Some(path) = &arguments.mcap {
+        files::write_mcap(&session, &motion, &mut summary, path, size::allowed(arguments))?;
     }
     drop(progress);
     console::print(&match format {

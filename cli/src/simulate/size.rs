@@ -53,7 +53,7 @@ impl Size {
     /// than may be.
     pub(super) fn look_ahead(shape: Shape, settings: &mut Settings, arguments: &SimulateArguments) -> Result<Option<Self>, Failure> {
         let Some(folder) = arguments.output.as_ref().filter(|path| !is_page(path)) else { return Ok(None) };
-        let size = Self::of(shape, arguments.max_output_size.unwrap_or(DEFAULT));
+        let size = Self::of(shape, allowed(arguments));
         match rows(settings) {
             Some(rows) if rows > size.most => return Err(Failure::input([size.refusal(folder, rows)])),
             Some(rows) if Self::bytes(size.columns, rows) > MUCH => {
@@ -85,6 +85,11 @@ impl Size {
             )
         })
     }
+}
+
+/// MB that a file may have.
+pub(super) fn allowed(arguments: &SimulateArguments) -> u64 {
+    arguments.max_output_size.unwrap_or(DEFAULT)
 }
 
 /// How many records a motion to its end has; `None`: one for each step, and steps by tolerance.

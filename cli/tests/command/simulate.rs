@@ -150,6 +150,87 @@ fn meshes_are_drawn_where_they_are_found_and_told_where_they_are_not() {
     assert!(ended.status == 2 && ended.err.contains("nowhere"), "{}", ended.err);
 }
 
+/// What a program that knows the format reads.
+#[test]
+fn the_mcap_file_has_every_record_and_the_transforms_of_forward_kinematics() {
+    use articulated_core::dynamics::Dynamics;
+    use articulated_core::spatial::Placement;
+    let folder = tempfile::tempdir().unwrap();
+    let (out, path) = (folder.path().join("out"), folder.path().join("drop.mcap"));
+    let words = ["simulate", "quadruped_drop", "--end", "0.5", "--every", "0.001", "-o", out.to_str().unwrap(), "--mcap"];
+    let ended = run(&[&words[..], &[path.to_str().unwrap()]].concat());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let file = std::fs::read(&path).unwrap();
+
+    let summary = mcap::Summary::read(&file).unwrap().unwrap();
+    let statistics = summary.stats.as_ref().unwrap();
+    assert_eq!((statistics.message_count, statistics.channel_count, statistics.schema_count), (1002, 2, 2));
+    assert_eq!((statistics.message_start_time, statistics.message_end_time), (0, 500_000_000));
+    assert!(summary.chunk_indexes.len() > 1);
+    let of_chunks = summary.chunk_indexes.iter().map(|chunk| summary.stream_chunk(&file, chunk).unwrap().count());
+    assert_eq!(of_chunks.sum::<usize>(), 1002);
+    let indexes: usize = summary
+        .chunk_indexes
+        .iter()
+        .flat_map(|chunk| summary.read_message_indexes(&file, chunk).unwrap().into_values())
+        .map(|all| all.len())
+        .sum();
+    assert_eq!(indexes, 1002);
+
+    let table = std::fs::read_to_string(out.join("recording.csv")).unwrap();
+    let rows: Vec<Vec<f64>> = table.lines().skip(1).map(|line| line.split(',').map(|x| x.parse().unwrap()).collect()).collect();
+    let bundled = articulated_models::robot("quadruped").unwrap();
+    let options = articulated_formats::Options { base: bundled.base, ..articulated_formats::Options::default() };
+    let description = articulated_formats::read(bundled.urdf.as_bytes(), &options).unwrap().description;
+    let foot = "front_left_foot";
+    let model = articulated_core::model::Model::new(&description, bundled.base).unwrap().with_frames(&[foot]).unwrap();
+    let (mut ws, mut place) = (Dynamics::workspace(&model), [0.0; 12]);
+    let mut counts = std::collections::BTreeMap::new();
+    for message in mcap::MessageStream::new(&file).unwrap() {
+        let message = message.unwrap();
+        let (topic, schema) = (message.channel.topic.as_str(), message.channel.schema.as_ref().unwrap());
+        assert_eq!((message.channel.message_encoding.as_str(), schema.encoding.as_str()), ("json", "jsonschema"));
+        let content: serde_json::Value = serde_json::from_slice(&message.data).unwrap();
+        let schema_says: serde_json::Value = serde_json::from_slice(&schema.data).unwrap();
+        assert!(content.as_object().unwrap().keys().all(|key| schema_says["properties"].get(key).is_some()), "{schema_says}");
+        let row = &rows[message.sequence as usize];
+        assert_eq!(message.log_time, (row[0] * 1e9).round() as u64);
+        *counts.entry(format!("{topic} {}", schema.name)).or_insert(0) += 1;
+        let stamp = |at: &serde_json::Value| at["sec"].as_u64().unwrap() * 1_000_000_000 + at["nsec"].as_u64().unwrap();
+        if topic == "/joint_states" {
+            assert_eq!(stamp(&content["header"]["stamp"]), message.log_time);
+            // Twelve joints of one coordinate; those of the base are a transform.
+            assert_eq!(content["name"].as_array().unwrap().len(), 12);
+            assert_eq!(content["position"][0].as_f64().unwrap(), row[1 + 7]);
+            assert_eq!(content["velocity"][11].as_f64().unwrap(), row[1 + 19 + 17]);
+            assert_eq!(content["effort"].as_array().unwrap().len(), 12);
+            continue;
+        }
+        let all = content["transforms"].as_array().unwrap();
+        assert_eq!(all.len(), description.links.len());
+        let found = all.iter().find(|t| t["child_frame_id"] == foot).unwrap();
+        assert_eq!((found["parent_frame_id"].as_str(), stamp(&found["timestamp"])), (Some("world"), message.log_time));
+        model.placements(&mut ws, &row[1..20], &mut place).unwrap();
+        let number = |part: &str, key: &str| found[part][key].as_f64().unwrap();
+        for (k, key) in ["x", "y", "z"].into_iter().enumerate() {
+            assert!((number("translation", key) - place[9 + k]).abs() < 1e-12);
+        }
+        let [x, y, z, w] = ["x", "y", "z", "w"].map(|key| number("rotation", key));
+        let turn = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z)).to_rotation_matrix();
+        let expected = Placement { rotation: nalgebra::Matrix3::from_row_slice(&place[..9]), position: nalgebra::Vector3::zeros() };
+        assert!((turn.matrix() - expected.rotation).amax() < 1e-12);
+    }
+    let each = [("/joint_states sensor_msgs/msg/JointState".to_owned(), 501), ("/tf foxglove.FrameTransforms".to_owned(), 501)];
+    assert_eq!(counts, each.into());
+
+    // Of a fixed base the root link is the frame of all others; no folder is needed.
+    let ended = run(&["simulate", "arm", "--end", "0.1", "--mcap", path.to_str().unwrap()]);
+    assert!(ended.status == 0 && ended.out.contains("drop.mcap"), "{}", ended.err);
+    let file = std::fs::read(&path).unwrap();
+    let first = mcap::MessageStream::new(&file).unwrap().next().unwrap().unwrap();
+    assert!(String::from_utf8(first.data.to_vec()).unwrap().contains("\"parent_frame_id\":\"base_link\",\"child_frame_id\":\"link_1\""));
+}
+
 #[test]
 fn the_ball_of_a_scene_is_on_its_page() {
     let folder = tempfile::tempdir().unwrap();
