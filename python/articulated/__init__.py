@@ -1,0 +1,17 @@
+"""Dynamics of any robot, one state or many at once, on NumPy arrays.
+
+>>> import articulated
+>>> robot = articulated.bundled("panda_like")
+>>> robot.mass_matrix(robot.neutral).shape
+(7, 7)
+>>> robot.inverse_dynamics(robot.random_configuration(0, 100), [0.0] * 7, [0.0] * 7, threads=0).shape
+(100, 7)
+"""
+
+from ._errors import RobotError, RobotWarning
+from ._robot import Function, Joint, Robot, bundled, bundled_names, functions, load, loads
+
+__all__ = ["Function", "Joint", "Robot", "RobotError", "RobotWarning", "bundled", "bundled_names", "functions", "load", "loads"]
+__version__ = "0.1.0"
+for _class in (RobotError, RobotWarning, Robot, Joint, Function):
+    _class.__module__ = __name__

@@ -1,0 +1,53 @@
+"""Errors, warnings, and the conversion of arguments."""
+
+import numpy as np
+
+
+class RobotError(ValueError):
+    """A robot that cannot be read, or that does not have what a function needs.
+
+    ``diagnostics`` lists all findings about the file at once. Each is a dict with the keys severity,
+    code, file, line, column, subject, field, found, expected, hint and message; line, column, subject
+    and hint may be None.
+    """
+
+    def __init__(self, message="", diagnostics=()):
+        super().__init__(message)
+        self.diagnostics = list(diagnostics)
+
+    def __reduce__(self):
+        return type(self), (str(self), self.diagnostics)
+
+
+class RobotWarning(UserWarning):
+    """What looks wrong in a robot's file. The values are used as they are.
+
+    ``diagnostic`` is the finding, a dict as in ``RobotError.diagnostics``.
+    """
+
+    def __init__(self, message="", diagnostic=None):
+        super().__init__(message)
+        self.diagnostic = diagnostic
+
+    def __reduce__(self):
+        return type(self), (str(self), self.diagnostic)
+
+
+def as_numbers(name, value):
+    """``value`` as a C-contiguous array of float64; the errors name the argument."""
+    try:
+        array = np.asarray(value)
+    except MemoryError:
+        raise
+    except ValueError as error:
+        raise ValueError(f"{name}: found no rectangular array ({error}), expected an array of real numbers") from None
+    except Exception as error:
+        raise TypeError(f"{name}: found {type(value).__name__} ({error}), expected an array of real numbers") from None
+    if array.dtype.kind not in "iuf":
+        found = f"dtype {array.dtype}" if array.dtype.kind != "O" else f"objects ({type(value).__name__})"
+        raise TypeError(f"{name}: found {found}, expected real numbers, such as float64")
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        raise TypeError(f"{name}: found a masked array with masked elements, expected an array without")
+    # A copy, unless only the class or the layout of a single row differs.
+    with np.errstate(over="ignore"):
+        return np.require(np.array(array, dtype=np.float64, copy=True, order="C", subok=False), requirements=["C", "A"])

@@ -1,0 +1,130 @@
+//! The loop over states, in one thread or in several.
+
+use std::collections::HashMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex, TryLockError};
+
+use articulated::algorithm::Function;
+use articulated::{FunctionError, Model, Workspace};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyBool;
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+/// The most threads of a call.
+const MOST_THREADS: usize = 1024;
+
+/// States between two looks at signals, so that a user can interrupt a long call.
+const BLOCK: usize = 1 << 15;
+
+/// Workspaces that no call uses at the moment.
+#[derive(Default)]
+pub(crate) struct Workspaces(Mutex<Vec<Workspace<f64>>>);
+
+impl Workspaces {
+    /// Runs with a workspace of the model: one that is free, or a new one. Never waits, so that a
+    /// process that was forked in the middle of another thread's call does not wait for ever.
+    fn with<T>(&self, model: &Model<f64>, run: impl FnOnce(&mut Workspace<f64>) -> T) -> T {
+        let free = match self.0.try_lock() {
+            Ok(mut free) => free.pop(),
+            Err(TryLockError::Poisoned(_) | TryLockError::WouldBlock) => None,
+        };
+        let mut ws = free.unwrap_or_else(|| Workspace::new(model));
+        let out = run(&mut ws);
+        if let Ok(mut free) = self.0.try_lock() {
+            free.push(ws);
+        }
+        out
+    }
+}
+
+/// A call with its arguments checked: slices of all states, and how many numbers one state has
+/// there; zero for an argument that is the same for all.
+pub(crate) struct Call<'a> {
+    pub(crate) function: &'static Function<f64>,
+    pub(crate) model: &'a Model<f64>,
+    pub(crate) workspaces: &'a Workspaces,
+    pub(crate) arguments: Vec<(&'a [f64], usize, usize)>,
+    /// Numbers of one result.
+    pub(crate) len: usize,
+}
+
+impl Call<'_> {
+    /// Computes the states from number `first` on, as many as `out` has room for.
+    fn states(&self, first: usize, out: &mut [f64]) -> Result<(), FunctionError> {
+        self.workspaces.with(self.model, |ws| {
+            let mut arguments: Vec<&[f64]> = Vec::with_capacity(self.arguments.len());
+            for (i, out) in out.chunks_exact_mut(self.len).enumerate() {
+                arguments.clear();
+                arguments.extend(self.arguments.iter().map(|(all, stride, len)| &all[(first + i) * stride..][..*len]));
+                self.function.call(self.model, ws, &arguments, out)?;
+            }
+            Ok(())
+        })
+    }
+
+    /// Computes all states of `out`.
+    pub(crate) fn run(&self, py: Python<'_>, out: &mut [f64], pool: Option<&ThreadPool>) -> PyResult<()> {
+        if out.is_empty() {
+            return Ok(());
+        }
+        // One state takes less time than other threads need to notice that they may run.
+        if out.len() == self.len {
+            return told(catch_unwind(AssertUnwindSafe(|| self.states(0, out))));
+        }
+        for (block, out) in out.chunks_mut(BLOCK * self.len).enumerate() {
+            let first = block * BLOCK;
+            told(py.detach(|| catch_unwind(AssertUnwindSafe(|| self.block(first, out, pool)))))?;
+            py.check_signals()?;
+        }
+        Ok(())
+    }
+
+    fn block(&self, first: usize, out: &mut [f64], pool: Option<&ThreadPool>) -> Result<(), FunctionError> {
+        let Some(pool) = pool else { return self.states(first, out) };
+        // Some parts for each thread, so that no thread waits long for the last.
+        let part = (out.len() / self.len).div_ceil(8 * pool.current_num_threads());
+        let one = |(i, out): (usize, &mut [f64])| self.states(first + i * part, out);
+        pool.install(|| out.par_chunks_mut(part * self.len).enumerate().try_for_each(one))
+    }
+}
+
+/// The outcome of a call, as Python's error.
+fn told(outcome: std::thread::Result<Result<(), FunctionError>>) -> PyResult<()> {
+    match outcome {
+        Ok(result) => result.map_err(|error| PyValueError::new_err(error.to_string())),
+        Err(_) => Err(PyRuntimeError::new_err("found a mistake of articulated itself; please report it with the message above")),
+    }
+}
+
+/// Pools by the process and the number of their threads: a forked process has none of its parent's threads.
+type Pools = HashMap<(u32, usize), Arc<ThreadPool>>;
+
+/// The pool of `threads=`: none for one thread.
+pub(crate) fn pool(threads: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Arc<ThreadPool>>> {
+    static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
+    let Some(threads) = threads else { return Ok(None) };
+    let expected = format!("expected None or 1 for one thread, 0 for all, or a number to {MOST_THREADS}");
+    let wrong = |found: String| PyTypeError::new_err(format!("threads: found {found}, {expected}"));
+    if threads.is_instance_of::<PyBool>() {
+        return Err(wrong("a bool".into()));
+    }
+    let index = threads.call_method0("__index__").map_err(|_| wrong(threads.get_type().to_string()))?;
+    let count = index.extract::<usize>().ok().filter(|count| *count <= MOST_THREADS);
+    let count = count.ok_or_else(|| PyValueError::new_err(format!("threads: found {index}, {expected}")))?;
+    let count = if count == 0 { std::thread::available_parallelism().map_or(1, usize::from).min(MOST_THREADS) } else { count };
+    if count == 1 {
+        return Ok(None);
+    }
+    let mut pools = POOLS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let pools = pools.get_or_insert_default();
+    let key = (std::process::id(), count);
+    if let Some(pool) = pools.get(&key) {
+        return Ok(Some(Arc::clone(pool)));
+    }
+    let failed = |error: rayon::ThreadPoolBuildError| PyRuntimeError::new_err(format!("threads: found no {count} threads: {error}"));
+    let pool = Arc::new(ThreadPoolBuilder::new().num_threads(count).build().map_err(failed)?);
+    pools.insert(key, Arc::clone(&pool));
+    Ok(Some(pool))
+}

@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+"""Writes articulated/__init__.pyi, the types of the package, from the table of functions.
+
+    python tests/stubs.py [--check]
+
+Needs the package to be installed. `--check` writes nothing, and fails if the file is not up to date.
+"""
+
+import sys
+from pathlib import Path
+
+import articulated
+
+FILE = Path(__file__).resolve().parent.parent / "articulated" / "__init__.pyi"
+
+HEAD = '''"""Types of the package. Made by tests/stubs.py from the table of functions."""
+
+from os import PathLike
+from typing import Any, Iterable, NamedTuple, Optional, Sequence, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__version__: str
+
+class RobotError(ValueError):
+    diagnostics: list[dict[str, Any]]
+    def __init__(self, message: str = ..., diagnostics: Iterable[dict[str, Any]] = ...) -> None: ...
+
+class RobotWarning(UserWarning):
+    diagnostic: Optional[dict[str, Any]]
+    def __init__(self, message: str = ..., diagnostic: Optional[dict[str, Any]] = ...) -> None: ...
+
+class Joint(NamedTuple):
+    name: str
+    kind: str
+    q: slice
+    v: slice
+
+class Function(NamedTuple):
+    name: str
+    summary: str
+    takes: tuple[tuple[str, tuple[Union[int, str], ...], str], ...]
+    gives: tuple[Union[int, str], ...]
+    unit: str
+    group: str
+    source: str
+
+def functions() -> tuple[Function, ...]: ...
+def bundled_names() -> dict[str, str]: ...
+def load(
+    path: Union[str, bytes, PathLike[str], PathLike[bytes]],
+    base: str = "fixed",
+    gravity: ArrayLike = ...,
+    frames: Optional[Iterable[str]] = None,
+) -> Robot: ...
+def loads(
+    text: Union[str, bytes, bytearray, memoryview],
+    name: str = "robot.urdf",
+    base: str = "fixed",
+    gravity: ArrayLike = ...,
+    frames: Optional[Iterable[str]] = None,
+) -> Robot: ...
+def bundled(
+    name: str, base: Optional[str] = None, gravity: ArrayLike = ..., frames: Optional[Iterable[str]] = None
+) -> Robot: ...
+
+class Robot:
+    @property
+    def name(self) -> str: ...
+    @property
+    def base(self) -> str: ...
+    @property
+    def nq(self) -> int: ...
+    @property
+    def nv(self) -> int: ...
+    @property
+    def joints(self) -> tuple[Joint, ...]: ...
+    @property
+    def frames(self) -> tuple[str, ...]: ...
+    @property
+    def links(self) -> tuple[str, ...]: ...
+    @property
+    def lower(self) -> NDArray[np.float64]: ...
+    @property
+    def upper(self) -> NDArray[np.float64]: ...
+    @property
+    def velocity_limit(self) -> NDArray[np.float64]: ...
+    @property
+    def effort_limit(self) -> NDArray[np.float64]: ...
+    @property
+    def gravity(self) -> NDArray[np.float64]: ...
+    @property
+    def moving_mass(self) -> float: ...
+    @property
+    def neutral(self) -> NDArray[np.float64]: ...
+    @property
+    def unused(self) -> tuple[str, ...]: ...
+    def with_gravity(self, gravity: ArrayLike) -> Robot: ...
+    def with_frames(self, frames: Iterable[str]) -> Robot: ...
+    def call(self, name: str, *arguments: ArrayLike, threads: Optional[int] = None) -> Any: ...
+    def placements_matrices(self, q: ArrayLike, *, threads: Optional[int] = None) -> NDArray[np.float64]: ...
+    def random_configuration(
+        self,
+        rng: Union[np.random.Generator, int, Sequence[int], None] = None,
+        size: Optional[int] = None,
+        *,
+        uniform: Optional[ArrayLike] = None,
+        threads: Optional[int] = None,
+    ) -> NDArray[np.float64]: ...
+'''
+
+
+def method(function):
+    given = "".join(f"{name}: ArrayLike, " for name, _, _ in function.takes)
+    # Of one state a single number is a float, of several an array.
+    result = "NDArray[np.float64]" if function.gives else "Any"
+    shape = ", ".join(str(one) for one in function.gives) or "one number"
+    return (
+        f"    def {function.name}(self, {given}*, threads: Optional[int] = None) -> {result}:\n"
+        f'        """{function.summary}. [{shape}] {function.unit}."""\n'
+    )
+
+
+def main():
+    text = HEAD + "".join(method(f) for f in articulated.functions() if f.name != "random_configuration")
+    if "--check" not in sys.argv[1:]:
+        FILE.write_text(text, encoding="utf-8")
+    elif FILE.read_text(encoding="utf-8") != text:
+        sys.exit(f"{FILE.name} is not up to date: run python tests/stubs.py")
+
+
+if __name__ == "__main__":
+    main()
