@@ -1,7 +1,8 @@
 //! Which commit is built: reports of measurements name it.
 //!
-//! `ARTICULATED_COMMIT` if it is set; else what a package says that it was made from; else what git says, if this folder is part of a checkout; else nothing.
-//! Builds without optimisation are not told: they would be made anew after every commit, and are not what one measures with.
+//! `ARTICULATED_COMMIT` if it is set; else what a package says that it was made from; else what git
+//! says, if this folder is part of a checkout; else nothing. Builds without optimisation are not
+//! told: they would be made anew after every commit, and are not what one measures with.
 
 use std::path::Path;
 use std::process::Command;
@@ -29,7 +30,8 @@ fn checked_out() -> Option<String> {
     // A copy inside of somebody else's repository is not part of it.
     git(&["ls-files", "--error-unmatch", "Cargo.toml"])?;
     let commit = git(&["rev-parse", "HEAD"])?;
-    // What changes with every commit and every change of branch. A path that is not there would have this run every time.
+    // What changes with every commit and every change of branch. A path that is not there would
+    // have this run every time.
     let watched = ["HEAD", "logs/HEAD", "packed-refs"].map(str::to_owned).into_iter().chain(git(&["symbolic-ref", "--quiet", "HEAD"]));
     for path in watched.filter_map(|name| git(&["rev-parse", "--git-path", &name])).filter(|path| Path::new(path).exists()) {
         println!("cargo::rerun-if-changed={path}");

@@ -45,7 +45,8 @@ pub(crate) struct AccuracyArguments {
     pub(crate) robot: RobotArguments,
     #[command(flatten)]
     pub(crate) frames: FrameArguments,
-    /// The functions to measure, or groups of them [default: placements,inverse_dynamics,mass_matrix,forward_dynamics]
+    /// The functions to measure, or groups of them
+    /// [default: placements,inverse_dynamics,mass_matrix,forward_dynamics]
     #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
     pub(crate) functions: Vec<Names>,
     /// Levels of accuracy to measure [default: all distinct ones]
@@ -60,19 +61,23 @@ pub(crate) struct AccuracyArguments {
     /// Repetitions of each timing, at least 1; for motions the fastest of at most five counts
     #[arg(long, value_name = "N", default_value_t = 31, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) repetitions: u32,
-    /// A peer library to measure beside them; may be given several times. It is run: name only libraries that you trust
+    /// A peer library to measure beside them; may be given several times. It is run: name only
+    /// libraries that you trust
     #[arg(long, value_name = "LIBRARY")]
     pub(crate) peer: Vec<PathBuf>,
     /// A list of peer libraries, as the peers' build script writes it
     #[arg(long, value_name = "FILE")]
     pub(crate) peers_manifest: Option<PathBuf>,
-    /// The folder to write report.html, accuracy.csv, accuracy.json and diagrams in SVG to; with --simulate integrators.html, integrators.csv, integrators.json and diagrams
+    /// The folder to write report.html, accuracy.csv, accuracy.json and diagrams in SVG to; with
+    /// --simulate integrators.html, integrators.csv, integrators.json and diagrams
     #[arg(short, long, value_name = "FOLDER")]
     pub(crate) output: Option<PathBuf>,
-    /// Measure integrators instead, on the motion of a scene: ROBOT is a scene's file, or the name of a bundled scene
+    /// Measure integrators instead, on the motion of a scene: ROBOT is a scene's file, or the name
+    /// of a bundled scene
     #[arg(long, conflicts_with_all = OF_FUNCTIONS)]
     pub(crate) simulate: bool,
-    /// Only name the cheapest level of each function whose largest error is no larger than --error (exit status 4 if one has none)
+    /// Only name the cheapest level of each function whose largest error is no larger than --error
+    /// (exit status 4 if one has none)
     #[arg(long, requires = "error")]
     pub(crate) advise: bool,
     /// Largest accepted error, relative to the sum of the magnitudes of the terms; for a motion in

@@ -24,7 +24,8 @@ pub(crate) enum Format {
 /// The robot, and options of reading it.
 #[derive(Args, Debug)]
 pub(crate) struct RobotArguments {
-    /// A bundled robot's or scene's name (a robot's first), the path of a URDF or of a scene (.toml), or - for a URDF on the standard input
+    /// A bundled robot's or scene's name (a robot's first), the path of a URDF or of a scene
+    /// (.toml), or - for a URDF on the standard input
     #[arg(value_name = "ROBOT")]
     pub(crate) robot: PathBuf,
     /// The root link moves freely (bundled robots know their own base)
@@ -36,7 +37,8 @@ pub(crate) struct RobotArguments {
     /// Gravity in the world frame, m/s² [default: 0,0,-9.81]
     #[arg(long, value_name = "X,Y,Z", value_parser = gravity, allow_hyphen_values = true)]
     pub(crate) gravity: Option<Gravity>,
-    /// Accept negative principal moments, with a warning (moments that break the triangle inequality always are)
+    /// Accept negative principal moments, with a warning (moments that break the triangle
+    /// inequality always are)
     #[arg(long)]
     pub(crate) allow_unphysical_inertia: bool,
     /// Snap angles of the file within TOL rad of a multiple of π/2 to that multiple: above 0, at
@@ -108,7 +110,8 @@ pub(crate) struct GenerateArguments {
     /// functions that the motion of a scene calls [default: placements,inverse_dynamics]
     #[arg(long, alias = "function", value_name = "NAMES", value_parser = wanted)]
     pub(crate) functions: Vec<Names>,
-    /// Constants of the model that stay inputs: payload(LINK), inertia(LINK), origin(JOINT), gravity, and numbers of an effect that is on, as damping(JOINT), contact(LINK)
+    /// Constants of the model that stay inputs: payload(LINK), inertia(LINK), origin(JOINT),
+    /// gravity, and numbers of an effect that is on, as damping(JOINT), contact(LINK)
     #[arg(long, value_name = "ENTRIES", value_delimiter = ',')]
     pub(crate) parameters: Vec<String>,
     /// Also generate batch functions, for many states at once, with these number types: f64, f32
@@ -134,7 +137,8 @@ pub(crate) struct GenerateArguments {
     /// Do not compute isomorphic limbs in vector lanes, even where that is cheaper
     #[arg(long)]
     pub(crate) no_limbs: bool,
-    /// No `unsafe` in the generated code: on x86-64 sines take a little longer, and long functions without AVX-512 up to twice as long
+    /// No `unsafe` in the generated code: on x86-64 sines take a little longer, and long functions
+    /// without AVX-512 up to twice as long
     #[arg(long)]
     pub(crate) forbid_unsafe: bool,
     /// For crates without std, which depend on the crate libm: no `unsafe`, no multiply-adds
@@ -171,7 +175,8 @@ pub(crate) struct EvalArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct FunctionsArguments {
-    /// Bundled robots' names, or paths of URDF files or of scenes (.toml) [default: ur5_like panda_like quadruped humanoid]
+    /// Bundled robots' names, or paths of URDF files or of scenes (.toml)
+    /// [default: ur5_like panda_like quadruped humanoid]
     #[arg(value_name = "ROBOT")]
     pub(crate) robots: Vec<PathBuf>,
     /// The root links of robots from files move freely

@@ -14,7 +14,8 @@ use crate::scaling::ScalingArguments;
 use crate::simulate::arguments::SimulateArguments;
 use crate::stress::StressArguments;
 
-/// Robot dynamics, spelled out: checks a URDF, generates its straight-line code, evaluates it, compares it, and simulates it.
+/// Robot dynamics, spelled out: checks a URDF, generates its straight-line code, evaluates it,
+/// compares it, and simulates it.
 #[derive(Debug, Parser)]
 #[command(name = "articulated", version, after_help = overview())]
 pub(crate) struct Arguments {
@@ -82,7 +83,8 @@ pub(crate) enum Command {
         "articulated compare quadruped --peers-manifest target/peers/peers.json --chart quadruped.svg",
     ]))]
     Compare(CompareArguments),
-    /// Measures what accuracy costs: error and time of each function at each level, and the cheapest that is accurate enough
+    /// Measures what accuracy costs: error and time of each function at each level, and the
+    /// cheapest that is accurate enough
     #[command(after_help = examples(&[
         "articulated accuracy panda_like",
         "articulated accuracy arm.urdf --functions inverse_dynamics,mass_matrix --levels f32,f64,double_double --output accuracy",
@@ -98,14 +100,16 @@ pub(crate) enum Command {
         "articulated functions --markdown > docs/functions.md",
     ]))]
     Functions(FunctionsArguments),
-    /// Measures how costs grow with the robot: chains of 7 to 125 joints (--all: to 1000), generated against generic code, hot and cold caches
+    /// Measures how costs grow with the robot: chains of 7 to 125 joints (--all: to 1000),
+    /// generated against generic code, hot and cold caches
     #[command(after_help = examples(&[
         "articulated scaling",
         "articulated scaling --joints 7,30,100 --functions inverse_dynamics --chart scaling.svg",
         "articulated scaling --all --markdown --chart docs/scaling.svg > docs/scaling.md",
     ]))]
     Scaling(ScalingArguments),
-    /// Measures hard cases: a corpus and the bundled robots, or a robot of yours; each with a limit that it has to keep
+    /// Measures hard cases: a corpus and the bundled robots, or a robot of yours; each with a limit
+    /// that it has to keep
     #[command(after_help = examples(&[
         "articulated stress",
         "articulated stress --chapters chains,screws --rows",
@@ -113,7 +117,8 @@ pub(crate) enum Command {
         "articulated stress arm.urdf --generated --format json",
     ]))]
     Stress(StressArguments),
-    /// Simulates a scene: a table of the motion, pictures, a page that plays it, and what became of energy and momentum
+    /// Simulates a scene: a table of the motion, pictures, a page that plays it, and what became of
+    /// energy and momentum
     #[command(after_help = examples(&[
         "articulated simulate double_pendulum",
         "articulated simulate quadruped_drop -o drop              (then open drop/motion.html)",
@@ -125,7 +130,8 @@ pub(crate) enum Command {
         "articulated simulate chain --against target/peers/peers.json",
     ]))]
     Simulate(SimulateArguments),
-    /// Says which effects of a scene are on and off, what of the URDF is not used, and what each effect costs
+    /// Says which effects of a scene are on and off, what of the URDF is not used, and what each
+    /// effect costs
     #[command(after_help = examples(&[
         "articulated effects golf_swing",
         "articulated effects arm.toml --time",

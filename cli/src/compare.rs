@@ -19,7 +19,8 @@ pub(crate) struct CompareArguments {
     pub(crate) robot: RobotArguments,
     #[command(flatten)]
     pub(crate) frames: FrameArguments,
-    /// The functions to compare, or groups of them [default: all that are defined for the robot and take at most 20 000 instructions, on the frames of its tips]
+    /// The functions to compare, or groups of them
+    /// [default: all that are defined for the robot and take at most 20 000 instructions, on the frames of its tips]
     #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
     pub(crate) functions: Vec<Names>,
     /// No `unsafe` in the generated code: shows what the vector instructions of the sines bring
@@ -28,7 +29,8 @@ pub(crate) struct CompareArguments {
     /// Also compare batches of many states, with these number types: f64, f32
     #[arg(long, value_name = "TYPES", value_delimiter = ',', value_parser = real)]
     pub(crate) batch: Vec<Real>,
-    /// A peer library to time beside them; may be given several times. It is run: name only libraries that you trust
+    /// A peer library to time beside them; may be given several times. It is run: name only
+    /// libraries that you trust
     #[arg(long, value_name = "LIBRARY")]
     pub(crate) peer: Vec<PathBuf>,
     /// A list of peer libraries, as the peers' build script writes it

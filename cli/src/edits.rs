@@ -13,14 +13,17 @@ use crate::table::counted;
 /// What to do to the robot before anything else: append, then attach, then lock.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct Edits {
-    /// Append another robot on a link; may be given several times. The placement of its root in the frame of the link: 0 if left out
+    /// Append another robot on a link; may be given several times. The placement of its root in the
+    /// frame of the link: 0 if left out
     #[arg(long, value_name = "FILE@LINK[:PREFIX[:X,Y,Z[,ROLL,PITCH,YAW]]]", value_parser = OsStringValueParser::new().try_map(|text| appended(&text)))]
     pub(crate) append: Vec<Appended>,
-    /// Attach a load, kg, to a link: its centre of mass in m, its inertia about that in kg·m²; may be given several times
+    /// Attach a load, kg, to a link: its centre of mass in m, its inertia about that in kg·m²; may
+    /// be given several times
     #[arg(long, value_name = "LINK=MASS[@X,Y,Z[:XX,XY,XZ,YY,YZ,ZZ]]", value_parser = payload)]
     pub(crate) payload: Vec<Payload>,
-    /// Lock a joint at its coordinates (rad or m; a quaternion as x,y,z,w); may be given several times. Links that nothing moves any more count as the base's: energy and centre
-    /// of mass are of the links that move
+    /// Lock a joint at its coordinates (rad or m; a quaternion as x,y,z,w); may be given several
+    /// times. Links that nothing moves any more count as the base's: energy and centre of mass are
+    /// of the links that move
     #[arg(long, value_name = "JOINT=VALUE[,VALUE…]", value_parser = lock)]
     pub(crate) lock: Vec<Lock>,
 }
@@ -28,7 +31,8 @@ pub(crate) struct Edits {
 /// Which frames, and what is given in them.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct FrameArguments {
-    /// The links whose frames functions give, in this order [default: all, in the order of the file]
+    /// The links whose frames functions give, in this order
+    /// [default: all, in the order of the file]
     #[arg(long, value_name = "LINKS", value_delimiter = ',')]
     pub(crate) frames: Vec<String>,
     /// What the wrenches that functions take refer to: body, world or world_aligned [default: body]

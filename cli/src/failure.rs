@@ -63,7 +63,8 @@ impl Failure {
         self.status == TOOL
     }
 
-    /// All of them, with the gravest status: wrong input comes before a wrong command line, and both before a tool that fails.
+    /// All of them, with the gravest status: wrong input comes before a wrong command line, and
+    /// both before a tool that fails.
     pub(crate) fn of(failures: impl IntoIterator<Item = Self>) -> Self {
         let mut all = Self { status: BOUND, errors: Vec::new(), reported: false };
         for failure in failures {

@@ -35,7 +35,8 @@ use arguments::Format;
 use command_line::{Arguments, Command};
 use failure::{Failure, OK, USAGE};
 
-/// Runs the command with these words, the program's own name first. The exit status: see [`failure`].
+/// Runs the command with these words, the program's own name first. The exit status: see
+/// [`failure`].
 pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     let words: Vec<OsString> = words.into_iter().collect();
     let arguments = match Arguments::try_parse_from(&words) {
@@ -88,7 +89,8 @@ fn asks_for_json(words: &[OsString]) -> bool {
     words.iter().any(|word| word == "--format=json") || words.windows(2).any(|w| w[0] == "--format" && w[1] == "json")
 }
 
-/// What is wrong with the command line, on one line and without the advice below it: what is listed under it belongs to it.
+/// What is wrong with the command line, on one line and without the advice below it: what is listed
+/// under it belongs to it.
 fn sentence(text: &str) -> String {
     let mut lines = text.lines().take_while(|line| !line.trim().is_empty()).map(str::trim);
     let first = lines.next().unwrap_or_default();

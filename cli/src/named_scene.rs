@@ -15,7 +15,8 @@ pub(crate) fn is_scene(path: &Path) -> bool {
     path.to_str().is_some_and(is_bundled) || ends_with(path, "toml")
 }
 
-/// The scene, and the folder of its file. A bundled one goes before a file of its name, as a bundled robot does: `./name` is the file.
+/// The scene, and the folder of its file. A bundled one goes before a file of its name, as a
+/// bundled robot does: `./name` is the file.
 pub(crate) fn open(path: &Path) -> Result<(Prepared, PathBuf), Failure> {
     if let Some(bundled) = path.to_str().and_then(articulated_models::scene) {
         let scene = Scene::read(&bundled.file(), bundled.toml)?;

@@ -14,7 +14,8 @@ pub(crate) fn known(text: &str) -> Result<Names, String> {
     each(text, &known_one)
 }
 
-/// As [`known`], and what the generator reads: `name = first + second(a = 0)`, and `motion` of a scene.
+/// As [`known`], and what the generator reads: `name = first + second(a = 0)`, and `motion` of a
+/// scene.
 pub(crate) fn wanted(text: &str) -> Result<Names, String> {
     each(text, &|entry| match entry.contains(['=', '+', '(']) {
         true => FunctionSpec::parse(entry).map(|_| vec![entry.to_owned()]).map_err(|e| e.to_string()),

@@ -26,7 +26,8 @@ pub(crate) struct NewArguments {
     /// The root link moves freely (bundled robots know their own base)
     #[arg(long)]
     floating: bool,
-    /// The controller of the program [default: computed-torque on a fixed base, pd on a floating one]
+    /// The controller of the program
+    /// [default: computed-torque on a fixed base, pd on a floating one]
     #[arg(long, value_enum)]
     controller: Option<Controller>,
     /// The folder of the crate `articulated` [default: beside the command's source, else crates.io]
@@ -52,7 +53,8 @@ struct Report {
 
 const FILES: [&str; 4] = ["Cargo.toml", "robot.urdf", "src/main.rs", ".gitignore"];
 
-/// Writes the crate. Nothing is written if the robot cannot be used, or if the folder exists and is not empty.
+/// Writes the crate. Nothing is written if the robot cannot be used, or if the folder exists and is
+/// not empty.
 pub(crate) fn run(arguments: &NewArguments, format: Format) -> Result<(), Failure> {
     let folder = arguments.folder.as_path();
     let name = crate_name(folder)?;

@@ -1,4 +1,5 @@
-//! The robot that a command is about: a bundled one by its name, a URDF by its path, or that of a scene, with its edits and effects.
+//! The robot that a command is about: a bundled one by its name, a URDF by its path, or that of a
+//! scene, with its edits and effects.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -66,7 +67,8 @@ impl Robot {
         Ok(Self { file, scene: None, document, options, effects: None, path, bundled: bundled.is_some(), files })
     }
 
-    /// The robot of a scene: a file, or a bundled one. What the arguments say stands in place of what the scene says; edits come after the scene's.
+    /// The robot of a scene: a file, or a bundled one. What the arguments say stands in place of
+    /// what the scene says; edits come after the scene's.
     fn of_scene(name: &Path, arguments: &RobotArguments) -> Result<Self, Failure> {
         let (prepared, _) = named_scene::open(name)?;
         let bundled = matches!(prepared.scene.robot, articulated_scene::Robot::Bundled(_));
@@ -89,7 +91,8 @@ impl Robot {
         Ok(Self { file, scene: Some(name.display().to_string()), document, options, effects: scene, path: None, bundled, files })
     }
 
-    /// Refuses a scene's level whose results differ from the library's by more than rounding: what is held to those would fail as promised.
+    /// Refuses a scene's level whose results differ from the library's by more than rounding: what
+    /// is held to those would fail as promised.
     pub(crate) fn has_a_level_of_rounding(&self) -> Result<(), Failure> {
         let level = self.options.level;
         if !level.is_single() && !matches!(level.sines, TrigAccuracy::Fast7 | TrigAccuracy::Fast10) {
@@ -118,7 +121,8 @@ impl Robot {
         self
     }
 
-    /// Prints these warnings, a line for each sort; for a bundled robot none, as `check` alone lists those.
+    /// Prints these warnings, a line for each sort; for a bundled robot none, as `check` alone
+    /// lists those.
     pub(crate) fn warn_of<'a>(&self, warnings: impl Iterator<Item = &'a Diagnostic>) {
         summary(warnings.filter(|_| !self.bundled)).iter().for_each(|line| console::warn(line));
     }
@@ -213,7 +217,8 @@ fn appended(edits: &Edits) -> impl Iterator<Item = PathBuf> + '_ {
     edits.append.iter().map(|other| other.file.clone()).filter(|file| file.is_file())
 }
 
-/// A file's name for messages, and its bytes: of a bundled robot by its name, the standard input, or a file. `scenes` are names that would do as well.
+/// A file's name for messages, and its bytes: of a bundled robot by its name, the standard input,
+/// or a file. `scenes` are names that would do as well.
 fn document(path: &Path, scenes: &[&str]) -> Result<(String, Vec<u8>), Failure> {
     match path.to_str().and_then(articulated_models::robot) {
         Some(bundled) => Ok((format!("{}.urdf", bundled.name), bundled.urdf.as_bytes().to_vec())),

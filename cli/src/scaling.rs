@@ -15,7 +15,8 @@ pub(crate) struct ScalingArguments {
     /// Numbers of joints [default: 7,14,30,60,125; with --all up to 1000]
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',', value_parser = joints)]
     pub(crate) joints: Vec<usize>,
-    /// The functions to measure, or groups of them [default: inverse_dynamics,mass_matrix,forward_dynamics]
+    /// The functions to measure, or groups of them
+    /// [default: inverse_dynamics,mass_matrix,forward_dynamics]
     #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
     pub(crate) functions: Vec<Names>,
     /// Measure all lengths: takes minutes and gigabytes of memory, mostly for rustc

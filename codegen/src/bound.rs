@@ -7,8 +7,10 @@ use articulated_core::running::Running;
 use crate::graph::Graph;
 use crate::{Arithmetic, Precision, TrigAccuracy};
 
-/// How far each result of a graph at a level can be off from the same graph in real arithmetic, for arguments within a radius of a midpoint each: `input(argument, index)`
-/// is (midpoint, radius). Infinite where a divisor could be nothing, or a choice jump. `None` for levels whose errors are of second order: there is no bound for them.
+/// How far each result of a graph at a level can be off from the same graph in real arithmetic, for
+/// arguments within a radius of a midpoint each: `input(argument, index)` is (midpoint, radius).
+/// Infinite where a divisor could be nothing, or a choice jump. `None` for levels whose errors are
+/// of second order: there is no bound for them.
 pub fn bounds(graph: &Graph, level: Precision, input: &dyn Fn(usize, usize) -> (f64, f64)) -> Option<Vec<f64>> {
     fn of<const BITS: u32, const SINES: u32>(graph: &Graph, bits: Option<u32>, input: &dyn Fn(usize, usize) -> (f64, f64)) -> Vec<f64> {
         let given = |argument: usize, k: usize| {
@@ -34,8 +36,10 @@ pub fn bounds(graph: &Graph, level: Precision, input: &dyn Fn(usize, usize) -> (
     })
 }
 
-/// What holds of all arguments in the box of [`Generated::bounds_in_box`](crate::Generated::bounds_in_box): coordinates in their boxes ([`coordinate_box`]), sines and cosines within ±1, everything
-/// else within ±2: (midpoint, radius) of element `index`.
+/// What holds of all arguments in the box of
+/// [`Generated::bounds_in_box`](crate::Generated::bounds_in_box): coordinates in their boxes
+/// ([`coordinate_box`]), sines and cosines within ±1, everything else within ±2: (midpoint, radius)
+/// of element `index`.
 pub fn in_box(model: &Model<f64>, argument: Argument, index: usize) -> (f64, f64) {
     if !matches!(argument, Argument::Q | Argument::Target) {
         return if argument == Argument::SinCos { (0.0, 1.0) } else { (0.0, 2.0) };
@@ -76,7 +80,8 @@ mod tests {
             assert_eq!(found, [[(0.0, 1.0); 7].as_slice(), &[(1.0, 2.0), (0.0, PI)]].concat());
         }
         assert_eq!([Argument::V, Argument::SinCos].map(|argument| in_box(&model, argument, 7)), [(0.0, 2.0), (0.0, 1.0)]);
-        // A bound on one side alone has the other a turn away, and those written the wrong way round are the same.
+        // A bound on one side alone has the other a turn away, and those written the wrong way
+        // round are the same.
         for (lower, upper, expected) in [
             (f64::NEG_INFINITY, 3.0, (3.0 - PI, PI)),
             (3.0, -1.0, (1.0, 2.0)),
@@ -89,7 +94,8 @@ mod tests {
             });
             assert_eq!(in_box(&model, Argument::Q, 7), expected);
         }
-        // Lengths without limits are in ±1 m, and all angles of a joint that has several numbers in ±π.
+        // Lengths without limits are in ±1 m, and all angles of a joint that has several numbers in
+        // ±π.
         let (prismatic, planar) = (model_with("prismatic"), model_with("planar"));
         assert_eq!(in_box(&prismatic, Argument::Q, 8), (0.0, 1.0));
         assert_eq!([8, 9, 10].map(|k| in_box(&planar, Argument::Q, k)), [(0.0, 1.0), (0.0, 1.0), (0.0, PI)]);

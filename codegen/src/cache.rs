@@ -21,7 +21,8 @@ pub(crate) struct Cache {
 }
 
 impl Cache {
-    /// That of `output`, if it is to follow from `request` and is made by this program; none where the system does not tell what is running.
+    /// That of `output`, if it is to follow from `request` and is made by this program; none where
+    /// the system does not tell what is running.
     pub(crate) fn new(output: &Path, request: &Request) -> Option<Self> {
         Some(Self::of(output, request, &stamp(&std::env::current_exe().ok()?)?))
     }
@@ -30,7 +31,8 @@ impl Cache {
         Self { output: output.into(), file: output.with_extension("key"), key: key(request, generator) }
     }
 
-    /// The warnings that came with the output, if it stands as it was written, and was written for the same request by the same generator.
+    /// The warnings that came with the output, if it stands as it was written, and was written for
+    /// the same request by the same generator.
     pub(crate) fn warnings(&self) -> Option<Vec<String>> {
         let stored = fs::read(&self.file).ok()?;
         let rest = std::str::from_utf8(stored.strip_prefix(self.key.as_slice())?).ok()?;
@@ -39,7 +41,8 @@ impl Cache {
         unchanged.then(|| lines.map(str::to_owned).collect())
     }
 
-    /// To be called before the output is written: a build that is broken off leaves no memory of it.
+    /// To be called before the output is written: a build that is broken off leaves no memory of
+    /// it.
     pub(crate) fn forget(&self) {
         let _ = fs::remove_file(&self.file);
     }

@@ -1,6 +1,7 @@
 //! What it costs to look at the pivots of forward dynamics.
 //!
-//! The checked form is the generic library's and is not generated; here it is traced as if it were, so that its operations can be counted.
+//! The checked form is the generic library's and is not generated; here it is traced as if it were,
+//! so that its operations can be counted.
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::checked::{articulated_body_pivots, factored_pivots, least_pivot};
@@ -14,7 +15,8 @@ use crate::model_pass::View;
 use crate::pass;
 use crate::sym::{self, Sym};
 
-/// The costs of forward dynamics by ABA, or by M = Lᵀ D L where joints follow others, and of the same with the smallest D/(Σ|terms|) held to its least.
+/// The costs of forward dynamics by ABA, or by M = Lᵀ D L where joints follow others, and of the
+/// same with the smallest D/(Σ|terms|) held to its least.
 pub fn checked_cost(model: &Model<f64>) -> [Entry; 2] {
     let passed = View::new(model.clone()).passed();
     let follows = model.has_followers();

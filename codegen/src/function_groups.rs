@@ -1,4 +1,5 @@
-//! The functions of the table in groups: for lists that people read, and to ask for them by one word.
+//! The functions of the table in groups: for lists that people read, and to ask for them by one
+//! word.
 
 pub use articulated_core::algorithm::Group;
 use articulated_core::diagnostic::Spanned;
@@ -6,7 +7,8 @@ use articulated_core::diagnostic::Spanned;
 /// The word for all functions that the motion of a scene calls.
 pub const MOTION: &str = "motion";
 
-/// The same list with each group's functions in the place of its name, those of `motion` in the place of that, and each entry once.
+/// The same list with each group's functions in the place of its name, those of `motion` in the
+/// place of that, and each entry once.
 pub(crate) fn expanded(list: &[Spanned<String>], motion: &[String]) -> Vec<Spanned<String>> {
     let mut all: Vec<Spanned<String>> = Vec::new();
     for entry in list {

@@ -25,8 +25,8 @@ pub struct Entry {
     pub ways: Vec<Cow<'static, str>>,
     /// Counts after each stage: `requested` (operations of the algorithm as written), `trace`
     /// (folded and shared), the same after each model pass and each transform of the strategy
-    /// (`shift_masses`, `axis_rates`, `fold_rotations`, `unit`), then after each graph pass. Without
-    /// [`stages`](crate::Options::stages) only the last of the model passes.
+    /// (`shift_masses`, `axis_rates`, `fold_rotations`, `unit`), then after each graph pass.
+    /// Without [`stages`](crate::Options::stages) only the last of the model passes.
     pub stages: Vec<(&'static str, Counts)>,
     /// Longest chain of operations from an input to an output.
     pub depth: u32,

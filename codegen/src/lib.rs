@@ -142,8 +142,9 @@ impl Generated {
     }
 }
 
-/// Rust source with `#[doc = "…"]` in place of `///` at the beginning of a line. Both mean the same,
-/// but rust-analyzer 1.95 leaves a slash in comments that a macro parses: hover texts began with "/ ".
+/// Rust source with `#[doc = "…"]` in place of `///` at the beginning of a line. Both mean the
+/// same, but rust-analyzer 1.95 leaves a slash in comments that a macro parses: hover texts began
+/// with "/ ".
 fn with_doc_attributes(source: &str) -> String {
     let mut out = String::with_capacity(source.len() + source.len() / 16);
     for line in source.split_inclusive('\n') {

@@ -36,7 +36,8 @@ pub struct Options {
     /// The functions that the word `motion` means among them: those that the motion of a scene
     /// calls; none without such a scene.
     pub motion: Vec<String>,
-    /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`, `gravity`, and numbers of an effect that is on, as `damping(joint)`, `contact(link)`.
+    /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`,
+    /// `gravity`, and numbers of an effect that is on, as `damping(joint)`, `contact(link)`.
     pub parameters: Vec<Spanned<String>>,
     /// Names to use in generated code instead of those made from the robot's names: (name in the
     /// file, name in code).
@@ -81,7 +82,8 @@ impl Options {
 }
 
 impl Request {
-    /// A request with default options: fixed base, standard gravity, `placements` and `inverse_dynamics`.
+    /// A request with default options: fixed base, standard gravity, `placements` and
+    /// `inverse_dynamics`.
     pub fn new(file: impl Into<String>, document: impl Into<Vec<u8>>) -> Self {
         Self { document: document.into(), file: file.into(), scene: None, options: Options::default() }
     }

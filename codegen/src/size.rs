@@ -14,7 +14,8 @@ use crate::{Options, Request, program};
 /// gigabytes of memory, and loops over joints are faster.
 pub const MAX_CODE_SIZE: u64 = 64;
 
-/// Bytes of source per instruction: 64 to 70 with one word of code each, measured on chains of 40 to 250 joints.
+/// Bytes of source per instruction: 64 to 70 with one word of code each, measured on chains of 40
+/// to 250 joints.
 const BYTES: f64 = 66.0;
 
 /// The same function for batches comes twice, in numbers and in vectors.

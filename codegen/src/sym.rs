@@ -1,6 +1,7 @@
 //! The symbolic scalar: a node of the graph that is being traced on this thread.
 //!
-//! Operations are calls, not inlined: algorithms would become several times as large, and as long to compile, for nothing.
+//! Operations are calls, not inlined: algorithms would become several times as large, and as long
+//! to compile, for nothing.
 
 use std::cell::RefCell;
 use std::fmt;

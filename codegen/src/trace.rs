@@ -16,7 +16,8 @@ use crate::program::Strategy;
 use crate::spec::{FunctionSpec, FunctionTerm};
 use crate::sym::{self, Sym};
 
-/// The graph of a function on `model`: its argument k is argument k of the graph, parameters come after the last; the results of the parts one after the other.
+/// The graph of a function on `model`: its argument k is argument k of the graph, parameters come
+/// after the last; the results of the parts one after the other.
 pub(crate) fn trace(spec: &FunctionSpec, strategies: &[Strategy], model: &Model<f64>, parameters: &[Parameter]) -> Graph {
     let arguments = spec.arguments();
     let graph = sym::trace(|| {

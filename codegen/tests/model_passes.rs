@@ -74,8 +74,8 @@ fn same_without_frames(case: &Case, state: &State, one: &View<Big>, other: &Mode
     });
 }
 
-/// The last bodies of a robot are axisymmetric and no frame is requested: their frames stop rotating, and no
-/// result changes.
+/// The last bodies of a robot are axisymmetric and no frame is requested: their frames stop
+/// rotating, and no result changes.
 #[test]
 fn round_bodies_need_not_turn() {
     let seen = std::cell::Cell::new(0);

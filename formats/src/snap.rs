@@ -5,13 +5,15 @@ use articulated_core::diagnostic::{Code, Diagnostics, Place};
 
 use crate::urdf::right_angle;
 
-/// The largest [`Options::snap_angles`](crate::Options::snap_angles), rad: an angle that is farther from a multiple of π/2 was not meant to be one.
+/// The largest [`Options::snap_angles`](crate::Options::snap_angles), rad: an angle that is farther
+/// from a multiple of π/2 was not meant to be one.
 pub const MOST_SNAPPED: f64 = 0.5;
 
 /// What [`Options::snap_angles`](crate::Options::snap_angles) has to be, for messages.
 pub const SNAP_EXPECTED: &str = "a finite number above 0, at most 0.5 rad; leave it out to snap none";
 
-/// Whether [`Options::snap_angles`](crate::Options::snap_angles) may be so much, rad: above 0, at most [`MOST_SNAPPED`].
+/// Whether [`Options::snap_angles`](crate::Options::snap_angles) may be so much, rad: above 0, at
+/// most [`MOST_SNAPPED`].
 pub fn can_snap(tolerance: f64) -> bool {
     tolerance > 0.0 && tolerance <= MOST_SNAPPED
 }
@@ -24,10 +26,12 @@ pub(crate) fn check(asked: Option<f64>, log: &mut Diagnostics) {
     }
 }
 
-/// An angle this near to a multiple of π/2, and not equal to it, was meant to be one, rad: exporters print five digits and more.
+/// An angle this near to a multiple of π/2, and not equal to it, was meant to be one, rad:
+/// exporters print five digits and more.
 const NEARLY: f64 = 1e-4;
 
-/// Angles of joints that are nearly multiples of π/2 and could be snapped, each with the name of its joint. Exact ones save 8 to 16 % of the time that generated code takes.
+/// Angles of joints that are nearly multiples of π/2 and could be snapped, each with the name of
+/// its joint. Exact ones save 8 to 16 % of the time that generated code takes.
 pub fn nearly_right_angles(description: &Description) -> Vec<(&str, f64)> {
     let angles = description.joints.iter().flat_map(|joint| joint.origin.rotation.rpy().map(|angle| (joint.name.as_str(), angle)));
     angles.filter(|(_, angle)| right_angle(*angle, NEARLY).is_some()).collect()

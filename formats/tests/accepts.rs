@@ -57,7 +57,8 @@ fn numbers_are_read_to_the_last_bit() {
     }
 }
 
-/// 10⁵ doubles of any size in the origins of joints, in the shortest spelling and in 17 digits by turns.
+/// 10⁵ doubles of any size in the origins of joints, in the shortest spelling and in 17 digits by
+/// turns.
 #[test]
 fn very_many_numbers_are_read_to_the_nearest_double() {
     let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
@@ -156,7 +157,8 @@ fn trolley(mass: &str, xyz: &str, moments: [&str; 6]) -> String {
         .replace("<mass value=\"5\"/>", &format!("<origin xyz='{xyz}'/><mass value='{mass}'/>"))
 }
 
-/// Principal moments of ±3.1e-35 kg·m² on 1.2 kg, as exporters leave them; of −5.4e-20 on 0.5 kg; and of −3e-8 on a gram, which no rounding makes.
+/// Principal moments of ±3.1e-35 kg·m² on 1.2 kg, as exporters leave them; of −5.4e-20 on 0.5 kg;
+/// and of −3e-8 on a gram, which no rounding makes.
 #[test]
 fn a_moment_that_is_negative_by_rounding_is_a_warning() {
     for (mass, moments) in [
@@ -353,7 +355,8 @@ fn limits_that_are_left_open_are_infinite() {
     assert_eq!((travel.lower, travel.upper, travel.effort), (f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY));
 }
 
-/// As the format has it before version 1.2; from then on, nothing is amiss with a bound that is left open.
+/// As the format has it before version 1.2; from then on, nothing is amiss with a bound that is
+/// left open.
 #[test]
 fn bounds_that_are_left_out_are_zero_before_version_1_2_and_open_from_then_on() {
     let travel = |version: &str, given: &str| {

@@ -166,7 +166,8 @@ fn of_very_many_roots_the_first_are_named_and_the_rest_counted() {
     assert!(error.found.starts_with("14 roots") && error.found.ends_with("link \"stray10\" and 2 more"), "{error}");
 }
 
-/// The example of other programs' joints: without the one that was passed over, nothing in the file has two roots.
+/// The example of other programs' joints: without the one that was passed over, nothing in the file
+/// has two roots.
 #[test]
 fn joints_of_other_programs_are_named_where_links_hang_on_nothing() {
     let text = crane("<link name=\"lamp\"/>", "<link name=\"lamp\"/><link name=\"ball\"/>")
@@ -266,7 +267,8 @@ fn leaders_with_several_coordinates_are_refused() {
     }
 }
 
-/// The crane with a universal or helical slew: what stands in place of its axis; the kind and line of the error; words of the message.
+/// The crane with a universal or helical slew: what stands in place of its axis; the kind and line
+/// of the error; words of the message.
 type Special = (&'static str, &'static str, Code, u32, &'static [&'static str]);
 
 const SPECIALS: &[Special] = &[

@@ -102,7 +102,8 @@ fn what_looks_wrong_is_a_warning_and_used_as_written() {
     assert_eq!((travel.lower, travel.upper), (4.0, 3.0));
 }
 
-/// Just above a turn, and from three turns in rad to three turns in degrees; bounds beyond stand for none.
+/// Just above a turn, and from three turns in rad to three turns in degrees; bounds beyond stand
+/// for none.
 #[test]
 fn angles_are_taken_for_degrees_where_they_look_like_it() {
     let told = |text: &str| accepted(text).warnings.iter().map(|w| w.code).collect::<Vec<_>>();
@@ -150,7 +151,8 @@ fn a_mass_or_an_inertia_alone_on_a_fixed_base_is_told_and_zeros_are_not() {
     assert!(told("1", "0") && told("0", "1") && !told("0", "0"));
 }
 
-/// A number with a unit, an angle in degrees, a loop that is to be closed: another robot is meant than is read. Extensions of others are not.
+/// A number with a unit, an angle in degrees, a loop that is to be closed: another robot is meant
+/// than is read. Extensions of others are not.
 #[test]
 fn what_nobody_knows_is_warned_of() {
     let told = |from: &str, to: &str| {

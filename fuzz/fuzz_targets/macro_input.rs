@@ -1,4 +1,5 @@
-//! Any tokens are a module, or errors at the words that they are about. A crate of macros gives nobody its functions: its modules are part of this one.
+//! Any tokens are a module, or errors at the words that they are about. A crate of macros gives
+//! nobody its functions: its modules are part of this one.
 #![no_main]
 #![allow(dead_code)]
 

@@ -27,12 +27,14 @@ fn module(invocation: Invocation) -> TokenStream {
     let contents = contents(&settings, module.span, &mut errors);
     let errors = errors.into_items();
     let doc = "\n\nThe module has the functions that its invocation lists. To get another function of `articulated::algorithm`, add it to `functions`.";
-    // Lints about style are for code that somebody writes. First, so that the user's attributes have the last word.
+    // Lints about style are for code that somebody writes. First, so that the user's attributes
+    // have the last word.
     let allow = quote! { #[allow(clippy::all, clippy::pedantic, clippy::nursery, clippy::restriction)] };
     quote! { #allow #(#attributes)* #[doc = #doc] #visibility #module #name { #errors #contents } }
 }
 
-/// The generated source and a mention of every file, by which the compiler knows that the module depends on them.
+/// The generated source and a mention of every file, by which the compiler knows that the module
+/// depends on them.
 fn contents(settings: &Settings, module: Word, errors: &mut Errors) -> TokenStream {
     let mut reader = Reader { settings, log: Diagnostics::default(), loader: loader() };
     let (scene, request) = reader.request();
@@ -65,7 +67,8 @@ fn source(request: &Request, scene: &Scene, settings: &Settings, module: Word, l
     }
 }
 
-/// Items of which the compiler warns, one for each sort of warning: a macro has no other way to warn. `#[allow(deprecated)]` on the module silences them.
+/// Items of which the compiler warns, one for each sort of warning: a macro has no other way to
+/// warn. `#[allow(deprecated)]` on the module silences them.
 fn warnings(generated: &Generated, at: Word) -> TokenStream {
     let items = summary(&generated.warnings).into_iter().map(|line| {
         quote_spanned! {at=>

@@ -1,4 +1,5 @@
-//! What an invocation says: the keys of scenes, which are read as scenes are, and those that are the macro's own.
+//! What an invocation says: the keys of scenes, which are read as scenes are, and those that are
+//! the macro's own.
 
 use std::collections::BTreeSet;
 

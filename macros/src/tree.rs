@@ -1,5 +1,6 @@
-//! What stands in the macro's braces, as scenes have it: `key = value, …`. A value is a number, a word, a text, `[value, …]`, `{ name = value, … }`; of some keys it is
-//! an expression, which is a text here and others read: `hold = inverse_dynamics(v = 0)`.
+//! What stands in the macro's braces, as scenes have it: `key = value, …`. A value is a number, a
+//! word, a text, `[value, …]`, `{ name = value, … }`; of some keys it is an expression, which is a
+//! text here and others read: `hold = inverse_dynamics(v = 0)`.
 
 use std::collections::BTreeSet;
 use std::fmt::Display;
@@ -196,7 +197,8 @@ fn plain(input: ParseStream) -> Result<String> {
     Ok(Ident::parse_any(input)?.unraw().to_string())
 }
 
-/// A number, finite or not, with or without a sign. Units are not guessed from what stands behind it: `90deg` is none.
+/// A number, finite or not, with or without a sign. Units are not guessed from what stands behind
+/// it: `90deg` is none.
 fn number(input: ParseStream) -> Result<f64> {
     let sign = if input.parse::<Option<Token![-]>>()?.is_some() { -1.0 } else { 1.0 };
     let literal: Lit = input.parse()?;

@@ -1,4 +1,5 @@
-//! What a step of a simulation costs beside a loop written by hand over the same generated functions.
+//! What a step of a simulation costs beside a loop written by hand over the same generated
+//! functions.
 //!
 //! ```text
 //! cargo run --release -p articulated-models --example step_cost

@@ -102,7 +102,8 @@ impl<'a> Detectors<'a> {
                 self.unavailable.push(UnavailableEvent { file: session.scene.file.clone(), what: EventClass::Limits, joint: Some(name) });
                 continue;
             }
-            // A joint that follows another the other way round is at its own upper bound where that is at the lower.
+            // A joint that follows another the other way round is at its own upper bound where that
+            // is at the lower.
             let mut kinds = [EventKind::LowerLimit, EventKind::UpperLimit];
             if at.multiplier < 0.0 {
                 kinds.reverse();

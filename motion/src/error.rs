@@ -27,7 +27,8 @@ pub struct MotionError {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Fault {
-    /// The start or the control does not fit the robot, a table cannot be read, or the ball is hit at a time at which nothing moves.
+    /// The start or the control does not fit the robot, a table cannot be read, or the ball is hit
+    /// at a time at which nothing moves.
     Scene(Diagnostic),
     /// The scene has no `[simulation]`: it does not say when its motion ends.
     NoSimulation,

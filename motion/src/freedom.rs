@@ -35,7 +35,8 @@ impl Session {
         several.map_or_else(|| at.joint().to_owned(), |joint| format!("{}[{}]", joint.name, at.v - joint.v.0))
     }
 
-    /// Bounds of the coordinate that a degree of freedom moves with: those of the effect if its joint has it, else those of the file; rad or m.
+    /// Bounds of the coordinate that a degree of freedom moves with: those of the effect if its
+    /// joint has it, else those of the file; rad or m.
     pub(crate) fn bounds(&self, at: &Freedom<'_>) -> Option<(f64, f64)> {
         let own = match at.effect(EffectId::limit).map(|limit| limit.parameters.as_slice()) {
             Some([lower, upper, ..]) => Some((*lower, *upper)),
@@ -44,7 +45,8 @@ impl Session {
         own.or_else(|| self.of_the_file(at.body)).map(|bounds| at.of_the_coordinate(bounds))
     }
 
-    /// The bounds that the file gives a joint of one degree of freedom, those of one that follows another too.
+    /// The bounds that the file gives a joint of one degree of freedom, those of one that follows
+    /// another too.
     pub(crate) fn of_the_file(&self, body: &Body<f64>) -> Option<(f64, f64)> {
         let joint = self.description.joints.iter().find(|joint| joint.name == body.name && body.joint.nv() == 1)?;
         joint.limit.filter(|_| joint.kind.has_bounds()).map(|l| (l.lower, l.upper))

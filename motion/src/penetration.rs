@@ -90,7 +90,8 @@ impl Session {
         found
     }
 
-    /// A warning of links that are below a plane at the coordinates q `[nq]`, where a motion starts.
+    /// A warning of links that are below a plane at the coordinates q `[nq]`, where a motion
+    /// starts.
     pub fn warning_of_penetrations_at_start(&self, q: &[f64]) -> Option<String> {
         let found = self.penetrations(&[0.0], q);
         let (which, them) = count(found.len())?;

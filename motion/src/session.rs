@@ -86,7 +86,8 @@ impl Session {
     }
 }
 
-/// The numbers of a field of an effect, by the field's name; none where the effect has no such field, or not as many numbers as it should.
+/// The numbers of a field of an effect, by the field's name; none where the effect has no such
+/// field, or not as many numbers as it should.
 pub fn field<'a>(applied: &'a Applied, name: &str) -> &'a [f64] {
     let mut start = 0;
     for f in applied.effect.row().fields {

@@ -1,4 +1,5 @@
-//! The native half of the Python package `articulated`: robots, and the table of functions on NumPy arrays.
+//! The native half of the Python package `articulated`: robots, and the table of functions on NumPy
+//! arrays.
 //!
 //! The Python half (`articulated/`) makes a method of each row of the table. This half checks every
 //! argument, so that no call from Python panics.
@@ -41,7 +42,8 @@ fn row<'py>(py: Python<'py>, function: &Function<f64>) -> PyResult<Bound<'py, Py
     Ok(out)
 }
 
-/// All functions of the table, in its order: dicts of name, summary, takes, gives, unit, group and source.
+/// All functions of the table, in its order: dicts of name, summary, takes, gives, unit, group and
+/// source.
 #[pyfunction]
 fn table(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     let rows = PyList::empty(py);

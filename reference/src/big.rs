@@ -1,6 +1,7 @@
 //! Reference values: a scalar of 320 bits, some 96 decimal digits.
 //!
-//! Operations are calls, not inlined: algorithms would become several times as large, and as long to compile, for nothing.
+//! Operations are calls, not inlined: algorithms would become several times as large, and as long
+//! to compile, for nothing.
 
 use std::cell::RefCell;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -14,8 +15,9 @@ pub const BITS: usize = 320;
 
 const ROUNDING: RoundingMode = RoundingMode::ToEven;
 
-/// A number of [`BITS`] bits. It is a handle into an arena of the thread, so that it can be copied as an algorithm's
-/// scalar must be; every result takes room there until the [`Big::scope`] around it ends.
+/// A number of [`BITS`] bits. It is a handle into an arena of the thread, so that it can be copied
+/// as an algorithm's scalar must be; every result takes room there until the [`Big::scope`] around
+/// it ends.
 #[derive(Clone, Copy, Debug)]
 pub struct Big(u32);
 
@@ -47,7 +49,8 @@ fn keep(arena: &mut Arena, number: BigFloat) -> Big {
 }
 
 impl Big {
-    /// Runs `work` and then gives back the room of all numbers that it made: none of them may be used afterwards.
+    /// Runs `work` and then gives back the room of all numbers that it made: none of them may be
+    /// used afterwards.
     pub fn scope<T>(work: impl FnOnce() -> T) -> T {
         let before = with(|arena| arena.numbers.len());
         let result = work();

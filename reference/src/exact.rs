@@ -17,7 +17,8 @@ enum Form {
 }
 
 impl Exact {
-    /// The textbook's form on the numbers of the description, with a frame for each link; gravity in the world frame, m/s². It knows no effects. Errors: those of [`Model::new`].
+    /// The textbook's form on the numbers of the description, with a frame for each link; gravity
+    /// in the world frame, m/s². It knows no effects. Errors: those of [`Model::new`].
     pub fn textbook(description: &Description, base: Base, gravity: [f64; 3]) -> Result<Self, ModelError> {
         Ok(Self(Form::Textbook(Box::new(Textbook::new(description, base, gravity)?))))
     }
@@ -27,7 +28,8 @@ impl Exact {
         Self(Form::Library(Box::new(model.cast())))
     }
 
-    /// With the frames of the model, in its order, and its reference of wrenches; `None` where it has not all of these links.
+    /// With the frames of the model, in its order, and its reference of wrenches; `None` where it
+    /// has not all of these links.
     #[must_use]
     pub fn with_frames_of(self, model: &Model<f64>) -> Option<Self> {
         let names: Vec<&str> = model.frames().iter().map(|f| f.name.as_str()).collect();
@@ -38,7 +40,8 @@ impl Exact {
         Some(Self(form))
     }
 
-    /// What a function gives, its arguments in the table's order; `None` where it is not to be had, or arguments are of other lengths.
+    /// What a function gives, its arguments in the table's order; `None` where it is not to be had,
+    /// or arguments are of other lengths.
     pub fn call(&self, function: FunctionId, arguments: &[&[Big]]) -> Option<Vec<Big>> {
         let model = match &self.0 {
             Form::Textbook(textbook) => return textbook.call(function.name(), arguments)?.ok(),
@@ -50,7 +53,8 @@ impl Exact {
         Some(out)
     }
 
-    /// Accelerations by the articulated-body algorithm, where the robot has it: no joint follows another. Arguments of the robot's lengths.
+    /// Accelerations by the articulated-body algorithm, where the robot has it: no joint follows
+    /// another. Arguments of the robot's lengths.
     pub fn articulated_body(&self, [q, v, tau]: [&[Big]; 3]) -> Option<Vec<Big>> {
         let Form::Library(model) = &self.0 else { return None };
         if model.bodies().iter().any(|body| body.coordinates.mimic.is_some()) {

@@ -38,8 +38,8 @@ impl std::error::Error for LoadError {}
 
 /// The generic model of the URDF at `path`, with standard gravity.
 ///
-/// Every mistake of the file is an error. This function does not return warnings (an inertia that no
-/// body has, and so on): [`formats::read`](crate::formats::read) does, and has options.
+/// Every mistake of the file is an error. This function does not return warnings (an inertia that
+/// no body has, and so on): [`formats::read`](crate::formats::read) does, and has options.
 ///
 /// ```no_run
 /// # fn arm() -> Result<(), Box<dyn std::error::Error>> {

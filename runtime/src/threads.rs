@@ -1,10 +1,13 @@
-//! Many states over all cores: slices of states are halved until the parts are small, and each part is computed at once by a batch function.
+//! Many states over all cores: slices of states are halved until the parts are small, and each part
+//! is computed at once by a batch function.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Slices with an element a state, or a block of states, read or written: `&[T]`, `&mut [T]`, and tuples of them.
+/// Slices with an element a state, or a block of states, read or written: `&[T]`, `&mut [T]`, and
+/// tuples of them.
 pub trait States: Sized + Send {
-    /// Whether an element is a block, which fills vectors by itself: one that begins a cache line, as the `Lanes` of generated modules do.
+    /// Whether an element is a block, which fills vectors by itself: one that begins a cache line,
+    /// as the `Lanes` of generated modules do.
     const BLOCKS: bool;
 
     /// How many elements there are; `None` if the slices of a tuple do not agree.
@@ -76,13 +79,15 @@ tuples! {
 /// The most states that are computed between two calls of the progress.
 const MOST: usize = 1024;
 
-/// Parts have a multiple of this many states, so that vectors are full: the states of a block of `f32`. Parts of blocks have any number of them.
+/// Parts have a multiple of this many states, so that vectors are full: the states of a block of
+/// `f32`. Parts of blocks have any number of them.
 const BLOCK: usize = 16;
 
 /// Bytes of a cache line, at the start of which each number of a block is.
 const LINE: usize = 64;
 
-/// Computes many states by all threads of the current `rayon` pool: `function` on parts of the slices, at the same time.
+/// Computes many states by all threads of the current `rayon` pool: `function` on parts of the
+/// slices, at the same time.
 ///
 /// A generated batch function returns the same bits for a state whatever the other states are, so
 /// the result does not depend on the number of threads. Nothing is allocated for a state or a part.
@@ -102,14 +107,16 @@ const LINE: usize = 64;
 /// # Ok::<(), String>(())
 /// ```
 ///
-/// Blocks of states (`…_blocks` of a generated module) are parted between any two, and counted as blocks.
+/// Blocks of states (`…_blocks` of a generated module) are parted between any two, and counted as
+/// blocks.
 ///
 /// `progress` receives the number of states (or blocks) done, from the thread that has just
 /// computed a part: every number once, but numbers of different threads may come in another order
 /// than they rise. The last part makes it the number of all states.
 ///
 /// # Errors
-/// What `function` says: of all parts the first. Slices of different lengths are handed to it as they are, for it to refuse.
+/// What `function` says: of all parts the first. Slices of different lengths are handed to it as
+/// they are, for it to refuse.
 ///
 /// # Panics
 /// If `function` or `progress` does.

@@ -40,7 +40,8 @@ fn robot() -> Model<f64> {
     load_bytes("satellite", &std::fs::read(path).unwrap(), Base::Floating).unwrap()
 }
 
-/// Allocations, steps and events of a motion that long, in room that was made before, its controller sampled or not.
+/// Allocations, steps and events of a motion that long, in room that was made before, its
+/// controller sampled or not.
 fn motion(robot: &Model<f64>, integrator: IntegratorId, end: f64, sampled: bool) -> (u64, u64, usize) {
     let step = (!integrator.row().adaptive).then_some(2e-3);
     let settings = Settings { integrator, end, step, rtol: 1e-7, output: Output::Every(0.02), ..Settings::default() };

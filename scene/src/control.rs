@@ -373,7 +373,8 @@ impl Scene {
     }
 }
 
-/// The key of torques; others have gains, of which one may be for all degrees of freedom of a joint.
+/// The key of torques; others have gains, of which one may be for all degrees of freedom of a
+/// joint.
 const TORQUE: &str = "control.torque";
 
 fn put(one: &Named, (key, alike): (&str, bool), model: &Model<f64>, all: &mut [f64], log: &mut Diagnostics) {

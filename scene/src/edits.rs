@@ -1,4 +1,5 @@
-//! What a scene does to the robot before a model is made of it: joints locked, loads attached, robots appended, links renamed.
+//! What a scene does to the robot before a model is made of it: joints locked, loads attached,
+//! robots appended, links renamed.
 
 use articulated_core::description::{Origin, Payload, Rotation};
 use articulated_core::diagnostic::{At, Code, Diagnostics};

@@ -8,7 +8,8 @@ use crate::simulation::set;
 use crate::table::{Row, Spot};
 use crate::tree::Value;
 
-/// A ball at rest and the link that hits it: an instantaneous impact along the normal, without friction.
+/// A ball at rest and the link that hits it: an instantaneous impact along the normal, without
+/// friction.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Impact {
     /// The link that hits.
@@ -36,7 +37,8 @@ pub struct Impact {
 /// When the ball is hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum When {
-    /// When the point passes the plane through this place, in the world frame, m, whose normal is the impact's: n·(p − ball) rises through zero.
+    /// When the point passes the plane through this place, in the world frame, m, whose normal is
+    /// the impact's: n·(p − ball) rises through zero.
     Ball([f64; 3]),
     /// At this time, s.
     Time(f64),

@@ -1,4 +1,5 @@
-//! The tables of `docs/scenes.md` and `docs/effects.md`, made from the tables that scenes are read by.
+//! The tables of `docs/scenes.md` and `docs/effects.md`, made from the tables that scenes are read
+//! by.
 
 use std::fmt::Write;
 

@@ -62,7 +62,8 @@ pub enum Robot {
     File(String),
 }
 
-/// Edits of the robot, and choices of the code that is generated for it. `None`: the default of the one who generates.
+/// Edits of the robot, and choices of the code that is generated for it. `None`: the default of the
+/// one who generates.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CodeOptions {
     /// The functions wanted.
@@ -99,7 +100,8 @@ pub struct CodeOptions {
     pub places: Places,
 }
 
-/// Where a scene names what only the robot, or who uses the scene, shows to be wrong: of a list, each of its items.
+/// Where a scene names what only the robot, or who uses the scene, shows to be wrong: of a list,
+/// each of its items.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Places {
     /// A bundled robot, or a URDF.
@@ -115,7 +117,8 @@ pub struct Places {
 }
 
 impl Scene {
-    /// The scene in `text`; `file` is its name in messages and is not opened. Any text is a scene or an error; all errors at once.
+    /// The scene in `text`; `file` is its name in messages and is not opened. Any text is a scene
+    /// or an error; all errors at once.
     pub fn read(file: &str, text: &str) -> Result<Self, Diagnostics> {
         let mut log = Diagnostics::new(file);
         let mut scene = Self { file: file.to_owned(), ..Self::default() };
@@ -139,7 +142,8 @@ impl Scene {
         }
     }
 
-    /// The scene with what a table says in the place of what it says itself, as far as nothing is wrong with it; and what is wrong. For the macro, which reads the keys `own` itself.
+    /// The scene with what a table says in the place of what it says itself, as far as nothing is
+    /// wrong with it; and what is wrong. For the macro, which reads the keys `own` itself.
     pub fn overlaid(mut self, said: &Node, own: &[&str]) -> (Self, Vec<Diagnostic>) {
         let mut log = Diagnostics::new(&self.file);
         let rows: Vec<&Row<Self>> = KEYS.iter().filter(|row| !OF_MOTION.contains(&row.name)).collect();
@@ -196,7 +200,8 @@ const REALS: &[(&str, Real)] = &[("f64", Real::F64), ("f32", Real::F32)];
 const REFERENCES: &[(&str, Reference)] =
     &[("body", Reference::Body), ("world", Reference::World), ("world_aligned", Reference::WorldAligned)];
 
-/// Keys that say nothing of the code that is generated, and a robot that is known by its name, which only files have.
+/// Keys that say nothing of the code that is generated, and a robot that is known by its name,
+/// which only files have.
 const OF_MOTION: [&str; 6] = ["summary", "robot", "simulation", "initial", "control", "impact"];
 
 /// All keys at the top of a scene, in the order in which they are listed to people.

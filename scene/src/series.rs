@@ -45,7 +45,8 @@ fn at(places: &[At], i: usize) -> At {
 pub(crate) const ROW: &str = "the time and one for each of the columns";
 
 impl Source {
-    /// What can be told of rows in the scene without the robot, of the keys that are `right` by themselves.
+    /// What can be told of rows in the scene without the robot, of the keys that are `right` by
+    /// themselves.
     pub(crate) fn check(&self, key: &str, right: &[&str], log: &mut Diagnostics) {
         let [columns, rows] = ["columns", "rows"].map(|name| right.contains(&name));
         let missing = match (columns && self.columns.is_empty(), rows && self.rows.is_empty()) {
@@ -69,7 +70,8 @@ impl Source {
         }
     }
 
-    /// Each column is there once, by its name; other names of one place only the robot shows, see [`Source::places`].
+    /// Each column is there once, by its name; other names of one place only the robot shows, see
+    /// [`Source::places`].
     pub(crate) fn check_columns(&self, key: &dyn Fn(usize) -> String, log: &mut Diagnostics) {
         let mut seen = HashSet::new();
         for (i, name) in self.columns.iter().enumerate().filter(|(_, name)| !seen.insert(name.as_str())) {
@@ -102,7 +104,8 @@ impl Source {
         }
     }
 
-    /// The table for a robot; columns that are not there are neutral. Without `read` a file is left alone.
+    /// The table for a robot; columns that are not there are neutral. Without `read` a file is left
+    /// alone.
     pub(crate) fn series(&self, model: &Model<f64>, side: Side, read: Option<&mut Reader<'_>>, log: &mut Diagnostics) -> Series {
         let Some(file) = &self.file else {
             let keys: [&Key; 2] = [&|i| format!("control.columns[{i}]"), &|i| format!("control.rows[{i}]")];

@@ -178,7 +178,8 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Simulation>
     (log.count() == before).then_some(simulation)
 }
 
-/// What the settings cannot be, each where all that it is about is `right`: at its key, or else at one with which it does not go.
+/// What the settings cannot be, each where all that it is about is `right`: at its key, or else at
+/// one with which it does not go.
 fn check(settings: &Settings, spot: &Spot<'_>, right: &[&str], log: &mut Diagnostics) {
     for SettingError { key, with, found, right: expected } in settings.problems(ANY_ROBOT) {
         let mut about = iter::once(&key).chain(with);

@@ -1,4 +1,5 @@
-//! Tables of keys, one row each, from which scenes are read and their documentation is made; and the types of values.
+//! Tables of keys, one row each, from which scenes are read and their documentation is made; and
+//! the types of values.
 
 use articulated_core::diagnostic::{At, Code, Diagnostics, quote};
 use articulated_core::effect::Range;
@@ -215,7 +216,8 @@ impl<'a> Spot<'a> {
         self.word_like(log, words, |found| found)
     }
 
-    /// One of some words; the one to suggest for another is that nearest to what `meant` makes of it.
+    /// One of some words; the one to suggest for another is that nearest to what `meant` makes of
+    /// it.
     pub(crate) fn word_like<W: Copy>(&self, log: &mut Diagnostics, words: &[(&'static str, W)], meant: impl Fn(&str) -> &str) -> Option<W> {
         let listed = words.iter().map(|(word, _)| format!("{word:?}")).collect::<Vec<_>>().join(", ");
         let found = self.text(log, &format!("one of {listed}"))?;

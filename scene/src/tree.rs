@@ -1,4 +1,5 @@
-//! A scene before it is understood: tables, lists, numbers and words, each with its place. TOML and the macro's tokens both become this.
+//! A scene before it is understood: tables, lists, numbers and words, each with its place. TOML and
+//! the macro's tokens both become this.
 
 use articulated_core::diagnostic::{At, quote};
 

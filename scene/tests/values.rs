@@ -8,7 +8,8 @@ use articulated_core::model::{FLOATING_BASE, Model};
 use articulated_core::spatial::{from_quaternion, from_rpy};
 use articulated_scene::{Controller, Edited, Output, Scene, Settings, Stiffness};
 
-/// Two hinges, the second of which has limits, damping and an effort; a ball; a slide that follows the first; a link without mass at its end.
+/// Two hinges, the second of which has limits, damping and an effort; a ball; a slide that follows
+/// the first; a link without mass at its end.
 const ROBOT: &str = r#"<robot name="r">
   <link name="trunk"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
   <link name="a"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
@@ -118,7 +119,8 @@ fn what_is_asked_of_all_is_had_by_those_that_can() {
     assert!(geared.len() == 1 && geared[0].2[..3] == [0.7, 30.0, 10.0], "{geared:?}");
     let own = on("[effects.motor.\"*\"]\nfrom = \"urdf\"\ngear = 10\ntorque = 2");
     assert_eq!(own.iter().map(|m| &m.2[..2]).collect::<Vec<_>>(), [[2.0, 30.0]]);
-    // Off where a name says so, though all have it, and a number that nobody gives is not looked for where nobody said.
+    // Off where a name says so, though all have it, and a number that nobody gives is not looked
+    // for where nobody said.
     assert_eq!(on("[effects.damping]\n\"*\" = 1\ntwo = \"off\"").iter().map(|d| d.1.as_str()).collect::<Vec<_>>(), ["one", "three"]);
     let description = robot();
     let edited = Edited { description: &description, base: Base::Fixed, unused: &[], shafts: &[] };

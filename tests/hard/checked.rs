@@ -146,7 +146,8 @@ fn a_wrong_length_is_an_error_of_the_solver() {
     assert!(solve(3, 3).is_ok());
 }
 
-/// Against all eigenvalues; an estimate of the 1-norm's condition number is within a factor n of that of the 2-norm.
+/// Against all eigenvalues; an estimate of the 1-norm's condition number is within a factor n of
+/// that of the 2-norm.
 #[test]
 fn the_estimate_of_the_condition_number_is_near_it() {
     for n in [1, 2, 5, 12, 30] {

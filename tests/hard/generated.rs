@@ -10,13 +10,15 @@ fn hold(pairs: &[(&str, Description, Precision)]) {
     crate::hold(&rows);
 }
 
-/// No pass of the generator may cost a robot its digits: errors stay where they are for generic code.
+/// No pass of the generator may cost a robot its digits: errors stay where they are for generic
+/// code.
 #[test]
 fn generated_code_of_hard_robots_keeps_the_limits() {
     hold(&hard().into_iter().map(|(name, robot)| (name, robot, Precision::default())).collect::<Vec<_>>());
 }
 
-/// Every level, each on a robot with another kind of trouble: small ones, since code of sums of two doubles is long.
+/// Every level, each on a robot with another kind of trouble: small ones, since code of sums of two
+/// doubles is long.
 #[test]
 fn code_of_every_level_keeps_what_the_level_promises() {
     let small: Vec<(&str, Description)> = hard().into_iter().filter(|(_, robot)| robot.joints.len() <= 4).collect();

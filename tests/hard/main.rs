@@ -1,4 +1,5 @@
-//! The corpus of hard cases: every row of every chapter keeps its limit. `articulated stress` prints the same rows as a report.
+//! The corpus of hard cases: every row of every chapter keeps its limit. `articulated stress`
+//! prints the same rows as a report.
 
 mod checked;
 mod generated;

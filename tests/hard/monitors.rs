@@ -6,7 +6,8 @@ use articulated_core::monitor::{pivot_cancellation, placement_orthonormality, qu
 use articulated_lab::stress::robots::{Shape, built, chain, rods};
 use articulated_tests::case::Case;
 
-/// A straight row of N alike rods at rest, level: the base's joint bears N weights, N² times the moment of half a rod.
+/// A straight row of N alike rods at rest, level: the base's joint bears N weights, N² times the
+/// moment of half a rod.
 #[test]
 fn wrenches_grow_with_the_number_of_bodies_and_moments_with_its_square() {
     let n = 10;

@@ -1,4 +1,5 @@
-//! Batches of generated modules as a program: it is fed with states, holds each function to the laws of batches, and gives the results.
+//! Batches of generated modules as a program: it is fed with states, holds each function to the
+//! laws of batches, and gives the results.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -16,7 +17,8 @@ pub const STATES: usize = 37;
 pub struct BatchProgram(Program);
 
 impl BatchProgram {
-    /// Compiles. `set` is the module of the instruction set that is taken, whatever the processor has; `flags` go to the compiler.
+    /// Compiles. `set` is the module of the instruction set that is taken, whatever the processor
+    /// has; `flags` go to the compiler.
     ///
     /// # Panics
     /// If the compiler refuses the program: its message is printed.
@@ -27,7 +29,8 @@ impl BatchProgram {
         Self(Program::of(&named, &main(&named), flags))
     }
 
-    /// Results for [`STATES`] states, each a list of arguments in the registry's order; `f32` are given as what they are.
+    /// Results for [`STATES`] states, each a list of arguments in the registry's order; `f32` are
+    /// given as what they are.
     ///
     /// # Panics
     /// If a law of batches does not hold.
@@ -42,7 +45,8 @@ impl BatchProgram {
     }
 }
 
-/// The source with one instruction set chosen: modules of the others, and the calls of them, are not compiled.
+/// The source with one instruction set chosen: modules of the others, and the calls of them, are
+/// not compiled.
 fn only(set: &str, source: &str) -> String {
     let mut out = String::with_capacity(source.len());
     let mut lines = source.lines().peekable();

@@ -1,7 +1,8 @@
 //! What the tests of the workspace share.
 //!
-//! Robots, states and yardsticks come from `articulated-test-support`; the laws of the core are tests of the core
-//! (`runtime/core/tests/laws`). Generated code is compiled and run as a user's program would be ([`program`]).
+//! Robots, states and yardsticks come from `articulated-test-support`; the laws of the core are
+//! tests of the core (`runtime/core/tests/laws`). Generated code is compiled and run as a user's
+//! program would be ([`program`]).
 
 pub use articulated_test_support::{case, jet, measure, random, random_effects, random_limbs, random_tree, rigid, virtual_power};
 

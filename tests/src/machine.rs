@@ -1,4 +1,5 @@
-//! The machine that generated programs are compiled for and run on: this one, or a 64-bit Arm that is emulated (`tests/arm.sh`).
+//! The machine that generated programs are compiled for and run on: this one, or a 64-bit Arm that
+//! is emulated (`tests/arm.sh`).
 
 use std::path::Path;
 use std::process::Command;
@@ -20,7 +21,8 @@ pub fn is_x86_64() -> bool {
     cfg!(target_arch = "x86_64") && emulator().is_none()
 }
 
-/// A compiler that is given these flags; what it makes for another machine needs no linker and no library of that machine's.
+/// A compiler that is given these flags; what it makes for another machine needs no linker and no
+/// library of that machine's.
 pub(crate) fn compiler(flags: &[&str]) -> Command {
     let mut command = Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
     if emulator().is_none() {

@@ -1,4 +1,5 @@
-//! Generated modules as a program: compiled by the user's compiler, fed with states, and asked for results.
+//! Generated modules as a program: compiled by the user's compiler, fed with states, and asked for
+//! results.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -21,7 +22,8 @@ pub struct Program {
 }
 
 impl Program {
-    /// Compiles; `flags` go to the compiler, and a warning is an error. The modules must be generated without a runtime crate and their names must be identifiers.
+    /// Compiles; `flags` go to the compiler, and a warning is an error. The modules must be
+    /// generated without a runtime crate and their names must be identifiers.
     ///
     /// # Panics
     /// If the compiler refuses the program: its message is printed.

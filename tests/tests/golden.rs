@@ -35,7 +35,8 @@ fn the_module_of_a_pendulum() {
     golden::check("simple_pendulum.rs", &generate(&request).unwrap().source);
 }
 
-/// Operations of every function of every bundled robot, functions of frames for its last link. A rise needs a reason, in the message of the commit that renews the file.
+/// Operations of every function of every bundled robot, functions of frames for its last link. A
+/// rise needs a reason, in the message of the commit that renews the file.
 #[test]
 fn the_ledger_of_operations() {
     let mut out = String::from(
@@ -46,7 +47,8 @@ fn the_ledger_of_operations() {
     let _ = writeln!(out, "{:<18}{:<44}{:>6}{:>6}{:>6}{:>6}{:>6}{:>6}", "robot", "function", "mul", "add", "ins", "trig", "depth", "lanes");
     for robot in ROBOTS {
         let generated = generated(robot.name);
-        // What is not generated and yet has a cost: forward dynamics that looks at its pivots, beside the same that does not.
+        // What is not generated and yet has a cost: forward dynamics that looks at its pivots,
+        // beside the same that does not.
         let checked = checked_cost(&generated.model);
         for entry in generated.ledger.functions.iter().chain(&checked) {
             let c = entry.emitted();

@@ -123,7 +123,8 @@ fn sources(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// The files that a source text includes outside of `crate_folder`. Its paths are relative to the file.
+/// The files that a source text includes outside of `crate_folder`. Its paths are relative to the
+/// file.
 fn included_outside(file: &Path, source: &str, crate_folder: &Path) -> Vec<String> {
     let mut outside = Vec::new();
     for start in ["include_str!(", "include_bytes!(", "include!(", "#[path = "] {

@@ -1,4 +1,5 @@
-//! Many states over several threads: the same bits as in one, every state reported, nothing allocated for it.
+//! Many states over several threads: the same bits as in one, every state reported, nothing
+//! allocated for it.
 #![allow(unsafe_code)]
 // Why: to count allocations, the allocator has to be wrapped.
 
@@ -151,8 +152,9 @@ fn no_state_is_allocated_for() {
         });
         ALLOCATIONS.load(Ordering::Relaxed) - before
     };
-    // What the pool allocates for its queues, and for a thread when it first finds work, is little, and no more for a hundred times as many parts: the least of some runs, as a thread may
-    // find none for a while.
+    // What the pool allocates for its queues, and for a thread when it first finds work, is little,
+    // and no more for a hundred times as many parts: the least of some runs, as a thread may find
+    // none for a while.
     let found = [1000, 100_000].map(|n| (0..5).map(|_| allocations(n)).min());
     let found = found.map(Option::unwrap_or_default);
     assert!(found.iter().all(|n| *n <= 8), "{found:?}");

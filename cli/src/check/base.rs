@@ -1,4 +1,5 @@
-//! Base parameters: what joints can feel of the inertial parameters, and what model passes made of them.
+//! Base parameters: what joints can feel of the inertial parameters, and what model passes made of
+//! them.
 
 use articulated_codegen::model_pass::{View, drop_symmetric_rotation};
 use articulated_core::algorithm::{BaseParameter, BodyParameters, Identifiability, base_parameters, identifiable_parameters};
@@ -15,7 +16,8 @@ const MANY: usize = 60;
 pub(super) struct Base {
     /// Ten for each moving link.
     pub(super) parameters: usize,
-    /// Whether joints of several stages (planar, universal) have bodies between that are no links: what is listed of these is of the links beyond, and not all independent.
+    /// Whether joints of several stages (planar, universal) have bodies between that are no links:
+    /// what is listed of these is of the links beyond, and not all independent.
     pub(super) stages: bool,
     /// How many are not zero by regrouping, and how many of those joint torques determine.
     pub(super) regrouped: usize,
@@ -118,7 +120,8 @@ mod tests {
         Base::of(&bundled_model(robot)).unwrap()
     }
 
-    /// 43: Gaz, Cognetti, Oliva, Robuffo Giordano & De Luca, IEEE RA-L 4, 2019. Of the first link only I_zz.
+    /// 43: Gaz, Cognetti, Oliva, Robuffo Giordano & De Luca, IEEE RA-L 4, 2019. Of the first link
+    /// only I_zz.
     #[test]
     fn of_the_panda_43_parameters_are_identifiable() {
         let panda = base("panda_like");
@@ -142,7 +145,8 @@ mod tests {
         assert_eq!([quadruped.parameters, quadruped.regrouped, quadruped.identifiable], [130, 10 + 12 * 7, 10 + 12 * 7]);
     }
 
-    /// The axis of the second leans in the plane across the first, which is turned until that has a zero.
+    /// The axis of the second leans in the plane across the first, which is turned until that has a
+    /// zero.
     #[test]
     fn a_joint_is_turned_by_the_angle_between_the_frames() {
         assert!(base("ur5_like").joints.iter().all(|joint| joint.turned == 0.0));

@@ -71,7 +71,8 @@ fn describe(robot: &Robot, built: &BuiltRobot, report: &mut Report) {
     }
 }
 
-/// Warns of angles that were printed with too few digits to be right angles: code without exact ones is 8 to 16 % slower.
+/// Warns of angles that were printed with too few digits to be right angles: code without exact
+/// ones is 8 to 16 % slower.
 fn warn_of_nearly_right_angles(robot: &Robot, reading: &Reading, report: &mut Report) {
     let near = nearly_right_angles(&reading.description);
     let Some((first, angle)) = near.first() else { return };

@@ -193,7 +193,8 @@ fn link_row(k: usize, link: &Link, model: &Model<f64>) -> LinkRow {
     }
 }
 
-/// The floating base first, then the joints in the order of their coordinates, then those that have none of their own, as the file has them.
+/// The floating base first, then the joints in the order of their coordinates, then those that have
+/// none of their own, as the file has them.
 fn joint_rows(description: &Description, model: &Model<f64>) -> Vec<JointRow> {
     let carried = carried(model);
     let base = model.joints().iter().find(|j| j.name == FLOATING_BASE).map(|j| JointRow {

@@ -1,4 +1,5 @@
-//! What effects cost: code is generated without them, with each of them, and with all of them, and counted or timed.
+//! What effects cost: code is generated without them, with each of them, and with all of them, and
+//! counted or timed.
 
 use articulated_codegen::graph::{Counts, Op};
 use articulated_codegen::{Generated, defined, generate as generate_code, massless};

@@ -22,7 +22,8 @@ pub(crate) struct EffectsArguments {
     /// A bundled scene's name, or the path of a scene
     #[arg(value_name = "SCENE")]
     pub(crate) scene: PathBuf,
-    /// The functions to report costs of, or groups of them [default: inverse_dynamics,forward_dynamics]
+    /// The functions to report costs of, or groups of them
+    /// [default: inverse_dynamics,forward_dynamics]
     #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
     pub(crate) functions: Vec<Names>,
     /// Also measure nanoseconds: compile everything by rustc and time it

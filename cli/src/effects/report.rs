@@ -69,7 +69,8 @@ pub(super) struct Ignored {
     pub(super) line: Option<u32>,
 }
 
-/// What a function costs without effects, what each effect adds by itself, and what all of them add; or what it costs with all of them.
+/// What a function costs without effects, what each effect adds by itself, and what all of them
+/// add; or what it costs with all of them.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Cost {
     pub(super) function: String,
@@ -161,7 +162,8 @@ impl Report {
     }
 }
 
-/// Units are those of a joint that turns or of one that slides; both, as in the manual, of one that does both.
+/// Units are those of a joint that turns or of one that slides; both, as in the manual, of one that
+/// does both.
 fn number(n: &articulated_scene::Number, kind: Option<JointKind>) -> Number {
     let (turning, sliding) = n.unit.split_once('|').unwrap_or((n.unit, n.unit));
     let has = |quantity| kind.is_some_and(|kind| kind.rates().contains(&quantity));

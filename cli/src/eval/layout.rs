@@ -35,7 +35,8 @@ impl Names {
     }
 }
 
-/// A result with its names: objects by joint or link, a list where a joint has several numbers or where a dimension has no names.
+/// A result with its names: objects by joint or link, a list where a joint has several numbers or
+/// where a dimension has no names.
 pub(super) fn labelled(function: &Function<f64>, out: &[f64], model: &Model<f64>) -> Labelled {
     let names: Vec<Names> = function.gives.iter().map(|d| Names::of(*d, model)).collect();
     nested(&names, out)
@@ -75,7 +76,8 @@ fn nested(names: &[Names], out: &[f64]) -> Labelled {
     Labelled::Object(object)
 }
 
-/// A result as a table: names of the rows, all dimensions but the last put together, and of the columns.
+/// A result as a table: names of the rows, all dimensions but the last put together, and of the
+/// columns.
 pub(super) struct Grid {
     pub(super) rows: Vec<String>,
     pub(super) columns: Vec<String>,

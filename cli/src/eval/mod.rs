@@ -21,7 +21,8 @@ use crate::states::{self, State};
 use crate::table::counted;
 use report::{Difference, FunctionReport, Outcome, Report};
 
-/// Generic and generated results may differ by this many units of roundoff of the sum of the magnitudes of their terms.
+/// Generic and generated results may differ by this many units of roundoff of the sum of the
+/// magnitudes of their terms.
 const BOUND: f64 = 128.0;
 
 /// Prints the results of every function on every state.

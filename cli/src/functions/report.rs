@@ -89,8 +89,8 @@ impl FunctionRow {
         }
     }
 
-    /// The algorithm and its source; of a preset what it is a preset of, the function's name between
-    /// two of these quotes.
+    /// The algorithm and its source; of a preset what it is a preset of, the function's name
+    /// between two of these quotes.
     pub(super) fn computed_by(&self, quote: &str) -> String {
         self.preset_of.as_ref().map_or_else(
             || self.algorithm.to_owned(),

@@ -53,7 +53,8 @@ pub(super) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     Ok(status(&rows))
 }
 
-/// What the command ends with: as of a single scene, if one of them ended outside its own tolerance.
+/// What the command ends with: as of a single scene, if one of them ended outside its own
+/// tolerance.
 fn status(rows: &[Row]) -> u8 {
     if rows.iter().all(|row| row.status == "ok") { OK } else { OUT_OF_TOLERANCE }
 }

@@ -27,8 +27,8 @@ pub(crate) struct SimulateArguments {
     /// others
     #[arg(long, value_name = "FILE")]
     pub(crate) mcap: Option<PathBuf>,
-    /// How many MB recording.csv, or the MCAP file, may become; more is refused before the motion begins [default:
-    /// 1000]
+    /// How many MB recording.csv, or the MCAP file, may become; more is refused before the motion
+    /// begins [default: 1000]
     #[arg(long, value_name = "MB", requires = "written", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub(crate) max_output_size: Option<u64>,
     /// By generated code, compiled by rustc, instead of generic code
@@ -49,8 +49,9 @@ pub(crate) struct SimulateArguments {
     /// Absolute tolerance of a step, rad, m, and those a second, instead of the scene's
     #[arg(long, value_name = "TOL", conflicts_with = "step", allow_negative_numbers = true)]
     pub(crate) atol: Option<f64>,
-    /// Instead of writing a motion, measure how fast generated code gets to the scene's end at final errors of 1e-3, 1e-6 and 1e-9, beside
-    /// peer libraries that take steps: one library, or a list of them. They are run: name only what you trust
+    /// Instead of writing a motion, measure how fast generated code gets to the scene's end at
+    /// final errors of 1e-3, 1e-6 and 1e-9, beside peer libraries that take steps: one library, or
+    /// a list of them. They are run: name only what you trust
     #[arg(long, value_name = "FILE", conflicts_with_all = ["output", "mcap", "generated", "integrator", "step", "rtol", "atol", "every"])]
     pub(crate) against: Option<PathBuf>,
     /// Record every so many seconds, instead of what the scene says (of a scene that records its

@@ -66,8 +66,8 @@ impl<'a> Files<'a> {
         }
     }
 
-    /// All files of a motion, of its ends alone without what draws it; their names go into the summary,
-    /// which is the last of them.
+    /// All files of a motion, of its ends alone without what draws it; their names go into the
+    /// summary, which is the last of them.
     fn write_all(&self, session: &Session, motion: &Motion, summary: &mut Summary, folder: &Path) -> Result<(), Failure> {
         let recording = &motion.recording;
         let drawn = if self.ends { None } else { Some(self.drawn(session, motion, summary)?) };

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use articulated_lab::plot::width;
 
-/// A text that is no wider than `most`, with … for what does not fit, in its middle: most names differ at their ends.
+/// A text that is no wider than `most`, with … for what does not fit, in its middle: most names
+/// differ at their ends.
 fn fitted(text: &str, size: f64, most: f64) -> String {
     if width(text, size) <= most {
         return text.to_owned();

@@ -1,4 +1,5 @@
-//! A scene's motion as the command runs it: with warnings, progress, and the names that its outputs need.
+//! A scene's motion as the command runs it: with warnings, progress, and the names that its outputs
+//! need.
 
 use std::path::Path;
 use std::time::Duration;
@@ -62,7 +63,8 @@ fn requested_events(session: &Session) -> Result<Vec<String>, Failure> {
     Ok(motion.unavailable_events().iter().map(ToString::to_string).collect())
 }
 
-/// Whether torques determine accelerations at all. What generated code would be refused for, generic code is.
+/// Whether torques determine accelerations at all. What generated code would be refused for,
+/// generic code is.
 pub(super) fn solvable(session: &Session) -> Result<(), Failure> {
     let (file, model) = (&session.request.file, &session.model);
     Ok(articulated_codegen::defined(file, model, &articulated_codegen::massless(model), FunctionId::forward_dynamics.row::<f64>())?)

@@ -324,8 +324,8 @@ struct Clock {
     title: String,
 }
 
-/// A motion that starts this many of its lengths after 0 gets tick labels relative to its start. Otherwise
-/// all labels would be alike but for their last digits.
+/// A motion that starts this many of its lengths after 0 gets tick labels relative to its start.
+/// Otherwise all labels would be alike but for their last digits.
 const FAR: f64 = 1e4;
 
 impl Clock {

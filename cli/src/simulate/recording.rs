@@ -1,4 +1,5 @@
-//! A motion as its outputs need it: numbers at times, with the names and units of what they belong to.
+//! A motion as its outputs need it: numbers at times, with the names and units of what they belong
+//! to.
 
 use articulated_core::description::{JointKind, Quantity};
 use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
@@ -8,7 +9,8 @@ use serde::Serialize;
 /// A coordinate or a rate: whose it is, and in what unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Named {
-    /// The joint's name, with the number of the coordinate where the joint has several: `elbow`, `base[3]`.
+    /// The joint's name, with the number of the coordinate where the joint has several: `elbow`,
+    /// `base[3]`.
     pub(crate) name: String,
     /// For people: `elbow`, `base y`.
     pub(crate) label: String,
@@ -57,7 +59,8 @@ impl From<Occurrence> for EventRecord {
     }
 }
 
-/// A motion at the times of its output. Vectors of vectors are one behind the other, one of each a time.
+/// A motion at the times of its output. Vectors of vectors are one behind the other, one of each a
+/// time.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Recording {
     /// The coordinates.
@@ -82,9 +85,11 @@ pub(crate) struct Recording {
     pub(crate) work: Vec<f64>,
     /// Of friction, damping and drag since the start, J: negative, since they take energy.
     pub(crate) dissipated: Vec<f64>,
-    /// Of events that map the state since the start, J: negative where they take energy, as a blow does.
+    /// Of events that map the state since the start, J: negative where they take energy, as a blow
+    /// does.
     pub(crate) from_events: Vec<f64>,
-    /// Angular momentum about the centre of mass, then linear momentum, in axes of the world frame: kg·m²/s, kg·m/s.
+    /// Angular momentum about the centre of mass, then linear momentum, in axes of the world frame:
+    /// kg·m²/s, kg·m/s.
     pub(crate) momentum: Vec<[f64; 6]>,
     /// In the order of their times.
     pub(crate) events: Vec<EventRecord>,
@@ -113,7 +118,8 @@ impl Recording {
         self.kinetic.iter().zip(&self.potential).map(|(t, u)| t + u).collect()
     }
 
-    /// What the energy balance misses at each time, J: (T + U) − (T + U)₀ − work − dissipated − what events brought.
+    /// What the energy balance misses at each time, J: (T + U) − (T + U)₀ − work − dissipated −
+    /// what events brought.
     pub(crate) fn imbalance(&self) -> Vec<f64> {
         let energy = self.energy();
         let start = energy.first().copied().unwrap_or(0.0);
@@ -153,7 +159,8 @@ impl Parts {
     }
 }
 
-/// Numbers of a joint, by what they are called and what they are of; `units`: of a turn and of a way.
+/// Numbers of a joint, by what they are called and what they are of; `units`: of a turn and of a
+/// way.
 fn named(joint: &str, parts: &[&str], of: &[Quantity], units: [&'static str; 2]) -> Vec<Named> {
     let single = of.len() == 1;
     let name = |k: usize| if single { joint.to_owned() } else { format!("{joint}[{k}]") };

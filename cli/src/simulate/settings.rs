@@ -29,7 +29,8 @@ pub(super) fn of(session: &Session, arguments: &SimulateArguments) -> Result<Set
     Ok(settings)
 }
 
-/// Fixed steps of which a motion makes less than it needs to its end, unless an event ends it before.
+/// Fixed steps of which a motion makes less than it needs to its end, unless an event ends it
+/// before.
 fn too_many_steps(settings: &Settings) -> Option<String> {
     let (step, most) = (settings.step?, settings.max_steps);
     let (steps, reached) = ((settings.end - settings.start) / step, settings.start + step * most as f64);
@@ -41,7 +42,8 @@ fn too_many_steps(settings: &Settings) -> Option<String> {
     (steps > most as f64 * (1.0 + 1e-9)).then(message)
 }
 
-/// The integrator and what chooses its steps. Errors: an option that has no part in it, and steps that nothing chooses.
+/// The integrator and what chooses its steps. Errors: an option that has no part in it, and steps
+/// that nothing chooses.
 fn choose_steps(settings: &mut Settings, a: &SimulateArguments, file: &str) -> Result<(), Failure> {
     settings.step = a.step.or(settings.step);
     if let Some(row) = a.integrator.as_deref().and_then(integrator) {

@@ -113,7 +113,8 @@ pub(super) struct Energy {
     pub(super) relative_imbalance: f64,
 }
 
-/// About the centre of mass, world axes: three of angular momentum, kg·m²/s, then three of linear momentum, kg·m/s.
+/// About the centre of mass, world axes: three of angular momentum, kg·m²/s, then three of linear
+/// momentum, kg·m/s.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(super) struct Momentum {
     pub(super) start: [f64; 6],
@@ -251,7 +252,8 @@ const NOT_KEPT: f64 = 0.1;
 const LOOSE: f64 = 1e-4;
 
 impl Summary {
-    /// A warning if the balance of energy is not kept, or only loosely by steps that tolerances choose.
+    /// A warning if the balance of energy is not kept, or only loosely by steps that tolerances
+    /// choose.
     pub(super) fn out_of_balance(&self) -> Option<String> {
         let part = self.energy.relative_imbalance;
         if !part.is_finite() {

@@ -1,4 +1,5 @@
-//! What moves the robots of scenes: tables that are sampled, targets that turn, and steps that are too long.
+//! What moves the robots of scenes: tables that are sampled, targets that turn, and steps that are
+//! too long.
 
 use crate::scenes::{Motion, largest};
 use crate::{File, run};
@@ -20,7 +21,8 @@ fn ball() -> File {
     robot("<joint name='j' type='spherical'><parent link='base'/><child link='body'/></joint>")
 }
 
-/// q̈ = u/I with u held from sample to sample is a recursion: rows of the table that lie between samples have no part in it.
+/// q̈ = u/I with u held from sample to sample is a recursion: rows of the table that lie between
+/// samples have no part in it.
 #[test]
 fn a_table_that_is_sampled_is_the_recursion_of_its_samples() {
     let (urdf, period, spacing, inertia) = (hinge(), 0.025, 0.013, 0.1);
@@ -52,7 +54,8 @@ fn a_table_that_is_sampled_is_the_recursion_of_its_samples() {
     assert!((found[0] - q).abs() < 1e-9 && (found[1] - v).abs() < 1e-9, "{found:?}, expected {q} {v}");
 }
 
-/// A body that already turns as the target does needs no torque, whichever of its two quaternions the last row has.
+/// A body that already turns as the target does needs no torque, whichever of its two quaternions
+/// the last row has.
 #[test]
 fn a_target_turns_the_shortest_way_at_one_rate() {
     let urdf = ball();
@@ -93,7 +96,8 @@ fn a_target_that_is_no_turn_is_an_error() {
     assert!(status == 1 && !text.contains("rows[0]"), "{text}");
 }
 
-/// Steps of a hundredth of a second on a stop of 1e9 N·m/rad, whose half period is fifty microseconds: nothing is unstable, and nothing is right.
+/// Steps of a hundredth of a second on a stop of 1e9 N·m/rad, whose half period is fifty
+/// microseconds: nothing is unstable, and nothing is right.
 #[test]
 fn a_motion_without_balance_of_energy_is_told() {
     let urdf = robot(

@@ -24,7 +24,8 @@ fn every_effect_is_on_or_off_and_what_each_adds_is_counted() {
     // The first joint's acceleration has a constant for a factor already.
     assert_eq!(of("armature")["operations"]["instructions"], 6);
     assert!(of("gravity")["operations"]["additions"].as_i64().unwrap() > 0);
-    // The same operations; of how many an addition goes with a multiplication in one instruction depends on where sums are cut.
+    // The same operations; of how many an addition goes with a multiplication in one instruction
+    // depends on where sums are cut.
     for kind in ["multiplications", "additions"] {
         let each = inverse.iter().filter(|a| a["what"] != "gravity" && a["what"] != "all together");
         let sum: i64 = each.map(|a| a["operations"][kind].as_i64().unwrap()).sum();
@@ -82,7 +83,8 @@ fn a_function_that_only_effects_define_is_told_with_all_of_them() {
     assert!(none.status == 1 && none.err.contains("forward_dynamics: found no inertia of its own for joint j, expected"), "{}", none.err);
 }
 
-/// One number is of the slides and of the turns of a planar or a free joint: it is not told as that of an angle.
+/// One number is of the slides and of the turns of a planar or a free joint: it is not told as that
+/// of an angle.
 #[test]
 fn numbers_have_the_units_of_what_their_joint_does() {
     let joint = |name: &str, kind: &str, parent: &str, child: &str| {

@@ -21,7 +21,8 @@ fn the_pendulum_is_its_closed_form_in_both_ways() {
     assert_eq!(json["functions"][1]["function"], "gravity_torque");
 }
 
-/// A frame that no joint can move along y or turn about x but by way of z: zeros that generated code computes in other axes are zeros but for rounding.
+/// A frame that no joint can move along y or turn about x but by way of z: zeros that generated
+/// code computes in other axes are zeros but for rounding.
 #[test]
 fn a_result_of_zeros_may_be_off_by_a_rounding_of_its_neighbours() {
     let body =
@@ -43,7 +44,8 @@ fn a_result_of_zeros_may_be_off_by_a_rounding_of_its_neighbours() {
     assert!(difference["in_units_of_roundoff"].as_f64().unwrap() < 16.0, "{difference}");
 }
 
-/// A lever that vanishes at q = 0, where frames were turned by a seventh of a turn: zero but for rounding.
+/// A lever that vanishes at q = 0, where frames were turned by a seventh of a turn: zero but for
+/// rounding.
 #[test]
 fn where_levers_vanish_frames_that_were_turned_may_round() {
     let body = |at: &str| {
@@ -221,7 +223,8 @@ fn every_function_has_a_result_by_name() {
     assert!(text.lines_with("largest difference") == all.len() && text.lines_with(&format!("[1] {cart}")) >= 1, "{}", text.out);
 }
 
-/// Turned about z, y, z with y = 0 the first and the last axis are one: M is singular there, and next to it as good as that.
+/// Turned about z, y, z with y = 0 the first and the last axis are one: M is singular there, and
+/// next to it as good as that.
 #[test]
 fn results_of_a_singular_mass_matrix_are_told() {
     let joint = |k: usize, axis: &str| {
@@ -328,7 +331,8 @@ fn a_robot_that_no_matrix_fits_is_refused() {
     }
 }
 
-/// Files as they are shipped, against closed forms: a hinge about y through the origin has M = I_yy + m (x² + z²), summed over what it carries.
+/// Files as they are shipped, against closed forms: a hinge about y through the origin has M = I_yy
+/// + m (x² + z²), summed over what it carries.
 #[test]
 fn robots_of_shipped_files_have_the_values_of_closed_forms() {
     let body = |name: &str, mass: &str, at: &str, moments: [&str; 4]| {
@@ -352,7 +356,8 @@ fn robots_of_shipped_files_have_the_values_of_closed_forms() {
         number.unwrap_or_else(|| panic!("{given}"))
     };
     let near = |found: f64, right: f64| assert!((found / right - 1.0).abs() < 1e-14, "{found} {right}");
-    // A fixed joint that kept its <mimic>: 0.02 + 1.5·0.2² + 0.001 + 0.25·(0.4² + 0.05²), and −9.81·(1.5·0.2 + 0.25·0.4).
+    // A fixed joint that kept its <mimic>: 0.02 + 1.5·0.2² + 0.001 + 0.25·(0.4² + 0.05²), and
+    // −9.81·(1.5·0.2 + 0.25·0.4).
     let lamp = [
         body("arm", "1.5", "0.2 0 0", ["0.01", "0", "0.02", "0.02"]),
         body("lamp", "0.25", "0 0 0.05", ["0.001", "0", "0.001", "0.001"]),
@@ -367,7 +372,8 @@ fn robots_of_shipped_files_have_the_values_of_closed_forms() {
         joint("hinge", "continuous", ["ground", "bob"], "<axis xyz='0 1 0'/>"),
     ];
     near(value("1.0", &point, "mass_matrix"), 1.2 * 0.0185 * 0.0185);
-    // A quarter turn about x as a quaternion: the axis z of the joint is −y of the ground, gravity pulls along −y of the joint: τ = m g x.
+    // A quarter turn about x as a quaternion: the axis z of the joint is −y of the ground, gravity
+    // pulls along −y of the joint: τ = m g x.
     let turned = [
         body("bob", "2", "0.3 0 0", ["0.01", "0", "0.01", "0.01"]),
         joint(

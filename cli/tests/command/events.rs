@@ -24,7 +24,8 @@ fn told(summary: &serde_json::Value) -> Vec<String> {
 const LEADER: &str = "<joint name='x' type='prismatic'><parent link='g'/><child link='a'/><axis xyz='1 0 0'/>
     <limit lower='-9' upper='9' effort='1' velocity='1'/></joint>";
 
-/// A joint that follows another has stops and friction of its own, at its own coordinate and rate: y = 0.5 − 2 x.
+/// A joint that follows another has stops and friction of its own, at its own coordinate and rate:
+/// y = 0.5 − 2 x.
 #[test]
 fn joints_that_follow_come_to_their_limits_and_stick() {
     let follower = "<joint name='y' type='prismatic'><parent link='g'/><child link='b'/><axis xyz='1 0 0'/>
@@ -90,7 +91,8 @@ fn a_robot_of_rotors_alone_moves() {
     assert!(!momentum.contains("null"), "{momentum}");
 }
 
-/// Generated code of a motion has hardly any frames; a link may have another name in Rust all the same.
+/// Generated code of a motion has hardly any frames; a link may have another name in Rust all the
+/// same.
 #[test]
 fn links_that_a_motion_does_not_need_may_be_renamed() {
     let text = "robot = \"ur5_like\"\nrename = { flange = \"FLANGE\" }\n[simulation]\nend = 0.01\n";

@@ -110,7 +110,8 @@ fn an_arm_with_friction_falls_and_comes_to_rest_within_its_bounds() {
     }
 }
 
-/// A free head would give (1 + e)/(1 + m_b/m_h) = 1.49 of its speed; the shaft behind it gives a little more, a wall 1 + e.
+/// A free head would give (1 + e)/(1 + m_b/m_h) = 1.49 of its speed; the shaft behind it gives a
+/// little more, a wall 1 + e.
 #[test]
 fn a_golf_ball_leaves_faster_than_the_head_that_hits_it() {
     let motion = Motion::of("golf_swing", &["--generated", "--every", "0.01"]);
@@ -119,7 +120,8 @@ fn a_golf_ball_leaves_faster_than_the_head_that_hits_it() {
     let what = hit["what"].as_str().unwrap();
     let speed: f64 = what.split("leaves at ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!(speed > 40.0 && speed < 80.0 && time > 0.1, "{what} at {time}");
-    // The impulse m_b v_ball is what all else lost along y: weight and feet give some tenths of 1e-3 N·s in the microsecond around.
+    // The impulse m_b v_ball is what all else lost along y: weight and feet give some tenths of
+    // 1e-3 N·s in the microsecond around.
     let toml = articulated_models::scene("golf_swing").unwrap().toml;
     let around = toml.replace("output = 2e-3", &format!("output = [0.0, {:?}, {:?}]", time - 5e-7, time + 5e-7));
     assert_ne!(toml, around);
@@ -134,7 +136,8 @@ fn a_golf_ball_leaves_faster_than_the_head_that_hits_it() {
     assert_eq!(blow.column("from_events").iter().map(|e| *e < 0.0).collect::<Vec<_>>(), [false, false, true]);
 }
 
-/// The bob comes down at once and passes the lowest point forth and back: one blow there. What goes faster than the bob is not hit.
+/// The bob comes down at once and passes the lowest point forth and back: one blow there. What goes
+/// faster than the bob is not hit.
 #[test]
 fn a_ball_is_hit_once_and_only_by_what_moves_towards_it() {
     let file = File::new("pendulum.urdf", articulated_models::robot("simple_pendulum").unwrap().urdf.as_bytes());
@@ -159,7 +162,9 @@ fn a_ball_is_hit_once_and_only_by_what_moves_towards_it() {
     assert_eq!((missed, got.is_null()), (vec!["bob is not moving towards the ball, which keeps 40.0000 m/s".to_owned()], true));
 }
 
-/// A pendulum without weight that turns at 2 rad/s, its bob a metre below the hinge: the ball is hit where it is or when it is said, at the start too, and what the blow makes of the motion is told where it ends with it.
+/// A pendulum without weight that turns at 2 rad/s, its bob a metre below the hinge: the ball is
+/// hit where it is or when it is said, at the start too, and what the blow makes of the motion is
+/// told where it ends with it.
 #[test]
 fn a_ball_is_hit_at_the_start_and_not_outside_of_the_motion() {
     let file = File::new("pendulum.urdf", articulated_models::robot("simple_pendulum").unwrap().urdf.as_bytes());

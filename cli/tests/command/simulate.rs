@@ -539,7 +539,8 @@ fn levels_of_single_precision_are_refused_where_states_are_doubles() {
     }
 }
 
-/// A tolerance does not choose a fixed step: it is no use to say it, unless the integrator goes too.
+/// A tolerance does not choose a fixed step: it is no use to say it, unless the integrator goes
+/// too.
 #[test]
 fn tolerances_of_fixed_steps_are_refused() {
     let text = "robot = \"simple_pendulum\"\n[simulation]\nend = 0.1\nintegrator = \"rk4\"\nstep = 0.01\n";

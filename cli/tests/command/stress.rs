@@ -61,7 +61,8 @@ fn a_robot_of_ones_own_is_judged_and_watched() {
     assert_eq!(whole["notes"], serde_json::json!([]));
 }
 
-/// A round tool about its own axis has velocity forces that cancel to the last digit: what is left of them is no measure.
+/// A round tool about its own axis has velocity forces that cancel to the last digit: what is left
+/// of them is no measure.
 #[test]
 fn what_cancels_to_nothing_is_measured_by_its_terms() {
     let link = |name: &str| {
@@ -81,14 +82,16 @@ fn what_cancels_to_nothing_is_measured_by_its_terms() {
     assert_eq!(ended.status, 0, "{}{}", ended.out, ended.err);
 }
 
-/// Magnitudes of terms have those of effects among them: stops are stiff, and far beyond them forces are large.
+/// Magnitudes of terms have those of effects among them: stops are stiff, and far beyond them
+/// forces are large.
 #[test]
 fn a_scene_with_effects_is_within_its_limits() {
     let ended = run(&["stress", "arm"]);
     assert_eq!(ended.status, 0, "{}", ended.out);
 }
 
-/// Two links that stay level: M and h are what two joints leave of each other. And one whose angle is a sum itself.
+/// Two links that stay level: M and h are what two joints leave of each other. And one whose angle
+/// is a sum itself.
 const FOLLOWED: &str = "<robot name='arm'><link name='base'/>LINKS\
     <joint name='shoulder' type='continuous'><parent link='base'/><child link='l1'/><axis xyz='0 -1 0'/></joint>\
     <joint name='elbow' type='continuous'><parent link='l1'/><child link='l2'/><origin xyz='0.5 0 0'/><axis xyz='0 -1 0'/>MIMIC</joint></robot>";
@@ -111,7 +114,8 @@ fn what_joints_that_follow_leave_of_each_other_is_within_its_limits() {
     }
 }
 
-/// A motor gives less than it is asked for, and drag is nearly what Coriolis forces are: in the library and in generated code.
+/// A motor gives less than it is asked for, and drag is nearly what Coriolis forces are: in the
+/// library and in generated code.
 #[test]
 fn motors_and_drag_are_within_their_limits() {
     let urdf = File::new("arm.urdf", arm("").as_bytes());

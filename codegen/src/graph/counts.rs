@@ -42,8 +42,9 @@ impl Counts {
         self.of(Op::Atan2)
     }
 
-    /// Floating-point instructions without sines, cosines and arctangents: additions, multiplications, multiply-adds (one each), divisions, roots, signs,
-    /// comparisons and selections.
+    /// Floating-point instructions without sines, cosines and arctangents: additions,
+    /// multiplications, multiply-adds (one each), divisions, roots, signs, comparisons and
+    /// selections.
     pub fn instructions(&self) -> u64 {
         let all = self.0.iter().enumerate().filter(|(k, _)| OPS[*k].arity > 0);
         all.map(|(_, n)| n).sum::<u64>() - self.trigonometric() - self.arctangents()

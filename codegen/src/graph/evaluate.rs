@@ -4,7 +4,8 @@ use articulated_core::Scalar;
 
 use super::{Graph, MOST, Node, NodeId, Op};
 
-/// The value of an operation on numbers. Leaves, and what takes lanes together, are none: they give what they are given.
+/// The value of an operation on numbers. Leaves, and what takes lanes together, are none: they give
+/// what they are given.
 pub(crate) fn value<S: Scalar>(op: Op, [a, b, c]: [S; 3]) -> S {
     match op {
         Op::Add => a + b,
@@ -27,12 +28,14 @@ pub(crate) fn value<S: Scalar>(op: Op, [a, b, c]: [S; 3]) -> S {
 }
 
 impl Graph {
-    /// The results in doubles; `input(argument, index)` gives the inputs. Of results with several lanes, the first.
+    /// The results in doubles; `input(argument, index)` gives the inputs. Of results with several
+    /// lanes, the first.
     pub fn evaluate(&self, input: impl Fn(usize, usize) -> f64) -> Vec<f64> {
         self.evaluate_as(input)
     }
 
-    /// The results, computed node by node in `S`; `input(argument, index)` gives the inputs. Of results with several lanes, the first. A multiply-add is a product and a sum.
+    /// The results, computed node by node in `S`; `input(argument, index)` gives the inputs. Of
+    /// results with several lanes, the first. A multiply-add is a product and a sum.
     pub fn evaluate_as<S: Scalar>(&self, input: impl Fn(usize, usize) -> S) -> Vec<S> {
         if self.lanes().width == 1 { self.evaluate_in_lanes::<S, 1>(input) } else { self.evaluate_in_lanes::<S, MOST>(input) }
     }

@@ -1,6 +1,7 @@
 //! Folding where nodes are born: a URDF's zeros and ones never become nodes.
 //!
-//! Each rule is exact in real arithmetic for finite values; those that are not exact in floating point only leave out a rounding.
+//! Each rule is exact in real arithmetic for finite values; those that are not exact in floating
+//! point only leave out a rounding.
 
 use super::evaluate::value;
 use super::{Graph, MOST, NodeId, Op, Value};
@@ -100,7 +101,8 @@ fn sub(g: &mut Graph, a: NodeId, b: NodeId) -> NodeId {
 /// A node with a sign, true for minus.
 type Signed = (bool, NodeId);
 
-/// a ± b where a and b are sums of two terms, or one, and a term of one is that of the other with the opposite sign: what is left of the two.
+/// a ± b where a and b are sums of two terms, or one, and a term of one is that of the other with
+/// the opposite sign: what is left of the two.
 fn without_common(g: &mut Graph, a: NodeId, b: NodeId, minus: bool) -> Option<NodeId> {
     let (left, right) = (terms(g, false, a), terms(g, minus, b));
     let opposite = |x: &Signed, y: &Signed| x.0 != y.0 && x.1 == y.1;

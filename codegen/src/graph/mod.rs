@@ -23,8 +23,9 @@ impl NodeId {
     }
 }
 
-/// An operation with its operands. A constant holds its bits in `args`, an input the number of the argument and the index in it; a lane constant its number in
-/// [`Lanes`], a lane input the number of the argument and its number there.
+/// An operation with its operands. A constant holds its bits in `args`, an input the number of the
+/// argument and the index in it; a lane constant its number in [`Lanes`], a lane input the number
+/// of the argument and its number there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Node {
     /// The operation.
@@ -137,13 +138,15 @@ impl Graph {
         }
     }
 
-    /// The node for an operation on nodes, folded: it may be a simpler one, or one that is there already.
+    /// The node for an operation on nodes, folded: it may be a simpler one, or one that is there
+    /// already.
     pub fn apply(&mut self, op: Op, operands: &[NodeId]) -> NodeId {
         self.requested.add(op, 1);
         fold::fold(self, op, operands)
     }
 
-    /// The node for exactly this operation on these operands, shared if it is there already. No folding.
+    /// The node for exactly this operation on these operands, shared if it is there already. No
+    /// folding.
     pub fn exactly(&mut self, op: Op, operands: &[NodeId]) -> NodeId {
         let mut args = [0; 3];
         for (slot, id) in args.iter_mut().zip(operands) {

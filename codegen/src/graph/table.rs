@@ -7,7 +7,8 @@ use super::Node;
 /// Hash table of node indices into a list that the graph holds.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Places {
-    /// Places plus one; 0 is free. The length is a power of two, and at most half of them are taken.
+    /// Places plus one; 0 is free. The length is a power of two, and at most half of them are
+    /// taken.
     slots: Vec<u32>,
     taken: usize,
 }
@@ -56,7 +57,8 @@ impl Places {
         Self { slots: vec![0; (2 * nodes + 1).next_power_of_two().max(64)], taken: 0 }
     }
 
-    /// Twice the room. The nodes are those that were put in, each once and in this order: none has to be looked at again to see that it is another.
+    /// Twice the room. The nodes are those that were put in, each once and in this order: none has
+    /// to be looked at again to see that it is another.
     fn grow(&mut self, nodes: &[Node]) {
         self.slots = vec![0; (self.slots.len() * 2).max(64)];
         let mask = self.slots.len() - 1;

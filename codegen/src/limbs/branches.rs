@@ -36,8 +36,8 @@ struct Kind {
 /// First body of a branch and the kinds of its bodies, if it stands for itself.
 type Branch = (usize, Option<Vec<Kind>>);
 
-/// The sets of `width` isomorphic branches, from the base outward: the same joints and effects in the
-/// same order, whatever frames they carry. Constants may differ, so that mirrored limbs are
+/// The sets of `width` isomorphic branches, from the base outward: the same joints and effects in
+/// the same order, whatever frames they carry. Constants may differ, so that mirrored limbs are
 /// isomorphic. Of more branches than `width` the first are a set, then the next; branches that are
 /// left over are searched for sets inside.
 ///
@@ -78,7 +78,8 @@ fn branch_sizes(model: &Model) -> Vec<usize> {
     sizes
 }
 
-/// The kinds of the bodies of a branch; `None` if one follows a joint outside of it, or is followed from there.
+/// The kinds of the bodies of a branch; `None` if one follows a joint outside of it, or is followed
+/// from there.
 fn branch_kinds(model: &Model, root: usize, size: usize) -> Option<Vec<Kind>> {
     let branch = root..root + size;
     let (first, last) = (&model.bodies()[root].coordinates, &model.bodies()[root + size - 1]);

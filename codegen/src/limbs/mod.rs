@@ -64,7 +64,8 @@ mod tests {
         link(urdf, name, seed);
     }
 
-    /// A trunk with this many legs, each with a knee and a slide, one finger, and an arm that is like no leg.
+    /// A trunk with this many legs, each with a knee and a slide, one finger, and an arm that is
+    /// like no leg.
     fn walker(legs: usize, seed: &mut u64) -> Model<f64> {
         let mut urdf = String::from("<robot name='walker'>\n");
         link(&mut urdf, "trunk", seed);
@@ -86,7 +87,8 @@ mod tests {
         ((argument * 7919 + k * 104_729 + 13) as f64 * 0.754_877_666_246_692_7).fract() - 0.4
     }
 
-    /// Every function that any robot has, in every way: (name, counts of the plain graph, counts in lanes); values must agree.
+    /// Every function that any robot has, in every way: (name, counts of the plain graph, counts in
+    /// lanes); values must agree.
     fn all(model: &Model<f64>, width: usize) -> Vec<(&'static str, Counts, Counts)> {
         let alike = IsomorphicLimbs::of(model, width).unwrap();
         let mut counts = Vec::new();
@@ -131,7 +133,8 @@ mod tests {
         }
     }
 
-    /// As a factorisation leaves them: a limb's terms are added up before they meet the others', of which each is a term by itself.
+    /// As a factorisation leaves them: a limb's terms are added up before they meet the others', of
+    /// which each is a term by itself.
     #[test]
     fn limbs_whose_terms_were_added_before_are_one_sum_over_lanes_with_the_others() {
         let model = walker(4, &mut 7);

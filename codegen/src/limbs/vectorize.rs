@@ -203,8 +203,9 @@ impl Packer<'_> {
         }
     }
 
-    /// The terms with sums of single lanes opened where others have their terms one by one, as a lane whose sum was begun first has: as many opened as leave fewest terms that are not in all lanes.
-    /// `None` if that is none.
+    /// The terms with sums of single lanes opened where others have their terms one by one, as a
+    /// lane whose sum was begun first has: as many opened as leave fewest terms that are not in all
+    /// lanes. `None` if that is none.
     fn opened(&self, terms: &[Term]) -> Option<Vec<Term>> {
         let mut opened = terms.to_vec();
         let mut tally = self.tally(&opened);

@@ -17,7 +17,8 @@ pub(super) struct Places<S> {
 }
 
 impl<S: Scalar> Places<S> {
-    /// Where the body has a moment less, where it is level with a child, and where its offset has a number less.
+    /// Where the body has a moment less, where it is level with a child, and where its offset has a
+    /// number less.
     pub(super) fn of(model: &Model<S>) -> Self {
         let length = |body: &Body<S>| body.placement.position.fold(S::zero(), |sum, x| sum + x.abs());
         let mut reach: Vec<S> = model.bodies().iter().map(length).collect();

@@ -116,7 +116,8 @@ fn standing<S: Scalar>(model: &Model<S>, i: usize, shift: Vector3<S>) -> u32 {
     }
 }
 
-/// How many numbers of the offset of body `i` count. On the base, which stands still, none does, and on a body that only turns about z none along z.
+/// How many numbers of the offset of body `i` count. On the base, which stands still, none does,
+/// and on a body that only turns about z none along z.
 fn offsets<S: Scalar>(model: &Model<S>, i: usize, shift: Vector3<S>, parent: Vector3<S>) -> u32 {
     let body = &model.bodies()[i];
     let below = &model.bodies()[body.parent];

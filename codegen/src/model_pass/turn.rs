@@ -9,12 +9,15 @@ use articulated_core::spatial::{Matrix3, Placement, Vector3, nearest_rotation, r
 use super::view::View;
 use super::zeros::{count, or_zero, within};
 
-/// Turns the frame of each revolute body about its axis, so that the fixed rotations between joints have fewer numbers.
+/// Turns the frame of each revolute body about its axis, so that the fixed rotations between joints
+/// have fewer numbers.
 ///
-/// A frame may point anywhere around the axis of its joint if the joint's angle is counted from there: a fixed rotation R followed by Rz(q) is R'
-/// followed by Rz(q + o), with R = R' Rz(o). So of a rotation given by three angles one is left, or none where the axis is a coordinate axis of its
-/// parent, and the constant o goes into the sine and cosine of q. A body is turned for its children too where that costs less. Exact for all joint
-/// torques; frames of links stay where they are in space.
+/// A frame may point anywhere around the axis of its joint if the joint's angle is counted from
+/// there: a fixed rotation R followed by Rz(q) is R' followed by Rz(q + o), with R = R' Rz(o). So
+/// of a rotation given by three angles one is left, or none where the axis is a coordinate axis of
+/// its parent, and the constant o goes into the sine and cosine of q. A body is turned for its
+/// children too where that costs less. Exact for all joint torques; frames of links stay where they
+/// are in space.
 pub fn turn<S: Scalar>(view: View<S>) -> View<S> {
     let View { model, mut formulation } = view;
     let mut hanging = vec![Hanging::default(); model.bodies().len()];
@@ -46,8 +49,9 @@ struct Hanging {
     frames: Vec<usize>,
 }
 
-/// Instructions for a number of a rotation (of angular velocity and acceleration, acceleration, moment and force), of an offset, of h and of Σ off the diagonal, and for
-/// an angle counted from elsewhere.
+/// Instructions for a number of a rotation (of angular velocity and acceleration, acceleration,
+/// moment and force), of an offset, of h and of Σ off the diagonal, and for an angle counted from
+/// elsewhere.
 const ROTATION: u32 = 5;
 const OFFSET: u32 = 5;
 const FIRST: u32 = 5;
@@ -112,7 +116,8 @@ fn turn_body<S: Scalar>(parts: &mut ModelParts<S>, i: usize, angle: &Angle<S>, h
     parts.bodies[i].effects.body.iter_mut().for_each(|e| turn(&mut e.placement));
 }
 
-/// Replaces the fixed rotation of body `i` by the plain one about the same axis, and counts the joint's angle from there.
+/// Replaces the fixed rotation of body `i` by the plain one about the same axis, and counts the
+/// joint's angle from there.
 fn count_from_there<S: Scalar>(body: &mut Body<S>, formulation: &mut Formulation<S>, i: usize) {
     body.placement.rotation = body.placement.rotation.map(tidy);
     if let Some((rotation, angle)) = plain(&body.placement.rotation) {
@@ -121,8 +126,8 @@ fn count_from_there<S: Scalar>(body: &mut Body<S>, formulation: &mut Formulation
     }
 }
 
-/// R' and o with R = R' Rz(o), R' the same for all R with this third column, as the model's builder would have it. `None` where no coordinate axis is at right angles to
-/// that.
+/// R' and o with R = R' Rz(o), R' the same for all R with this third column, as the model's builder
+/// would have it. `None` where no coordinate axis is at right angles to that.
 fn plain<S: Scalar>(r: &Matrix3<S>) -> Option<(Matrix3<S>, Angle<S>)> {
     let (o, x, z) = (S::zero(), r.column(0), r.column(2).into_owned());
     let k = match [z.x == o, z.y == o, z.z == o] {

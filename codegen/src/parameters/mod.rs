@@ -9,8 +9,8 @@
 //! contact(link)      the same of an effect on a link, which is the only one of its kind there
 //! ```
 //!
-//! The ten are the inertial parameters m, m·c, and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz about the origin of the link's frame, in its axes: all of dynamics is linear
-//! in them.
+//! The ten are the inertial parameters m, m·c, and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz about the
+//! origin of the link's frame, in its axes: all of dynamics is linear in them.
 
 use std::collections::HashMap;
 
@@ -55,7 +55,8 @@ pub struct Parameter {
     /// What the URDF says.
     pub nominal: Vec<f64>,
     kind: Kind,
-    /// The body that it changes, and the frame that it is given in, in that body or, for an origin, in the parent's.
+    /// The body that it changes, and the frame that it is given in, in that body or, for an origin,
+    /// in the parent's.
     body: usize,
     frame: Placement<f64>,
     /// The joint or link.

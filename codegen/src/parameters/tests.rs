@@ -6,7 +6,8 @@ use crate::program::Strategy;
 use crate::spec::FunctionSpec;
 use crate::trace::{trace, ways};
 
-/// A table that slides and turns in a plane, and on it an arm with a tool; these numbers are the robot's.
+/// A table that slides and turns in a plane, and on it an arm with a tool; these numbers are the
+/// robot's.
 fn robot([origin, mass, com, shoulder]: [&str; 4]) -> Request {
     let inertial = |mass: &str, com: &str| {
         format!(

@@ -10,8 +10,9 @@ pub(super) struct Known {
 /// Cycles that an addition, a multiplication or a multiply-add takes.
 const STEP: u32 = 4;
 
-/// Chains to add up one after the other and then together, as indices of terms: of those by which the sum is known when it is `due`, in cycles, the
-/// ones that take fewest instructions; where none is in time, the earliest. `terms` are sorted by the time they are known.
+/// Chains to add up one after the other and then together, as indices of terms: of those by which
+/// the sum is known when it is `due`, in cycles, the ones that take fewest instructions; where none
+/// is in time, the earliest. `terms` are sorted by the time they are known.
 pub(super) fn plan(terms: &[Known], due: u32) -> Vec<Vec<usize>> {
     let single = vec![first_plain(terms)];
     // Nothing takes fewer instructions.
@@ -59,8 +60,9 @@ fn finish(terms: &[Known], chains: &[Vec<usize>]) -> u32 {
     times.fold(first, |sum, time| sum.max(time) + STEP)
 }
 
-/// Each chain starts with a product, or is itself a term of the sum of chains: one instruction a term, less one for each chain that
-/// starts with a plain term, and one for each joint between chains.
+/// Each chain starts with a product, or is itself a term of the sum of chains: one instruction a
+/// term, less one for each chain that starts with a plain term, and one for each joint between
+/// chains.
 fn instructions(terms: &[Known], chains: &[Vec<usize>]) -> u32 {
     let starts = chains.iter().filter(|c| c.first().is_some_and(|&k| !terms[k].fused)).count();
     (terms.len() + chains.len() - 1 - starts) as u32

@@ -78,7 +78,8 @@ impl Sums {
         sums.into_iter().map(|n| n > 1).collect()
     }
 
-    /// Instructions that are saved where so many sums have a pair: each adds one term less, and the pair takes as many as it has products, or one.
+    /// Instructions that are saved where so many sums have a pair: each adds one term less, and the
+    /// pair takes as many as it has products, or one.
     fn gain(&self, key: Key, sums: usize) -> usize {
         let products = key.nodes.iter().filter(|&&n| self.fused.get(n) == Some(&true)).count();
         sums.saturating_sub(products.max(1))

@@ -6,10 +6,12 @@ use super::dce;
 use super::sums::{Rebuild, Term, flatten, inner, is_sum, open};
 use crate::graph::{Graph, Node, NodeId, Op};
 
-/// Adds the constants of a sum now, leaves out x − x, and writes a·x + a·y as a·(x + y): a multiplication less and as many additions, and as many instructions once sums are
-/// chains of multiply-adds.
+/// Adds the constants of a sum now, leaves out x − x, and writes a·x + a·y as a·(x + y): a
+/// multiplication less and as many additions, and as many instructions once sums are chains of
+/// multiply-adds.
 ///
-/// Factors are those of products that nothing but the sum uses; of several first the one that most of the products have. Re-association changes results by roundings only.
+/// Factors are those of products that nothing but the sum uses; of several first the one that most
+/// of the products have. Re-association changes results by roundings only.
 pub fn factor(graph: &Graph) -> Graph {
     let inner = inner(graph);
     let nodes = graph.nodes();
@@ -96,7 +98,8 @@ fn without_opposites(mut terms: Vec<Term>) -> Vec<Term> {
     terms
 }
 
-/// The factor that most of the products have, if two have it; of several such the last of the graph, which is known latest.
+/// The factor that most of the products have, if two have it; of several such the last of the
+/// graph, which is known latest.
 fn most_common<'a>(nodes: &[Node], products: impl Iterator<Item = &'a Term>) -> Option<usize> {
     let factors = products.flat_map(|product| {
         let [a, b, _] = nodes[product.node].args.map(|a| a as usize);

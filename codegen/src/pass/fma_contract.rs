@@ -11,18 +11,22 @@ const A_CYCLE: u32 = 2;
 /// instructions; a processor looks only so far ahead.
 const GRACE: u32 = 16;
 
-/// Instructions from which on a program nearly fills the cache for instructions: then nothing is worth more of them.
+/// Instructions from which on a program nearly fills the cache for instructions: then nothing is
+/// worth more of them.
 const LONG: u32 = 1800;
 
-/// Sums from which on a product that they use is computed once: one instruction more for two multiplications fewer, and processors that add beside
-/// multiplying have additions to spare.
+/// Sums from which on a product that they use is computed once: one instruction more for two
+/// multiplications fewer, and processors that add beside multiplying have additions to spare.
 const SHARED: u32 = 3;
 
-/// Flattens nested sums and rebuilds each as a chain, in which every product that only sums use, and at most two, is part of a multiply-add.
+/// Flattens nested sums and rebuilds each as a chain, in which every product that only sums use,
+/// and at most two, is part of a multiply-add.
 ///
-/// A chain takes its terms in the order in which they become known, so that the last one waits for nothing but itself. Each sum is due when the last
-/// result still is in time; where one chain would be late, it is cut into two or three, which takes more instructions. A sum of products alone needs one that is computed on its own to start from;
-/// those are chosen so that as few as possible are. Re-association changes results by roundings only.
+/// A chain takes its terms in the order in which they become known, so that the last one waits for
+/// nothing but itself. Each sum is due when the last result still is in time; where one chain would
+/// be late, it is cut into two or three, which takes more instructions. A sum of products alone
+/// needs one that is computed on its own to start from; those are chosen so that as few as possible
+/// are. Re-association changes results by roundings only.
 pub fn fma_contract(graph: &Graph) -> Graph {
     let sums = Sums::of(graph);
     let due = build(graph, &sums, &vec![0; graph.nodes().len()]).due();
@@ -52,7 +56,8 @@ struct Sums {
     terms: Vec<Option<Vec<Term>>>,
     /// Products that nothing but sums use.
     fusible: Vec<bool>,
-    /// Of those, the ones that are computed on their own all the same, because a sum starts from them or many sums use them.
+    /// Of those, the ones that are computed on their own all the same, because a sum starts from
+    /// them or many sums use them.
     seed: Vec<bool>,
 }
 
@@ -74,7 +79,8 @@ impl Sums {
         self.fusible[k] && !self.seed[k]
     }
 
-    /// A sum all of whose terms would be fused starts from one of them: the one that most sums use, as it may serve them all.
+    /// A sum all of whose terms would be fused starts from one of them: the one that most sums use,
+    /// as it may serve them all.
     fn choose_seeds(&mut self, uses: &[u32]) {
         for terms in self.terms.iter().flatten() {
             if terms.iter().all(|t| self.fusible[t.node] && !self.seed[t.node])
@@ -126,8 +132,9 @@ impl Builder<'_> {
         id
     }
 
-    /// When the value of each old node is due, in cycles, for the last result to be known in time: a little later than it is here, if the instructions take longer anyway,
-    /// and of a long program when these are done.
+    /// When the value of each old node is due, in cycles, for the last result to be known in time:
+    /// a little later than it is here, if the instructions take longer anyway, and of a long
+    /// program when these are done.
     fn due(&self) -> Vec<u32> {
         let nodes = self.new.nodes();
         let earliest = self.new.outputs.iter().map(|o| self.arrival[o.index()]).max().unwrap_or(0);
@@ -157,7 +164,8 @@ impl Builder<'_> {
         [self.ids[a as usize], self.ids[b as usize]]
     }
 
-    /// Builds a sum by the plan that takes fewest instructions of those that are done when it is due.
+    /// Builds a sum by the plan that takes fewest instructions of those that are done when it is
+    /// due.
     fn sum(&mut self, terms: &[Term], sums: &Sums, due: u32) -> NodeId {
         let mut terms: Vec<(Term, Known)> =
             terms.iter().map(|t| (*t, Known { at: self.known(*t, sums), fused: sums.fused(t.node) })).collect();

@@ -1,4 +1,5 @@
-//! Graph passes: `Graph → Graph`, keeping the algebra. One file each, in the order of [`GRAPH_PASSES`].
+//! Graph passes: `Graph → Graph`, keeping the algebra. One file each, in the order of
+//! [`GRAPH_PASSES`].
 
 mod chains;
 mod cse_partial_sums;
@@ -66,8 +67,8 @@ pub const GRAPH_PASSES: &[Row] = &[
     Row { name: "final_dce", pass: dce, does: "dead code removed again", holds: "every node is needed by an output again" },
 ];
 
-/// The graph after all passes in order; `see` is called after each of them. In debug builds each pass
-/// is checked, as in [`run`].
+/// The graph after all passes in order; `see` is called after each of them. In debug builds each
+/// pass is checked, as in [`run`].
 pub(crate) fn run_all(graph: Graph, mut see: impl FnMut(&'static str, &Graph)) -> Graph {
     GRAPH_PASSES.iter().fold(graph, |graph, row| {
         let new = run(row.name, row.pass, &graph);
@@ -81,7 +82,8 @@ pub(crate) fn run_all_unchecked(graph: Graph) -> Graph {
     GRAPH_PASSES.iter().fold(graph, |graph, row| (row.pass)(&graph))
 }
 
-/// Rebuilds a graph node by node: `rewrite(new, node, operands)` gives the new node for each old one that `keep` lets through.
+/// Rebuilds a graph node by node: `rewrite(new, node, operands)` gives the new node for each old
+/// one that `keep` lets through.
 pub(crate) fn rebuild(old: &Graph, keep: impl Fn(usize) -> bool, mut rewrite: impl FnMut(&mut Graph, Node, &[NodeId]) -> NodeId) -> Graph {
     let mut new = old.emptied();
     let mut ids = vec![NodeId(u32::MAX); old.nodes().len()];
@@ -103,7 +105,8 @@ pub(crate) fn copy(new: &mut Graph, node: Node, operands: &[NodeId]) -> NodeId {
     new.exactly(node.op, operands)
 }
 
-/// Runs a pass; in debug builds checks the result's form, its value on pseudo-random input, and that the cost has not risen.
+/// Runs a pass; in debug builds checks the result's form, its value on pseudo-random input, and
+/// that the cost has not risen.
 pub fn run(name: &str, pass: GraphPass, graph: &Graph) -> Graph {
     let new = pass(graph);
     if cfg!(debug_assertions) {

@@ -67,7 +67,8 @@ pub(super) struct Rebuild<'a> {
 }
 
 impl<'a> Rebuild<'a> {
-    /// The graph without what is `gone`, and with what `sum` makes of a node where it makes something.
+    /// The graph without what is `gone`, and with what `sum` makes of a node where it makes
+    /// something.
     pub(super) fn graph(graph: &'a Graph, gone: &[bool], mut sum: impl FnMut(&mut Self, usize) -> Option<NodeId>) -> Graph {
         let mut rebuild = Self { graph, new: graph.emptied(), ids: vec![NodeId(u32::MAX); graph.nodes().len()] };
         for (k, node) in graph.nodes().iter().enumerate().filter(|(k, _)| !gone[*k]) {

@@ -34,8 +34,9 @@ impl Constant {
         }
     }
 
-    /// Whether it is right for a function of a robot: as many numbers as the argument has, and quaternions that are some. That of zeros does not turn, but where it is what is turned. Errors:
-    /// what is wrong, in words.
+    /// Whether it is right for a function of a robot: as many numbers as the argument has, and
+    /// quaternions that are some. That of zeros does not turn, but where it is what is turned.
+    /// Errors: what is wrong, in words.
     pub(super) fn fits(&self, function: FunctionId, argument: Argument, model: &Model<f64>) -> Result<(), String> {
         let (name, expected) = (argument.name(), argument.len(model.shape()));
         let numbers = self.numbers(expected);
@@ -63,7 +64,8 @@ impl Constant {
 /// How far the norm of a constant quaternion may be from 1: results are off by twice that.
 const NORM: f64 = 1e-9;
 
-/// The joint and the norm of its quaternion, if it has one that is no rotation; `zeros` may stand for one that does not turn.
+/// The joint and the norm of its quaternion, if it has one that is no rotation; `zeros` may stand
+/// for one that does not turn.
 fn not_unit<'a>(joint: &'a JointInfo, q: &[f64], zeros: bool) -> Option<(&'a str, f64)> {
     let quaternion = &q[joint.quaternion()?];
     let norm = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -24,7 +24,8 @@ use crate::{Sym, function};
 pub struct FunctionSpec {
     /// Its name in Rust.
     pub name: String,
-    /// The functions of the table that it consists of; a function of several gives a struct with a field for each.
+    /// The functions of the table that it consists of; a function of several gives a struct with a
+    /// field for each.
     pub parts: Vec<FunctionTerm>,
 }
 
@@ -77,7 +78,8 @@ impl FunctionSpec {
         }
     }
 
-    /// What it takes: everything that a part takes and that is no constant there, in the order of the table; sines last.
+    /// What it takes: everything that a part takes and that is no constant there, in the order of
+    /// the table; sines last.
     pub fn arguments(&self) -> Vec<Argument> {
         let taken = |a: &Argument| self.parts.iter().any(|p| p.function.takes.contains(a) && p.constant(*a).is_none());
         let sines = self.parts.iter().any(|p| p.sines).then_some(Argument::SinCos);
@@ -108,7 +110,8 @@ impl FunctionSpec {
         argument.then_some("is what one of its arguments or results is called: expected another name")
     }
 
-    /// The type that holds the results of several parts: the name with each word's first letter in capitals. `None` for one part.
+    /// The type that holds the results of several parts: the name with each word's first letter in
+    /// capitals. `None` for one part.
     pub(crate) fn group(&self) -> Option<String> {
         let word = |w: &str| w[..1].to_uppercase() + &w[1..];
         (self.parts.len() > 1).then(|| self.name.split('_').filter(|w| !w.is_empty()).map(word).collect())
@@ -128,7 +131,8 @@ impl FunctionSpec {
         Self { name: self.name.clone(), parts: self.parts.iter().map(FunctionTerm::reduced).collect() }
     }
 
-    /// Whether constants are right for a robot: as many numbers as it takes, and quaternions that are some.
+    /// Whether constants are right for a robot: as many numbers as it takes, and quaternions that
+    /// are some.
     pub fn check(&self, model: &Model<f64>) -> Result<(), Diagnostic> {
         let mut constants =
             self.parts.iter().flat_map(|p| p.constants.iter().map(move |(argument, constant)| (p.function.id, argument, constant)));

@@ -9,7 +9,8 @@ pub fn formulas(graph: &Graph, names: &[&[&str]]) -> String {
     lines.join("\n")
 }
 
-/// One value, in parentheses if its operation binds less than `binding`: 1 a sum, 2 a product, 3 a factor.
+/// One value, in parentheses if its operation binds less than `binding`: 1 a sum, 2 a product, 3 a
+/// factor.
 fn formula(graph: &Graph, names: &[&[&str]], id: NodeId, binding: u32) -> String {
     let node = graph.node(id);
     let operands: Vec<NodeId> = node.operands().collect();

@@ -63,7 +63,8 @@ fn quotations_are_what_the_files_say() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 
-/// Every chapter is in the table of contents and among the tests, and no page links to a missing one.
+/// Every chapter is in the table of contents and among the tests, and no page links to a missing
+/// one.
 #[test]
 fn every_page_is_listed_tested_and_linked() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));

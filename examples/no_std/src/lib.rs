@@ -36,7 +36,8 @@ mod tests {
         let q = [0.1, -1.0, 1.2, 0.3, -0.4, 0.0];
         let still = [0.0; arm::NV];
         assert_eq!(hold(&q, &q, &still), arm::hold(&q));
-        // With sines and cosines from elsewhere, a table or a resolver, the processor computes none.
+        // With sines and cosines from elsewhere, a table or a resolver, the processor computes
+        // none.
         let sines = q.map(|angle| [libm::sin(angle), libm::cos(angle)]);
         let torques = arm::quick(&q, &still, &still, &sines);
         assert!(torques.iter().zip(arm::hold(&q)).all(|(a, b)| (a - b).abs() < 1e-12));

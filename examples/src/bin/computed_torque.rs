@@ -1,7 +1,8 @@
 //! Computed torque at 1 kHz on a seven-axis arm.
 //!
 //! τ = M(q)·(a_d + k_d ė + k_p e) + h(q, v): inverse dynamics at the acceleration that brings the
-//! error e = q_d − q to zero. The plant is the same arm with a tool that the controller does not know.
+//! error e = q_d − q to zero. The plant is the same arm with a tool that the controller does not
+//! know.
 //!
 //! ```text
 //! cargo run --release -p articulated-examples --bin computed_torque

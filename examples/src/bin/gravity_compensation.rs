@@ -1,7 +1,7 @@
 //! Gravity compensation of an arm whose payload is known only when the program runs.
 //!
-//! The key `parameters` leaves the payload's ten inertial parameters an input of the generated code:
-//! m, m·c (three), and the six moments about the origin of the link's frame, in its axes.
+//! The key `parameters` leaves the payload's ten inertial parameters an input of the generated
+//! code: m, m·c (three), and the six moments about the origin of the link's frame, in its axes.
 //!
 //! ```text
 //! cargo run --release -p articulated-examples --bin gravity_compensation

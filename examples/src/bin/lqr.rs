@@ -1,7 +1,7 @@
 //! A linear-quadratic regulator from generated derivatives: a cart balances a pole.
 //!
-//! Around the upright equilibrium ẋ = A x + B u with x = (q, v). A and B come from the derivatives of
-//! forward dynamics, ∂a/∂q, ∂a/∂v and ∂a/∂τ, without differences of any kind.
+//! Around the upright equilibrium ẋ = A x + B u with x = (q, v). A and B come from the derivatives
+//! of forward dynamics, ∂a/∂q, ∂a/∂v and ∂a/∂τ, without differences of any kind.
 //!
 //! ```text
 //! cargo run --release -p articulated-examples --bin lqr

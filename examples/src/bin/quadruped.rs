@@ -1,7 +1,8 @@
 //! A floating quadruped falls on the ground and stands under proportional and derivative control.
 //!
 //! The key `effects` gives the feet contact with the ground; the solver is the linearly implicit
-//! `rodas4`, since contact is stiff. The plot of the trunk's height is one line of characters per 0.05 s.
+//! `rodas4`, since contact is stiff. The plot of the trunk's height is one line of characters per
+//! 0.05 s.
 //!
 //! ```text
 //! cargo run --release -p articulated-examples --bin quadruped

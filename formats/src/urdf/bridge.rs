@@ -8,7 +8,8 @@ use super::ast::Draft;
 use super::plain::{self, Piece};
 use super::tree::Tree;
 
-/// An internal error, if the robot that `urdf-rs` reads from the plain documents is not the one that was `found`.
+/// An internal error, if the robot that `urdf-rs` reads from the plain documents is not the one
+/// that was `found`.
 pub(crate) fn compare(found: &Description, draft: &Draft, tree: &Tree, leaders: &[Option<usize>], log: &mut Diagnostics) {
     let mut description = Description { name: draft.name.clone(), ..Description::default() };
     for piece in plain::pieces(draft, tree, leaders) {
@@ -39,7 +40,8 @@ fn internal(found: String, log: &mut Diagnostics) {
     log.error(Place::DOCUMENT, Code::Internal, found, expected);
 }
 
-/// Adds what `urdf-rs` read from a piece. The names are the draft's: the piece has indices in their place.
+/// Adds what `urdf-rs` read from a piece. The names are the draft's: the piece has indices in their
+/// place.
 fn read_back(robot: &Robot, piece: &Piece, draft: &Draft, into: &mut Description) -> Option<()> {
     if robot.links.len() != piece.links || robot.joints.len() != piece.joints {
         return None;
@@ -96,7 +98,8 @@ fn read_index(name: &str) -> Option<usize> {
     name.parse().ok()
 }
 
-/// The kind that was read; `drafted`, if that is one that only this crate knows and [`plain`] wrote its stand-in.
+/// The kind that was read; `drafted`, if that is one that only this crate knows and [`plain`] wrote
+/// its stand-in.
 fn read_kind(kind: &JointType, drafted: JointKind) -> JointKind {
     match kind {
         JointType::Fixed if plain::is_unknown_to_urdf_rs(drafted) => drafted,

@@ -102,7 +102,8 @@ impl<'a> Tag<'a> {
         Place { at: self.at(), subject: self.subject, field }
     }
 
-    /// The one tag of this name, if there is one. A second one is an error, or a warning where it says the same.
+    /// The one tag of this name, if there is one. A second one is an error, or a warning where it
+    /// says the same.
     pub(crate) fn only(&self, name: &str, log: &mut Diagnostics) -> Option<Tag<'a>> {
         let mut all = self.children().filter(|tag| tag.is(name));
         let first = all.next()?;

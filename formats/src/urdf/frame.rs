@@ -44,7 +44,8 @@ const NORM: f64 = 1e-3;
 /// A quaternion whose norm is off 1 by more is a warning.
 const ROUNDED: f64 = 1e-6;
 
-/// The quaternion (x, y, z, w) that `quat_xyzw` gives, if it is right. It may be off unit length by rounding.
+/// The quaternion (x, y, z, w) that `quat_xyzw` gives, if it is right. It may be off unit length by
+/// rounding.
 fn quaternion(tag: &Tag<'_>, version: Version, log: &mut Diagnostics) -> Option<[f64; 4]> {
     let quaternion = attribute_list::<4>(tag, "quat_xyzw", log);
     let (text, _) = tag.attribute("quat_xyzw")?;
@@ -82,7 +83,8 @@ fn warn_of_turns(tag: &Tag<'_>, rpy: [f64; 3], log: &mut Diagnostics) {
     }
 }
 
-/// So many metres and more from one frame to the next are written by mistake: millimetres, most often.
+/// So many metres and more from one frame to the next are written by mistake: millimetres, most
+/// often.
 const FAR: f64 = 100.0;
 
 fn warn_of_lengths(tag: &Tag<'_>, xyz: [f64; 3], log: &mut Diagnostics) {
@@ -109,7 +111,8 @@ fn snapped(rotation: Rotation, snap: Option<f64>, place: &Place<'_>, log: &mut D
     if snapped == rpy { rotation } else { Rotation::RollPitchYaw(snapped) }
 }
 
-/// The multiple of π/2 (and its double) that is within `tolerance` of `angle` and is not `angle` itself.
+/// The multiple of π/2 (and its double) that is within `tolerance` of `angle` and is not `angle`
+/// itself.
 pub(crate) fn right_angle(angle: f64, tolerance: f64) -> Option<(f64, f64)> {
     let quarters = (angle / FRAC_PI_2).round();
     let exact = quarters * FRAC_PI_2;

@@ -204,7 +204,8 @@ fn sine(a: [f64; 3], b: [f64; 3]) -> f64 {
     [b * z - c * y, c * x - a * z, a * y - b * x].iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// How far a helical joint slides in one turn, m: with a right-handed thread it is positive. Zero is odd, but means something.
+/// How far a helical joint slides in one turn, m: with a right-handed thread it is positive. Zero
+/// is odd, but means something.
 fn pitch(joint: &Tag<'_>, log: &mut Diagnostics) -> Option<f64> {
     let tag = joint.required("thread", log)?;
     unused::rest(&tag, &[], &["pitch"], log);

@@ -65,7 +65,8 @@ fn bounds(tag: &Tag<'_>, open: bool, log: &mut Diagnostics) -> (f64, f64) {
     (lower, upper)
 }
 
-/// Bounds of a joint that turns, from more than three turns in rad to three turns in degrees: the latter, most often.
+/// Bounds of a joint that turns, from more than three turns in rad to three turns in degrees: the
+/// latter, most often.
 const DEGREES: RangeInclusive<f64> = 20.0..=1080.0;
 
 fn warn_of_degrees(tag: &Tag<'_>, kind: JointKind, bound: f64, log: &mut Diagnostics) {

@@ -1,4 +1,5 @@
-//! Dynamics that a file states where they are not read: inside `<gazebo>`, under a prefix, in tags that the format does not have.
+//! Dynamics that a file states where they are not read: inside `<gazebo>`, under a prefix, in tags
+//! that the format does not have.
 
 use super::element::Tag;
 use super::markup;

@@ -5,7 +5,8 @@ use articulated_core::description::{Description, Joint, Link, Mimic};
 use super::ast::Draft;
 use super::tree::Tree;
 
-/// The description that the draft amounts to; `None` where something of it is missing, which is an error already.
+/// The description that the draft amounts to; `None` where something of it is missing, which is an
+/// error already.
 pub(crate) fn lower(draft: &Draft, tree: &Tree, leaders: &[Option<usize>]) -> Option<Description> {
     let links = draft.links.iter().map(|link| {
         let (name, collision, visual) = (link.name.clone()?, link.collision.clone(), link.visual.clone());

@@ -1,7 +1,8 @@
 //! A look at the bare markup, before the XML reader.
 //!
-//! It makes up for where a strict XML reader refuses what the common URDF readers accept (blank lines before the
-//! declaration, prefixes that nobody declared, `--` in a comment), and it bounds what an XML reader allocates.
+//! It makes up for where a strict XML reader refuses what the common URDF readers accept (blank
+//! lines before the declaration, prefixes that nobody declared, `--` in a comment), and it bounds
+//! what an XML reader allocates.
 
 use articulated_core::diagnostic::{Code, quote};
 const MOST_DEPTH: usize = 256;
@@ -30,8 +31,8 @@ pub(crate) struct Fault {
     pub(crate) expected: String,
 }
 
-/// `text` without comments, declarations and prefixes, line by line as before. What is not well-formed passes as it
-/// is: the XML reader says it better.
+/// `text` without comments, declarations and prefixes, line by line as before. What is not
+/// well-formed passes as it is: the XML reader says it better.
 pub(crate) fn prepare(text: &str) -> Result<String, Fault> {
     let mut look = Look { text, at: 0, out: String::with_capacity(text.len()), depth: 0, tags: 0 };
     look.bound('=', MOST_EQUAL_SIGNS)?;

@@ -2,32 +2,39 @@
 //!
 //! A file goes from document (bytes → XML) to links and joints (checked numbers with their places),
 //! then to a tree (names, cycles, roots, mimics), then to a [`Description`]. With the feature
-//! `second-reader`, `urdf-rs` reads a plain copy and has to find the same. With the feature `urdf-rs`,
-//! `from_urdf_rs` and `to_urdf_rs` convert from and to `urdf_rs::Robot`. [`write()`] is the reverse of
-//! the reader. No input makes it panic, hang or overflow its stack.
+//! `second-reader`, `urdf-rs` reads a plain copy and has to find the same. With the feature
+//! `urdf-rs`, `from_urdf_rs` and `to_urdf_rs` convert from and to `urdf_rs::Robot`. [`write()`] is
+//! the reverse of the reader. No input makes it panic, hang or overflow its stack.
 //!
 //! # What files have that is accepted
 //!
-//! * `quat_xyzw` of an `<origin>`, from `<robot version="1.1">` on, in place of `rpy`. Its norm is 1 within 1e-3; off by more than 1e-6 it is a warning.
+//! * `quat_xyzw` of an `<origin>`, from `<robot version="1.1">` on, in place of `rpy`. Its norm is
+//!   1 within 1e-3; off by more than 1e-6 it is a warning.
 //! * A fixed joint with `<mimic>`, `<axis>` or `<limit>`: not used; `<mimic>` with a warning.
-//! * A principal moment of inertia that is negative by rounding, at most 1e-12·m·ℓ², with a warning: ℓ is the longest distance from one frame of the
-//!   file to the next, at most 1 m. A moment further below zero is an error, unless [`Options::allow_unphysical_inertia`] is set.
-//! * Joints on a link `world` that the file does not declare, with a warning: the link is added, without mass.
-//! * `<collision>` that cannot be read, with a warning: a scene that asks for contact of it is refused.
+//! * A principal moment of inertia that is negative by rounding, at most 1e-12·m·ℓ², with a
+//!   warning: ℓ is the longest distance from one frame of the file to the next, at most 1 m. A
+//!   moment further below zero is an error, unless [`Options::allow_unphysical_inertia`] is set.
+//! * Joints on a link `world` that the file does not declare, with a warning: the link is added,
+//!   without mass.
+//! * `<collision>` that cannot be read, with a warning: a scene that asks for contact of it is
+//!   refused.
 //! * Expressions of xacro in names of files (meshes, textures). Elsewhere each one is an error.
 //!
-//! What the file states about closed loops, springs, followers and gravity where it is not read (inside `<gazebo>`, under a prefix, `<loop_joint>`, links inside
-//! `<group>`) is a warning of the kind [`Code::LostDynamics`] or [`Code::Misplaced`].
+//! What the file states about closed loops, springs, followers and gravity where it is not read
+//! (inside `<gazebo>`, under a prefix, `<loop_joint>`, links inside `<group>`) is a warning of the
+//! kind [`Code::LostDynamics`] or [`Code::Misplaced`].
 //!
 //! # Beyond the format
 //!
 //! Three types of joints are extensions, which other readers refuse or do not know:
 //!
 //! * `spherical`: any turn about the joint's origin. It has no axis.
-//! * `helical`: a screw. It turns about `<axis>`, within the bounds of `<limit>` in rad, and slides along it by
-//!   `<thread pitch="0.005"/>` metres per revolution; negative for a left-handed thread, which has to be given. Zero is accepted with a warning.
-//! * `universal`: Cardan's joint. It turns about `<axis xyz="1 0 0"/>`, then about `<axis2 xyz="0 1 0"/>`, which the first has turned; both have to be
-//!   given, in the joint's frame, and not parallel.
+//! * `helical`: a screw. It turns about `<axis>`, within the bounds of `<limit>` in rad, and slides
+//!   along it by `<thread pitch="0.005"/>` metres per revolution; negative for a left-handed
+//!   thread, which has to be given. Zero is accepted with a warning.
+//! * `universal`: Cardan's joint. It turns about `<axis xyz="1 0 0"/>`, then about
+//!   `<axis2 xyz="0 1 0"/>`, which the first has turned; both have to be given, in the joint's
+//!   frame, and not parallel.
 //!
 //! A joint mimics and is mimicked if it has one coordinate: `helical` does, the other two do not.
 

@@ -1,7 +1,8 @@
 //! Decimal numbers, and nothing else.
 //!
-//! `[+-] digits [. digits] [e [+-] digits]`, with digits before or after the point. No `nan`, `inf`, hexadecimal digits,
-//! decimal commas or letters behind; the value is the double nearest to the spelling.
+//! `[+-] digits [. digits] [e [+-] digits]`, with digits before or after the point. No `nan`,
+//! `inf`, hexadecimal digits, decimal commas or letters behind; the value is the double nearest to
+//! the spelling.
 
 use super::element::Tag;
 use super::xacro::is_expression;

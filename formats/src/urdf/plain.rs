@@ -1,9 +1,10 @@
 //! The plain documents that `urdf-rs` is given.
 //!
-//! They say what was found and nothing else: no appearance, no extensions, links and joints named by their index. So
-//! that reader never meets what it would misread (names with blanks, numbers with letters behind) or stumble over
-//! (meshes, deep nesting), and its time goes into what matters. A large robot is handed over in pieces, since that
-//! reader holds several copies of a whole document in memory.
+//! They say what was found and nothing else: no appearance, no extensions, links and joints named
+//! by their index. So that reader never meets what it would misread (names with blanks, numbers
+//! with letters behind) or stumble over (meshes, deep nesting), and its time goes into what
+//! matters. A large robot is handed over in pieces, since that reader holds several copies of a
+//! whole document in memory.
 
 use std::fmt::{self, Write};
 
@@ -22,7 +23,8 @@ pub(crate) struct Piece {
     pub(crate) joints: usize,
 }
 
-/// The documents in order: links and joints by rising index. Numbers are written so that they are read back exactly.
+/// The documents in order: links and joints by rising index. Numbers are written so that they are
+/// read back exactly.
 pub(crate) fn pieces<'a>(draft: &'a Draft, tree: &'a Tree, leaders: &'a [Option<usize>]) -> impl Iterator<Item = Piece> + 'a {
     let most = draft.links.len().max(draft.joints.len());
     (0..most).step_by(PIECE).map(move |from| {
@@ -137,7 +139,8 @@ impl Out {
     }
 }
 
-/// A number in the fewest digits that are read back exactly, with an exponent where that is shorter.
+/// A number in the fewest digits that are read back exactly, with an exponent where that is
+/// shorter.
 struct Number(f64);
 
 impl fmt::Display for Number {

@@ -24,7 +24,8 @@ const VERSIONS: [(&str, Version); 4] = [("1", Version::V1_0), ("1.0", Version::V
 pub(crate) struct Context<'a> {
     pub(crate) options: &'a Options,
     pub(crate) version: Version,
-    /// The longest distance from one frame to the next in the file, m; at most 1 m, and 1 m where all are zero.
+    /// The longest distance from one frame to the next in the file, m; at most 1 m, and 1 m where
+    /// all are zero.
     pub(crate) length: f64,
     /// Colours of materials by their names.
     pub(crate) materials: BTreeMap<String, [f64; 4]>,

@@ -1,4 +1,5 @@
-//! Names become indices, and joints a tree. Nothing here recurses: chains may be as long as they like.
+//! Names become indices, and joints a tree. Nothing here recurses: chains may be as long as they
+//! like.
 
 use super::markup::hint;
 use articulated_core::diagnostic::{At, Code, Diagnostics, Place, Subject, quote};

@@ -102,7 +102,8 @@ fn around_links(tag: &Tag<'_>, name: &str, log: &mut Diagnostics) -> bool {
     true
 }
 
-/// Warns of a name that looks like another one: with blanks at its ends, or with characters that are not visible.
+/// Warns of a name that looks like another one: with blanks at its ends, or with characters that
+/// are not visible.
 pub(crate) fn warn_of_blanks(tag: &Tag<'_>, name: &str, log: &mut Diagnostics) {
     let found = if name.trim() != name {
         "a name with blanks at an end"

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use articulated_core::description::{Description, Inertial, Joint, JointKind, Origin};
 
-/// The robot as a URDF, without collision geometry and appearance. Every number is printed so that reading gives
-/// the same double.
+/// The robot as a URDF, without collision geometry and appearance. Every number is printed so that
+/// reading gives the same double.
 #[must_use]
 pub fn write(description: &Description) -> String {
     let mut out = format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", escaped(&description.name));

@@ -5,7 +5,8 @@ use articulated_core::diagnostic::{Code, Diagnostics, Place, Subject, quote};
 
 const EXPECTED: &str = "an expanded file: run xacro first";
 
-/// Reports macros and expressions that are left over. Whether there are macros: without what they stand for, the rest of the file means nothing.
+/// Reports macros and expressions that are left over. Whether there are macros: without what they
+/// stand for, the rest of the file means nothing.
 pub(crate) fn report(robot: &Tag<'_>, log: &mut Diagnostics) -> bool {
     report_expressions(robot, log);
     let mut macros = false;

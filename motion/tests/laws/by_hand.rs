@@ -142,7 +142,8 @@ fn a_sampled_controller_holds_its_torques() {
     assert!(r.tau[3] < 12.0 && r.tau[3] == r.tau[4] && r.tau[5] < r.tau[4], "{:?}", r.tau);
 }
 
-/// The law of the scene's control by hand, sampled as that is; its events and its end are the scene's.
+/// The law of the scene's control by hand, sampled as that is; its events and its end are the
+/// scene's.
 #[test]
 fn a_control_of_ones_own_moves_the_scene() {
     let scene =

@@ -41,7 +41,8 @@ fn frames_that_events_need_and_the_robot_has_not_are_told_together() {
     assert!(session.run(&robot, &["upper", "hand", "fore"]).is_ok());
 }
 
-/// A robot of the same joints that was made from the URDF alone, or under other gravity; who wants it so takes it in parts.
+/// A robot of the same joints that was made from the URDF alone, or under other gravity; who wants
+/// it so takes it in parts.
 #[test]
 fn a_robot_without_the_effects_or_the_gravity_of_the_scene_is_another() {
     let pull = "gravity = [0, 0, -1.62]\n";
@@ -66,7 +67,8 @@ fn a_robot_without_the_effects_or_the_gravity_of_the_scene_is_another() {
     }
 }
 
-/// More than any level of accuracy leaves of a torque, a thousandth, is another mass; less than that is not told.
+/// More than any level of accuracy leaves of a torque, a thousandth, is another mass; less than
+/// that is not told.
 #[test]
 fn a_robot_of_another_mass_is_another() {
     let session = session("simulation = { end = 0.01 }", CART);

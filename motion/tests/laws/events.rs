@@ -156,7 +156,8 @@ fn a_joint_that_follows_has_bounds_of_its_own() {
     assert_eq!((told(0.25).len(), told(1.0).len()), (0, 2));
 }
 
-/// A joint that follows another zero times does not move: of its bounds and its friction there is nothing to look for, wherever it stands.
+/// A joint that follows another zero times does not move: of its bounds and its friction there is
+/// nothing to look for, wherever it stands.
 #[test]
 fn a_joint_that_follows_and_stands_still_has_no_events() {
     let follower = "<link name='b'/><joint name='y' type='prismatic'><parent link='rail'/><child link='b'/><axis xyz='1 0 0'/>

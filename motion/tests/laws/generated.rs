@@ -34,7 +34,8 @@ fn a_robot_is_generated_with_what_the_scene_needs() {
     assert_eq!(session.functions(IntegratorId::dopri5), functions);
 }
 
-/// Of what there is nothing of, nothing is told: momentum of no mass, losses of no effects. A link that two things need a frame of has one.
+/// Of what there is nothing of, nothing is told: momentum of no mass, losses of no effects. A link
+/// that two things need a frame of has one.
 #[test]
 fn a_robot_is_generated_without_what_the_scene_has_not() {
     let told = |scene: &str, urdf: &str| {
@@ -54,8 +55,9 @@ fn a_robot_is_generated_without_what_the_scene_has_not() {
     assert_eq!(session(&scene, &CART.replace("</robot>", hook)).frames(), ["cart", "hook"]);
 }
 
-/// Bounds on coordinates and rates, rad and rad/s: 1e-13 until the hand touches the ground, by rounding; 1e-6 to the end, a thousand tolerances, as steps
-/// over a contact that begins are not smooth.
+/// Bounds on coordinates and rates, rad and rad/s: 1e-13 until the hand touches the ground, by
+/// rounding; 1e-6 to the end, a thousand tolerances, as steps over a contact that begins are not
+/// smooth.
 #[test]
 fn a_generated_robot_moves_as_the_generic_one() {
     let session = session(SCENE, ARM);

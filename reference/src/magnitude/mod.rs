@@ -1,6 +1,7 @@
 //! The scale against which a rounding error is measured.
 //!
-//! Operations are calls, not inlined: algorithms would become several times as large, and as long to compile, for nothing.
+//! Operations are calls, not inlined: algorithms would become several times as large, and as long
+//! to compile, for nothing.
 
 mod norms;
 mod scales;
@@ -17,7 +18,8 @@ pub use scales::{scales, scales_of_generated, where_suspect};
 /// A value together with the sum of the magnitudes of the terms that it was summed from.
 ///
 /// |x| where nothing cancels; more where terms cancel, by as much as rounding errors of the terms count more there. An
-/// evaluation in floating point is off by about unit roundoff times this, whatever the order of its operations.
+/// evaluation in floating point is off by about unit roundoff times this, whatever the order of its
+/// operations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Magnitude {
     /// The value, in double precision.

@@ -1,14 +1,16 @@
 //! Magnitudes of the terms of a torque that do not depend on the axes in which they are written.
 //!
-//! Each number of a vector that is turned from body to body adds up |cos| + |sin| times more with every joint, so that sums of magnitudes of numbers grow
-//! exponentially along a chain. Norms do not: along a long chain this scale is the smaller one, and the one that counts.
+//! Each number of a vector that is turned from body to body adds up |cos| + |sin| times more with
+//! every joint, so that sums of magnitudes of numbers grow exponentially along a chain. Norms do
+//! not: along a long chain this scale is the smaller one, and the one that counts.
 
 use articulated_core::algorithm::FunctionId;
 use articulated_core::joint::Joint;
 use articulated_core::model::{Body, Model};
 use articulated_core::nalgebra::Vector3;
 
-/// Of a function's results; none for those of other functions, none with effects, whose terms are not in it, and none where joints follow others, whose angles are sums themselves.
+/// Of a function's results; none for those of other functions, none with effects, whose terms are
+/// not in it, and none where joints follow others, whose angles are sums themselves.
 pub fn norms(function: FunctionId, model: &Model<f64>, arguments: &[&[f64]]) -> Vec<f64> {
     let n = model.nv();
     if !is_plain(model) {
@@ -112,7 +114,8 @@ mod tests {
     use super::*;
     use crate::magnitude::scales;
 
-    /// Of forty joints in general position the sums of magnitudes of numbers are so large that any result would pass; of two they are the smaller ones.
+    /// Of forty joints in general position the sums of magnitudes of numbers are so large that any
+    /// result would pass; of two they are the smaller ones.
     #[test]
     fn along_a_chain_norms_do_not_grow_as_numbers_do() {
         let chain = |n: usize| {

@@ -7,11 +7,13 @@ use num_traits::Zero;
 
 use super::{Magnitude, norms, solution};
 
-/// The scale of each number that a function gives: the algorithm of the table, run with [`Magnitude`] on `model`, which has
-/// to be as it was read, before model passes; no more than the norms of its terms, where there are such.
+/// The scale of each number that a function gives: the algorithm of the table, run with
+/// [`Magnitude`] on `model`, which has to be as it was read, before model passes; no more than the
+/// norms of its terms, where there are such.
 ///
-/// A function that solves with the mass matrix is measured by what rounding does to a backward stable solution instead: divisions would let the sum of
-/// magnitudes grow without bound, and everything would pass.
+/// A function that solves with the mass matrix is measured by what rounding does to a backward
+/// stable solution instead: divisions would let the sum of magnitudes grow without bound, and
+/// everything would pass.
 pub fn scales(model: &Model<f64>, name: &str, arguments: &[&[f64]]) -> Result<Vec<f64>, FunctionError> {
     let row = function::<f64>(name).ok_or(UNKNOWN)?;
     if row.inverts_mass_matrix() {
@@ -22,9 +24,10 @@ pub fn scales(model: &Model<f64>, name: &str, arguments: &[&[f64]]) -> Result<Ve
     Ok(scales)
 }
 
-/// What generated code may be off by where [`scales`] is too much to ask: model passes turn and move frames, so that one term becomes several whose sum it
-/// is, and a number of a moment m·c, of an offset or of a rotation that is zero in the file comes back as the rest of its neighbours. No more than the largest
-/// scale of all numbers of the result.
+/// What generated code may be off by where [`scales`] is too much to ask: model passes turn and
+/// move frames, so that one term becomes several whose sum it is, and a number of a moment m·c, of
+/// an offset or of a rotation that is zero in the file comes back as the rest of its neighbours. No
+/// more than the largest scale of all numbers of the result.
 pub fn scales_of_generated(model: &Model<f64>, name: &str, arguments: &[&[f64]]) -> Result<Vec<f64>, FunctionError> {
     let own = scales(model, name, arguments)?;
     if function::<f64>(name).is_some_and(|row| row.inverts_mass_matrix()) {
@@ -39,12 +42,14 @@ pub fn scales_of_generated(model: &Model<f64>, name: &str, arguments: &[&[f64]])
     Ok(scales)
 }
 
-/// The scales of a result: those of generated code for numbers that are suspect by their own, and no others.
+/// The scales of a result: those of generated code for numbers that are suspect by their own, and
+/// no others.
 pub fn where_suspect(own: &[f64], moved: &[f64], is_suspect: impl Fn(usize, f64) -> bool) -> Vec<f64> {
     own.iter().zip(moved).enumerate().map(|(k, (own, moved))| if is_suspect(k, *own) { *moved } else { *own }).collect()
 }
 
-/// In axes other than the joint's own, what is nothing in those (the force along a slide that goes with its own rate, at a right angle to it) is what products of its neighbours leave: no less is
+/// In axes other than the joint's own, what is nothing in those (the force along a slide that goes
+/// with its own rate, at a right angle to it) is what products of its neighbours leave: no less is
 /// asked than of the largest number of its row or of its column, whichever is less.
 fn rests(matrix: &mut [f64], n: usize) {
     let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, f64::max);
@@ -62,8 +67,9 @@ pub(super) fn exact_magnitudes(arguments: &[&[f64]]) -> Vec<Vec<Magnitude>> {
     arguments.iter().map(|x| x.iter().map(|x| Magnitude::from_f64(*x)).collect()).collect()
 }
 
-/// What a function gives with these arguments, in its first way, which is what [`articulated_core::algorithm::Function::call`] takes: in others some
-/// terms are zero that cancel in it, which is no reason to ask more of it.
+/// What a function gives with these arguments, in its first way, which is what
+/// [`articulated_core::algorithm::Function::call`] takes: in others some terms are zero that cancel
+/// in it, which is no reason to ask more of it.
 pub(super) fn magnitudes(model: &Model<f64>, name: &str, arguments: &[Vec<Magnitude>]) -> Result<Vec<Magnitude>, FunctionError> {
     evaluated(&constants(model), name, arguments)
 }
@@ -76,8 +82,9 @@ fn evaluated(model: &Model<Magnitude>, name: &str, arguments: &[Vec<Magnitude>])
     Ok(out)
 }
 
-/// The model's constants. Each was computed from numbers of the file, so that what is small may be the rest of larger terms: its
-/// error is that of its neighbours. Nothing is exactly nothing, but for a rotation that is about none of the axes: there it may be a rest too.
+/// The model's constants. Each was computed from numbers of the file, so that what is small may be
+/// the rest of larger terms: its error is that of its neighbours. Nothing is exactly nothing, but
+/// for a rotation that is about none of the axes: there it may be a rest too.
 fn constants(model: &Model<f64>) -> Model<Magnitude> {
     model.cast::<Magnitude>().changed(|parts| {
         for body in &mut parts.bodies {
@@ -93,7 +100,8 @@ fn constants(model: &Model<f64>) -> Model<Magnitude> {
     })
 }
 
-/// Constants of frames that may have been turned and moved: every number of a body is the rest of its neighbours.
+/// Constants of frames that may have been turned and moved: every number of a body is the rest of
+/// its neighbours.
 fn turned(model: Model<Magnitude>) -> Model<Magnitude> {
     model.changed(|parts| {
         for body in &mut parts.bodies {

@@ -1,13 +1,15 @@
 //! The scale of what is solved for with the mass matrix.
 //!
-//! A backward stable solution X of M X = R solves (M + δM) X = R + δR, with |δM| ≤ u ‖M‖ and |δR| ≤ u ‖R‖, u a few roundings and ‖·‖ the sums of
-//! magnitudes of M's and R's terms. So, to first order,
+//! A backward stable solution X of M X = R solves (M + δM) X = R + δR, with |δM| ≤ u ‖M‖ and |δR| ≤
+//! u ‖R‖, u a few roundings and ‖·‖ the sums of magnitudes of M's and R's terms. So, to first
+//! order,
 //!
 //! ```text
 //! |δX| ≤ u |M⁻¹| (‖R‖ + ‖M‖ |X|)        Higham, Accuracy and Stability of Numerical Algorithms, 2002, §7.2
 //! ```
 //!
-//! No magnitude goes through a division: the scale is as large as the conditioning of M makes the error of a good solution, and no larger.
+//! No magnitude goes through a division: the scale is as large as the conditioning of M makes the
+//! error of a good solution, and no larger.
 
 use articulated_core::algorithm::{Argument, Function, FunctionError, FunctionId, Workspace};
 use articulated_core::model::Model;
@@ -101,7 +103,8 @@ impl State<'_> {
         arguments
     }
 
-    /// Λ⁻¹ = J X with M X = Jᵀ, and Λ, of each frame. What δM and δJ do to them, and the rounding ε of J X, is, with Y = X Λ,
+    /// Λ⁻¹ = J X with M X = Jᵀ, and Λ, of each frame. What δM and δJ do to them, and the rounding ε
+    /// of J X, is, with Y = X Λ,
     ///
     /// ```text
     /// δΛ⁻¹ = −Xᵀ δM X + δJ X + Xᵀ δJᵀ + ε        δΛ = Yᵀ δM Y − Λ δJ Y − Yᵀ δJᵀ Λ − Λ ε Λ        |ε| ≤ u ‖J‖ |X|
@@ -193,7 +196,8 @@ mod tests {
         assert!(scale >= least * 0.999 && scale < 4.0 * least, "{scale} {least}");
     }
 
-    /// Every solving function has a scale, at least its own size, and none so large that a wrong digit in the seventh place would pass.
+    /// Every solving function has a scale, at least its own size, and none so large that a wrong
+    /// digit in the seventh place would pass.
     #[test]
     fn no_scale_lets_everything_pass() {
         for name in ["panda_like", "quadruped"] {

@@ -1,4 +1,5 @@
-//! What drives the joints, as data in the order of a robot: as scenes have it, and as simulations follow it.
+//! What drives the joints, as data in the order of a robot: as scenes have it, and as simulations
+//! follow it.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -46,7 +47,8 @@ pub struct Series {
 }
 
 impl Series {
-    /// The numbers at the time `t`, each by itself (a quaternion is none between two rows); before the first row and after the last the nearest of them.
+    /// The numbers at the time `t`, each by itself (a quaternion is none between two rows); before
+    /// the first row and after the last the nearest of them.
     pub fn at(&self, t: f64, out: &mut [f64]) {
         if let Some(([since, span], [from, to])) = self.between(t) {
             let part = since / span;
@@ -56,7 +58,8 @@ impl Series {
         }
     }
 
-    /// Of the rows around `t`, if it is between two that are joined by a straight way: the time since the first, s, that between them; and both.
+    /// Of the rows around `t`, if it is between two that are joined by a straight way: the time
+    /// since the first, s, that between them; and both.
     pub fn between(&self, t: f64) -> Option<([f64; 2], [&[f64]; 2])> {
         let next = self.after(t);
         let before = next.checked_sub(1).filter(|_| !self.hold)?;

@@ -1,7 +1,9 @@
-//! Eigenvalues of a symmetric 3×3 matrix, by Jacobi's rotations: the principal moments of a rotational inertia.
+//! Eigenvalues of a symmetric 3×3 matrix, by Jacobi's rotations: the principal moments of a
+//! rotational inertia.
 
-/// Eigenvalues in rising order of the symmetric matrix xx, xy, xz, yy, yz, zz. Backward error of some 1e-15 of the
-/// largest entry, whatever the scale of the entries, which have to be finite. Golub & Van Loan, *Matrix Computations*, §8.5.
+/// Eigenvalues in rising order of the symmetric matrix xx, xy, xz, yy, yz, zz. Backward error of
+/// some 1e-15 of the largest entry, whatever the scale of the entries, which have to be finite.
+/// Golub & Van Loan, *Matrix Computations*, §8.5.
 pub fn eigenvalues(m: [f64; 6]) -> [f64; 3] {
     let scale = m.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     if scale == 0.0 {

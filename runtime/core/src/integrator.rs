@@ -1,6 +1,7 @@
 //! The one table of integrators, from which simulations, scenes, documentation and tests read.
 //!
-//! Adding one: its file in `runtime/src/simulate/integrator`, its line in the `method` of that folder, its row here.
+//! Adding one: its file in `runtime/src/simulate/integrator`, its line in the `method` of that
+//! folder, its row here.
 
 use alloc::string::String;
 use core::fmt;
@@ -22,11 +23,13 @@ pub struct Integrator {
     pub implicit: bool,
     /// When to take it.
     pub what_for: &'static str,
-    /// What methods for the same problems are called by others, in small letters without `_` and `-`.
+    /// What methods for the same problems are called by others, in small letters without `_` and
+    /// `-`.
     pub elsewhere: &'static str,
     /// Where it is from.
     pub source: &'static str,
-    /// Functions that the robot has to have. One with a quaternion among its coordinates needs `integrate` as well, for all of them.
+    /// Functions that the robot has to have. One with a quaternion among its coordinates needs
+    /// `integrate` as well, for all of them.
     pub needs: &'static [FunctionId],
 }
 

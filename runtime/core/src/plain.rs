@@ -5,7 +5,8 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::fmt;
 
-/// A number as people write it: `1`, not `1.0`; with a power of ten where it is very small or very large.
+/// A number as people write it: `1`, not `1.0`; with a power of ten where it is very small or very
+/// large.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plain(pub f64);
 

@@ -1,9 +1,12 @@
-//! A scalar that carries a bound on its rounding error: what an evaluation can be off by at most, operation by operation.
+//! A scalar that carries a bound on its rounding error: what an evaluation can be off by at most,
+//! operation by operation.
 //!
-//! Running error analysis (Wilkinson 1986; Higham, Accuracy and Stability of Numerical Algorithms, 2002, 3.3) on midpoints and radii, so that it holds for one state and for a
-//! box of states alike. All here is in f64 and rounded upward by a few units more than it can lose.
+//! Running error analysis (Wilkinson 1986; Higham, Accuracy and Stability of Numerical Algorithms,
+//! 2002, 3.3) on midpoints and radii, so that it holds for one state and for a box of states alike.
+//! All here is in f64 and rounded upward by a few units more than it can lose.
 //!
-//! Operations are calls, not inlined: algorithms would become several times as large, and as long to compile, for nothing.
+//! Operations are calls, not inlined: algorithms would become several times as large, and as long
+//! to compile, for nothing.
 
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -12,8 +15,9 @@ use num_traits::{One, Zero};
 use crate::Scalar;
 use crate::scalar::two_to;
 
-/// A number x of which it is known that |x − value| ≤ radius, and that an evaluation in which each operation is off by at most 2^−`BITS` of its result is off
-/// from x by at most `error`. Sines: off by 2^(2−`BITS`) of their value if `SINES` is 0, by 10^−`SINES` and a rounding otherwise.
+/// A number x of which it is known that |x − value| ≤ radius, and that an evaluation in which each
+/// operation is off by at most 2^−`BITS` of its result is off from x by at most `error`. Sines: off
+/// by 2^(2−`BITS`) of their value if `SINES` is 0, by 10^−`SINES` and a rounding otherwise.
 ///
 /// Underflow counts as an error of 10⁻³⁰⁰ an operation (of 10⁻⁴⁴ for single precision).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -268,8 +272,9 @@ mod tests {
         (1..).map(|k| (0.618_033_988_749_895 * f64::from(k)) % 1.0)
     }
 
-    /// f on a box of states, in single precision: whatever is in the box has its result within the radius, and its evaluation within the error of that. `f` of the bounds, of
-    /// `f64` and of `f32`. Gives the largest parts of radius and error that were needed.
+    /// f on a box of states, in single precision: whatever is in the box has its result within the
+    /// radius, and its evaluation within the error of that. `f` of the bounds, of `f64` and of
+    /// `f32`. Gives the largest parts of radius and error that were needed.
     fn hold(
         (midpoints, radii): ([f64; 2], [f64; 2]),
         f: impl Fn(Single, Single) -> Single,
@@ -316,7 +321,8 @@ mod tests {
         }
     }
 
-    /// The worst that operands can be: anywhere in their radii, and evaluated with all of their errors, to either side.
+    /// The worst that operands can be: anywhere in their radii, and evaluated with all of their
+    /// errors, to either side.
     #[test]
     fn errors_and_radii_of_operands_are_carried_in_full() {
         type Wide = Running<53, 0>;
@@ -366,7 +372,8 @@ mod tests {
             hold(([x, 0.5], [r, r]), ramp, |x, y| (x - y).max(0.0), |x, y| (x - y).max(0.0));
             hold(([x, 0.5], [r, r]), step, |x, y| if x > y { x } else { -y }, |x, y| if x > y { x } else { -y });
         }
-        // Where rounding alone may turn it round, the result may be off by the jump; where it may not, it is off by nothing.
+        // Where rounding alone may turn it round, the result may be off by the jump; where it may
+        // not, it is off by nothing.
         let tenth = |x: f64| Single::within(x, 0.0) * Single::from_f64(0.1);
         let jump = |x: f64| Single::select((tenth(x) - Single::within(0.05, 0.0)).positive(), Single::one(), Single::zero());
         assert!(jump(0.5).error >= 1.0 && jump(0.5001).error < 1e-6, "{:?} {:?}", jump(0.5), jump(0.5001));

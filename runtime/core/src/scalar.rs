@@ -3,10 +3,11 @@
 use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign};
 use num_traits::{One, Zero};
 
-/// A real number, or something that stands for one: `f32`, `f64`, a symbol, a big float, a dual number.
+/// A real number, or something that stands for one: `f32`, `f64`, a symbol, a big float, a dual
+/// number.
 ///
-/// There is no ordering on purpose: a program that is traced cannot branch on a value, so a choice between two values is written
-/// `S::select(x.positive(), a, b)`, which every scalar can do.
+/// There is no ordering on purpose: a program that is traced cannot branch on a value, so a choice
+/// between two values is written `S::select(x.positive(), a, b)`, which every scalar can do.
 pub trait Scalar:
     nalgebra::Scalar
     + Copy
@@ -24,7 +25,8 @@ pub trait Scalar:
     /// Bits of its significand: how far a power series has to go.
     const BITS: u32 = f64::MANTISSA_DIGITS;
 
-    /// Whether what is computed with zeros and ones costs nothing, as they are known before: then sparse factors one after the other cost less than their product.
+    /// Whether what is computed with zeros and ones costs nothing, as they are known before: then
+    /// sparse factors one after the other cost less than their product.
     const FOLDS: bool = false;
 
     /// The scalar nearest to `x`.
@@ -42,7 +44,8 @@ pub trait Scalar:
     /// √self.
     fn sqrt(self) -> Self;
 
-    /// The angle of the point (x, self), rad, in (−π, π]; 0 at the origin. The sign of a zero counts where the scalar has one.
+    /// The angle of the point (x, self), rad, in (−π, π]; 0 at the origin. The sign of a zero
+    /// counts where the scalar has one.
     fn atan2(self, x: Self) -> Self;
 
     /// self > 0.

@@ -19,14 +19,16 @@ pub struct Settings {
     pub start: f64,
     /// Last time, s; after `start`.
     pub end: f64,
-    /// Fixed steps of this length, s, the last of a stretch shortened to end with it. `None`: steps are chosen by the tolerances, which only the integrators do that
-    /// are `adaptive` in [`crate::integrator::integrators`].
+    /// Fixed steps of this length, s, the last of a stretch shortened to end with it. `None`: steps
+    /// are chosen by the tolerances, which only the integrators do that are `adaptive` in
+    /// [`crate::integrator::integrators`].
     pub step: Option<f64>,
     /// Relative tolerance of a step's error, coordinate by coordinate.
     pub rtol: f64,
     /// Absolute tolerance of a step's error: rad, m, and those a second.
     pub atol: f64,
-    /// Absolute tolerances one by one, `[2·nv]`: of the steps of q, then of v; empty: `atol` for all. No key of a scene.
+    /// Absolute tolerances one by one, `[2·nv]`: of the steps of q, then of v; empty: `atol` for
+    /// all. No key of a scene.
     pub atol_each: Vec<f64>,
     /// No step shorter than this, s, save the last of a stretch; 0: sixteen units of rounding of t.
     pub min_step: f64,
@@ -38,7 +40,8 @@ pub struct Settings {
     pub max_steps: u64,
     /// When to record.
     pub output: Output,
-    /// How sharply the time of an event is found, s; never sharper than four units of rounding of t.
+    /// How sharply the time of an event is found, s; never sharper than four units of rounding of
+    /// t.
     pub event_tolerance: f64,
     /// What to do where an explicit integrator meets a stiff motion.
     pub stiffness: Stiffness,
@@ -60,8 +63,9 @@ pub enum Output {
 /// What to do where an explicit integrator meets a stiff motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Stiffness {
-    /// End with `SimulateError::Unstable`, or with `SimulateError::Stiff` where more than 20 000 steps of the length that stability admits would be left to
-    /// the end; where they are fewer, they are made, and the time is noted as by [`Self::Note`].
+    /// End with `SimulateError::Unstable`, or with `SimulateError::Stiff` where more than 20 000
+    /// steps of the length that stability admits would be left to the end; where they are fewer,
+    /// they are made, and the time is noted as by [`Self::Note`].
     #[default]
     Refuse,
     /// Note the time in `Counts::stiff_at` and go on.
@@ -140,7 +144,8 @@ fn bounded(x: f64) -> Option<f64> {
 }
 
 impl Settings {
-    /// Everything that is wrong with them for a robot of this shape, each key once. Of what goes with a key that is wrong nothing is said.
+    /// Everything that is wrong with them for a robot of this shape, each key once. Of what goes
+    /// with a key that is wrong nothing is said.
     pub fn problems(&self, shape: Shape) -> Vec<SettingError> {
         let mut found = Problems(Vec::new());
         for (key, range, unit, of) in NUMBERS {
@@ -166,7 +171,8 @@ impl Settings {
         16.0 * f64::EPSILON * self.start.abs().max(self.end.abs())
     }
 
-    /// What a time between samples of a controller, s, has to be, if it is not: samples end steps, so time has to tell them apart, and there are no more of them than steps.
+    /// What a time between samples of a controller, s, has to be, if it is not: samples end steps,
+    /// so time has to tell them apart, and there are no more of them than steps.
     pub fn wrong_period(&self, period: f64) -> Option<String> {
         let (least, length, most) = (self.least_step(), self.end - self.start, self.max_steps);
         if !Range::POSITIVE.has(period) {

@@ -6,12 +6,14 @@ use alloc::vec::Vec;
 
 /// Longer names are not compared.
 const LONGEST: usize = 64;
-/// Pairs of letters that are compared at most, so that a file full of unknown names is still read quickly.
+/// Pairs of letters that are compared at most, so that a file full of unknown names is still read
+/// quickly.
 const MOST_PAIRS: usize = 3_000_000;
 /// Fewer letters are not taken for the beginning or the end of a name.
 const LEAST: usize = 3;
 
-/// Finds what was meant, with a bound on the work: one for a file, which makes no suggestions beyond it.
+/// Finds what was meant, with a bound on the work: one for a file, which makes no suggestions
+/// beyond it.
 #[derive(Clone, Debug)]
 pub struct Suggester {
     left: usize,
@@ -24,8 +26,8 @@ impl Default for Suggester {
 }
 
 impl Suggester {
-    /// The name that differs least from `wrong`, if by a third of its letters at most; or else the shortest that begins with it; or else the
-    /// shortest that ends with it.
+    /// The name that differs least from `wrong`, if by a third of its letters at most; or else the
+    /// shortest that begins with it; or else the shortest that ends with it.
     pub fn nearest<'a>(&mut self, wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
         self.found(wrong, names).and_then(|(misspelt, begins)| misspelt.or(begins))
     }
@@ -35,7 +37,8 @@ impl Suggester {
         self.found(wrong, names).and_then(|(misspelt, _)| misspelt)
     }
 
-    /// The name that differs least, and the shortest that begins with `wrong`; nothing where that is too much work.
+    /// The name that differs least, and the shortest that begins with `wrong`; nothing where that
+    /// is too much work.
     fn found<'a>(&mut self, wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Option<(Option<&'a str>, Option<&'a str>)> {
         let letters: Vec<char> = small(wrong).take(LONGEST + 1).collect();
         if letters.len() > LONGEST {

@@ -2,7 +2,8 @@
 
 use articulated_core::dynamics::Dynamics;
 
-/// The torques that the motors give for the commanded ones, `[nv]`; false where the robot has no such function: they are then the commanded ones.
+/// The torques that the motors give for the commanded ones, `[nv]`; false where the robot has no
+/// such function: they are then the commanded ones.
 pub(crate) fn motor_torques<R: Dynamics<f64>>(robot: &R, ws: &mut R::Workspace, v: &[f64], tau: &[f64], out: &mut [f64]) -> bool {
     robot.motor_torques(ws, v, tau, out).is_ok()
 }

@@ -27,7 +27,8 @@ pub enum SimulateError {
         what: &'static str,
         /// Their indices, in order.
         index: Vec<usize>,
-        /// Names of the joints that they belong to, each once, as far as the robot can tell; of an event its own.
+        /// Names of the joints that they belong to, each once, as far as the robot can tell; of an
+        /// event its own.
         names: Vec<String>,
     },
     /// There are no accelerations: the mass matrix is singular.
@@ -49,7 +50,8 @@ pub enum SimulateError {
         index: usize,
         /// Name of the joint that it belongs to, where the robot can tell.
         joint: Option<String>,
-        /// The shortest step that the settings allow, s, where that is what is in the way, and not what time can tell apart.
+        /// The shortest step that the settings allow, s, where that is what is in the way, and not
+        /// what time can tell apart.
         least: Option<f64>,
     },
     /// More steps than allowed.
@@ -59,7 +61,8 @@ pub enum SimulateError {
         /// Steps made, rejected ones included.
         steps: u64,
     },
-    /// The tolerances ask for steps so short that the end would take far more steps than are allowed.
+    /// The tolerances ask for steps so short that the end would take far more steps than are
+    /// allowed.
     NoProgress {
         /// Time, s.
         t: f64,
@@ -79,7 +82,8 @@ pub enum SimulateError {
         t: f64,
         /// The step, s.
         step: f64,
-        /// The longest step at which the motion, were it linear, is stable here, s. Where forces bend within a step (stops, dry friction) take three tenths of it.
+        /// The longest step at which the motion, were it linear, is stable here, s. Where forces
+        /// bend within a step (stops, dry friction) take three tenths of it.
         admissible: f64,
         /// Size of the fastest eigenvalue, 1/s.
         rate: f64,
@@ -161,7 +165,8 @@ pub enum StateError {
         /// Its error.
         wrong: TableError,
     },
-    /// A quaternion whose norm is not one within [`NORM_TOLERANCE`](articulated_core::spatial::NORM_TOLERANCE).
+    /// A quaternion whose norm is not one within
+    /// [`NORM_TOLERANCE`](articulated_core::spatial::NORM_TOLERANCE).
     Quaternion {
         /// The vector.
         vector: &'static str,

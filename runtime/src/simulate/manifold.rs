@@ -1,14 +1,16 @@
 //! Which coordinates are quaternions, and motion in a chart of step vectors.
 //!
-//! A step of an integrator is made in the step vector u of q = q_0 ⊕ u, where q_0 is the configuration at its start: plain numbers, in which any Runge–Kutta
-//! method keeps its order and no quaternion leaves its sphere. Joints that turn freely move as
+//! A step of an integrator is made in the step vector u of q = q_0 ⊕ u, where q_0 is the
+//! configuration at its start: plain numbers, in which any Runge–Kutta method keeps its order and
+//! no quaternion leaves its sphere. Joints that turn freely move as
 //!
 //! ```text
 //! q = q_0·exp(u)      u̇ = J_r(u)⁻¹ v = v + ½ [u, v] + …
 //! ```
 //!
-//! with the inverse of the right Jacobian of SO(3) or SE(3) in closed form (Munthe-Kaas, BIT 38, 1998; Hairer, Lubich & Wanner 2006, §IV.8); for every other u̇ = v.
-//! J_r is regular up to a turn by 2π in one step.
+//! with the inverse of the right Jacobian of SO(3) or SE(3) in closed form (Munthe-Kaas, BIT 38,
+//! 1998; Hairer, Lubich & Wanner 2006, §IV.8); for every other u̇ = v. J_r is regular up to a turn
+//! by 2π in one step.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -56,7 +58,8 @@ pub(crate) struct Manifold {
 }
 
 impl Manifold {
-    /// What the function `integrate` shows: q = (½, ½, …) is a configuration of any robot, and a small turn of a joint moves its quaternion alone.
+    /// What the function `integrate` shows: q = (½, ½, …) is a configuration of any robot, and a
+    /// small turn of a joint moves its quaternion alone.
     pub(crate) fn of<R: Dynamics<f64>>(robot: &R) -> Result<Self, FunctionError> {
         let shape = robot.shape();
         let mut manifold = Self { nq: shape.nq, nv: shape.nv, free: Vec::new() };
@@ -95,7 +98,8 @@ impl Manifold {
         out: &mut [f64],
     ) -> Result<(), FunctionError> {
         if u.iter().all(|u| *u == 0.0) {
-            // To the last bit where it is: a quaternion that is normalised again may move by a rounding.
+            // To the last bit where it is: a quaternion that is normalised again may move by a
+            // rounding.
             out.copy_from_slice(q);
             return Ok(());
         }
@@ -149,12 +153,14 @@ impl Manifold {
         all
     }
 
-    /// The joint that turns fastest of those that turn freely, by the first of its degrees of freedom, and how fast, rad/s.
+    /// The joint that turns fastest of those that turn freely, by the first of its degrees of
+    /// freedom, and how fast, rad/s.
     pub(crate) fn fastest_turn(&self, v: &[f64]) -> Option<(usize, f64)> {
         self.free.iter().map(|free| (free.v, three(v, free.v).norm())).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// What errors of the steps of q are relative to: the coordinate, 1 for a turn, the distance from the origin for a position.
+    /// What errors of the steps of q are relative to: the coordinate, 1 for a turn, the distance
+    /// from the origin for a position.
     pub(crate) fn magnitudes(&self, q: &[f64], out: &mut [f64]) {
         let (mut at, mut free) = ((0, 0), self.free.iter());
         loop {
@@ -170,31 +176,36 @@ impl Manifold {
         }
     }
 
-    /// Step vector u and velocity v at the end of a semi-implicit Euler step of length h, from velocity `v0` and acceleration `a` at its start.
+    /// Step vector u and velocity v at the end of a semi-implicit Euler step of length h, from
+    /// velocity `v0` and acceleration `a` at its start.
     ///
-    /// The velocity of the origin of a floating joint is stepped in axes that do not rotate, those of the joint at the start of the step:
+    /// The velocity of the origin of a floating joint is stepped in axes that do not rotate, those
+    /// of the joint at the start of the step:
     ///
     /// ```text
     /// ω₁ = ω₀ + h ω̇      w = v₀ + h (v̇ + ω₀ × v₀)      q₁: rotated by exp(h ω₁), moved by h w      v₁ = exp(h ω₁)ᵀ w
     /// ```
     ///
-    /// v̇ + ω × v is the acceleration of the origin, which no constant velocity of the frame changes: such a velocity is kept to rounding (Galilean invariance). A
-    /// step of v in body axes instead multiplies it by √(1 + h² ω²).
+    /// v̇ + ω × v is the acceleration of the origin, which no constant velocity of the frame
+    /// changes: such a velocity is kept to rounding (Galilean invariance). A step of v in body axes
+    /// instead multiplies it by √(1 + h² ω²).
     pub(crate) fn semi_implicit_step(&self, v0: &[f64], a: &[f64], h: f64, u: &mut [f64], v: &mut [f64]) {
         v.iter_mut().zip(v0).zip(a).for_each(|((v, v0), a)| *v = v0 + h * a);
         u.iter_mut().zip(&*v).for_each(|(u, v)| *u = h * v);
         for at in self.free.iter().filter(|free| free.moves).map(|free| free.v) {
             let (rotation, spin) = (three(u, at), three(v0, at));
             let w = three(v, at + 3) + spin.cross(&three(v0, at + 3)) * h;
-            // The translation of exp(u) is the left Jacobian of its rotation times the linear part of u.
+            // The translation of exp(u) is the left Jacobian of its rotation times the linear part
+            // of u.
             let (along, turned) = carried(rotation, w);
             u[at + 3..at + 6].copy_from_slice((along * h).as_slice());
             v[at + 3..at + 6].copy_from_slice(turned.as_slice());
         }
     }
 
-    /// The step vector that turns by 2 atan(½|w|) about w = step where exp turns by |w|: Cayley's map as an exponential. On SE(3) the same with dual numbers,
-    /// so that what it carries is (1 − ½ ad)⁻¹(1 + ½ ad). Plain coordinates stay as they are.
+    /// The step vector that turns by 2 atan(½|w|) about w = step where exp turns by |w|: Cayley's
+    /// map as an exponential. On SE(3) the same with dual numbers, so that what it carries is (1 −
+    /// ½ ad)⁻¹(1 + ½ ad). Plain coordinates stay as they are.
     pub(crate) fn cayley(&self, step: &mut [f64]) {
         for free in &self.free {
             let (w, at) = (three(step, free.v), free.v);

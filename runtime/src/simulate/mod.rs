@@ -1,7 +1,8 @@
 //! Simulation of any robot, generated or loaded: integrators, events, controllers, recordings.
 //!
-//! Everything is written over [`crate::Dynamics`]. States are points of the manifold: a step is made in step vectors from where it begins, with the exact
-//! correction for joints that turn freely, so that every method keeps its order and quaternions keep their norm.
+//! Everything is written over [`crate::Dynamics`]. States are points of the manifold: a step is
+//! made in step vectors from where it begins, with the exact correction for joints that turn
+//! freely, so that every method keeps its order and quaternions keep their norm.
 //!
 //! ```
 //! use articulated::simulate::{IntegratorId, NoTorque, Settings, Simulation};

@@ -18,7 +18,8 @@ impl Times {
         Self { next: 0 }
     }
 
-    /// The next time after the start at which something is recorded; infinite where each step is, or none.
+    /// The next time after the start at which something is recorded; infinite where each step is,
+    /// or none.
     pub(crate) fn next(&self, settings: &Settings) -> f64 {
         match &settings.output {
             Output::Every(s) => {
@@ -35,7 +36,8 @@ impl Times {
         self.next += 1;
     }
 
-    /// How many there will be, as far as that is known, and as far as room for them is worth making beforehand.
+    /// How many there will be, as far as that is known, and as far as room for them is worth making
+    /// beforehand.
     pub(crate) fn count(settings: &Settings) -> usize {
         let count = match &settings.output {
             Output::Every(s) => ((settings.end - settings.start) / s).ceil() as usize + 3,
@@ -143,7 +145,8 @@ impl Known {
         Ok(())
     }
 
-    /// Adds a state to the balance of energy, if that is requested; the first one is where the motion begins.
+    /// Adds a state to the balance of energy, if that is requested; the first one is where the
+    /// motion begins.
     pub(crate) fn follow<R: Dynamics<f64>>(
         &mut self,
         system: &mut System<R>,

@@ -133,9 +133,11 @@ pub struct Recording {
     /// Energy of the effects that are not conservative since the start, J; negative where they took
     /// some. Empty unless requested, as `work`.
     pub dissipated: Vec<f64>,
-    /// Energy that the maps of events brought since the start, J: change of T + U, negative where they took some; empty for a robot without one of the two.
+    /// Energy that the maps of events brought since the start, J: change of T + U, negative where
+    /// they took some; empty for a robot without one of the two.
     pub from_events: Vec<f64>,
-    /// Momentum about the centre of mass [k; l], `[n][6]`, N·m·s and N·s, world axes; empty for a robot without the function.
+    /// Momentum about the centre of mass [k; l], `[n][6]`, N·m·s and N·s, world axes; empty for a
+    /// robot without the function.
     pub momentum: Vec<f64>,
     /// Functions that the robot lacks; their records are empty.
     pub missing: Vec<&'static str>,

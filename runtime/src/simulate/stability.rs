@@ -1,8 +1,11 @@
-//! Whether a fixed step of an explicit integrator is stable here: the fastest pair of eigenvalues of the motion's Jacobian, without the Jacobian.
+//! Whether a fixed step of an explicit integrator is stable here: the fastest pair of eigenvalues
+//! of the motion's Jacobian, without the Jacobian.
 //!
-//! A vector z is driven by the Jacobian again and again, J z ≈ (f(y + εz) − f(y))/ε, until it lies in the plane of the fastest motions; the last two of z, Jz, J²z
-//! then give the λ² = aλ + b of that plane, real or complex (power iteration with a fit to a pair: Wilkinson, *The Algebraic Eigenvalue Problem*, 1965, §9.3). z is
-//! kept from one look to the next, so that later ones need two evaluations.
+//! A vector z is driven by the Jacobian again and again, J z ≈ (f(y + εz) − f(y))/ε, until it lies
+//! in the plane of the fastest motions; the last two of z, Jz, J²z then give the λ² = aλ + b of
+//! that plane, real or complex (power iteration with a fit to a pair: Wilkinson, *The Algebraic
+//! Eigenvalue Problem*, 1965, §9.3). z is kept from one look to the next, so that later ones need
+//! two evaluations.
 
 use articulated_core::dynamics::Dynamics;
 
@@ -76,7 +79,8 @@ impl Stability {
         self.fresh = true;
     }
 
-    /// Whether it is time to look after this many steps, or the motion has jumped: the largest velocity is more than eight times what it ever was.
+    /// Whether it is time to look after this many steps, or the motion has jumped: the largest
+    /// velocity is more than eight times what it ever was.
     pub(crate) fn due(&mut self, steps: u64, v: &[f64]) -> bool {
         let size = v.iter().fold(0.0, |most: f64, v| if v.is_finite() { most.max(v.abs()) } else { f64::INFINITY });
         let jumped = size > 8.0 * self.largest && self.largest > 0.0;
@@ -91,7 +95,8 @@ impl Stability {
         due
     }
 
-    /// Whether what a step saw of fast motion, |hλ| roughly, is reason to look; not twice in a row, unless it is much faster than what was looked at.
+    /// Whether what a step saw of fast motion, |hλ| roughly, is reason to look; not twice in a row,
+    /// unless it is much faster than what was looked at.
     pub(crate) fn suspects(&mut self, steps: u64, seen: f64) -> bool {
         let look = seen > SUSPICIOUS && (steps >= self.wait || seen > 4.0 * self.seen);
         if look {
@@ -100,7 +105,8 @@ impl Stability {
         look
     }
 
-    /// The longest stable step up to h and the rate that bounds it, if h itself is not stable at (t, y), where dy/dt = f.
+    /// The longest stable step up to h and the rate that bounds it, if h itself is not stable at
+    /// (t, y), where dy/dt = f.
     pub(crate) fn exceeded<R: Dynamics<f64>>(
         &mut self,
         system: &mut System<R>,
@@ -118,7 +124,9 @@ impl Stability {
         let calm = found.is_some_and(|pair| h * pair.rate < CALM);
         self.interval = if calm { (2 * self.interval).min(SELDOM) } else { EVERY };
         let Some(pair) = found.filter(|pair| !stable(method, *pair, h)) else { return Ok(None) };
-        // The first step beyond |hλ| = 1 that is not stable bounds those that are: of those that are told not even one that makes next to nothing grow, for how many there will be nobody knows.
+        // The first step beyond |hλ| = 1 that is not stable bounds those that are: of those that
+        // are told not even one that makes next to nothing grow, for how many there will be nobody
+        // knows.
         let mut admissible = (1.0 / pair.rate).min(h);
         while admissible < h && excess(method, pair, 1.01 * admissible) <= TOLD {
             admissible *= 1.01;
@@ -150,7 +158,8 @@ impl Stability {
             let Some(pair) = fit(&self.z[0][..n], &self.z[1][..n], &self.z[2][..n]) else { return Ok(before) };
             let settled = before.is_some_and(|b| (b.rate - pair.rate).abs() <= 0.01 * pair.rate);
             before = Some(pair);
-            // The next round begins with Jz: with J²z alone, pairs ±λ would never be told apart from where they began.
+            // The next round begins with Jz: with J²z alone, pairs ±λ would never be told apart
+            // from where they began.
             self.z.swap(0, 1);
             if settled {
                 break;
@@ -159,7 +168,8 @@ impl Stability {
         Ok(before)
     }
 
-    /// What was fast is looked at again; a little of everything, in numbers without a pattern, lets in what has become fast.
+    /// What was fast is looked at again; a little of everything, in numbers without a pattern, lets
+    /// in what has become fast.
     fn begin(&mut self, n: usize) {
         let size = norm(&self.z[0][..n]);
         let kept = if self.fresh || !(size > 0.0 && size.is_finite()) { 0.0 } else { 1.0 / size };

@@ -60,7 +60,8 @@ pub(crate) struct Error {
     pub(crate) index: usize,
 }
 
-/// How the next step follows from errors: h·0.9·e_nᵅ·e_{n−1}ᵝ, a PI controller (Gustafsson 1991; Hairer & Wanner 1996, §IV.2).
+/// How the next step follows from errors: h·0.9·e_nᵅ·e_{n−1}ᵝ, a PI controller (Gustafsson 1991;
+/// Hairer & Wanner 1996, §IV.2).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Controller {
     alpha: f64,
@@ -72,12 +73,14 @@ pub(crate) struct Controller {
 }
 
 impl Controller {
-    /// For an error that falls with the power `order` of the step; `beta` is what the error before has to say; steps change by factors from `least` to `most`.
+    /// For an error that falls with the power `order` of the step; `beta` is what the error before
+    /// has to say; steps change by factors from `least` to `most`.
     pub(crate) fn new(order: f64, beta: f64, least: f64, most: f64) -> Self {
         Self { alpha: 1.0 / order - 0.75 * beta, beta, least, most, before: 1e-4, rejected: false }
     }
 
-    /// The factor of the next step after one with this error; `None`: it is rejected, and the factor is that of [`Controller::again`].
+    /// The factor of the next step after one with this error; `None`: it is rejected, and the
+    /// factor is that of [`Controller::again`].
     pub(crate) fn accept(&mut self, error: f64) -> Option<f64> {
         if error.is_nan() || error > 1.0 {
             self.rejected = true;
@@ -97,7 +100,8 @@ impl Controller {
     }
 }
 
-/// A first step, s: Hairer, Nørsett & Wanner 1993, §II.4. `order` is that of the method, `room` two vectors as long as y.
+/// A first step, s: Hairer, Nørsett & Wanner 1993, §II.4. `order` is that of the method, `room` two
+/// vectors as long as y.
 pub(crate) fn first_step<R: Dynamics<f64>>(
     system: &mut System<R>,
     control: &mut dyn Control,

@@ -10,7 +10,8 @@ use super::{Control, Counts, SimulateError};
 
 /// A robot with all the room that an evaluation of its equations needs.
 ///
-/// y: `[2·nv + 2]`: step vector from the chart's origin, velocities, work of the torques and energy of the effects that are not conservative, J.
+/// y: `[2·nv + 2]`: step vector from the chart's origin, velocities, work of the torques and energy
+/// of the effects that are not conservative, J.
 pub(crate) struct System<'r, R: Dynamics<f64>> {
     pub(crate) robot: &'r R,
     pub(crate) ws: R::Workspace,
@@ -20,14 +21,16 @@ pub(crate) struct System<'r, R: Dynamics<f64>> {
     /// The torques of a sampled controller, `[nv]`, where it is one.
     pub(crate) held: Vec<f64>,
     pub(crate) holds: bool,
-    /// The next time at which the torques have a kink or a jump, s: up to there they are those before it.
+    /// The next time at which the torques have a kink or a jump, s: up to there they are those
+    /// before it.
     pub(crate) kink: f64,
     pub(crate) counts: Counts,
     /// Configuration and torques of the last evaluation.
     pub(crate) q: Vec<f64>,
     pub(crate) tau: Vec<f64>,
     applied: Vec<f64>,
-    /// Since the last step that was accepted: when, s, and which commanded torque was not finite, at a state that was.
+    /// Since the last step that was accepted: when, s, and which commanded torque was not finite,
+    /// at a state that was.
     pub(crate) no_torque: Option<(f64, usize)>,
     pub(crate) has_motors: bool,
     pub(crate) has_losses: bool,
@@ -83,7 +86,8 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         self.no_torque = self.no_torque.or(not_finite(t, (q, v), tau));
     }
 
-    /// The configuration u of the chart and the commanded torques there: in `q` and `tau`. Where a step ends at a jump, those before it.
+    /// The configuration u of the chart and the commanded torques there: in `q` and `tau`. Where a
+    /// step ends at a jump, those before it.
     fn command_at(&mut self, control: &mut dyn Control, t: f64, u: &[f64], v: &[f64]) -> Result<(), FunctionError> {
         self.place(u)?;
         command(self.holds.then_some(&self.held), control, self.within(t), (&self.q, v), &mut self.tau);
@@ -108,7 +112,8 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         Ok(())
     }
 
-    /// Power of the torques and of the effects that are not conservative, W, of a state without its acceleration.
+    /// Power of the torques and of the effects that are not conservative, W, of a state without its
+    /// acceleration.
     pub(crate) fn power(&mut self, control: &mut dyn Control, t: f64, y: &[f64]) -> Result<[f64; 2], SimulateError> {
         let nv = self.nv();
         let (u, v) = (&y[..nv], &y[nv..2 * nv]);
@@ -127,7 +132,8 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         Ok(())
     }
 
-    /// vᵀτ of what the motors give, and the power of the effects, at the configuration and torques of the last evaluation.
+    /// vᵀτ of what the motors give, and the power of the effects, at the configuration and torques
+    /// of the last evaluation.
     fn powers(&mut self, v: &[f64]) -> [f64; 2] {
         if !self.follows_work {
             return [0.0; 2];
@@ -163,7 +169,8 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         SimulateError::NotFinite { t, what, index, names }
     }
 
-    /// The joint at which the mass matrix is singular where the chart begins, at these velocities, if the robot has the functions that tell.
+    /// The joint at which the mass matrix is singular where the chart begins, at these velocities,
+    /// if the robot has the functions that tell.
     pub(crate) fn without_mass(&mut self, v: &[f64]) -> Option<Singular> {
         let zero = vec![0.0; self.nv()];
         let state = [&self.origin[..], v, &zero];

@@ -33,7 +33,8 @@ fn a_blow_hands_over_what_the_ball_and_the_mass_behind_the_point_say() {
     assert!((after.approach + restitution * approach).abs() < 1e-14 && after.impulse == 0.0);
 }
 
-/// A free body, struck off its centre: 1/m_h = 1/m + (r × n)ᵀ I⁻¹ (r × n), with every component of r × n in play, and the momentum that it loses is that of the ball.
+/// A free body, struck off its centre: 1/m_h = 1/m + (r × n)ᵀ I⁻¹ (r × n), with every component of
+/// r × n in play, and the momentum that it loses is that of the ball.
 #[test]
 fn a_blow_off_the_centre_turns_a_free_body() {
     let text = r#"<robot name="box"><link name="box"><inertial><mass value="2"/>
@@ -69,7 +70,8 @@ fn a_ball_of_no_weight_to_speak_of_is_struck() {
     }
 }
 
-/// What an event that strikes records is the ball's speed, and the motion goes on with what is left; what cannot strike is refused.
+/// What an event that strikes records is the ball's speed, and the motion goes on with what is
+/// left; what cannot strike is refused.
 #[test]
 fn an_event_that_strikes_gives_the_speed_of_the_ball() {
     let robot = model("chain", Base::Fixed);

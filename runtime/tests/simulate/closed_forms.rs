@@ -57,7 +57,8 @@ fn a_double_pendulum_keeps_its_energy() {
 
 const HANDLE: [f64; 3] = [1.0, 2.0, 2.7];
 
-/// The angular velocity of a free body that is (x, 0, z) at t = 0, with M² > 2E·I_2: Landau & Lifshitz, Mechanics, §37.
+/// The angular velocity of a free body that is (x, 0, z) at t = 0, with M² > 2E·I_2: Landau &
+/// Lifshitz, Mechanics, §37.
 fn euler(t: f64, x: f64, z: f64) -> ([f64; 3], f64) {
     let [a, b, c] = HANDLE;
     let (twice, square) = (a * x * x + c * z * z, a * a * x * x + c * c * z * z);
@@ -106,7 +107,8 @@ fn a_free_top_precesses_about_its_momentum() {
         let motion = free(&robot, &to(integrator, 10.0, tolerance), &q, &[omega.x, omega.y, omega.z, 0.0, 0.0, 0.0]).unwrap();
         let last = motion.len() - 1;
         let r0 = rotation(&start);
-        // ω = L/I_1 + (1 − I_3/I_1) ω_3 e_3: a turn about L in fixed axes and one about e_3 in those of the body.
+        // ω = L/I_1 + (1 − I_3/I_1) ω_3 e_3: a turn about L in fixed axes and one about e_3 in
+        // those of the body.
         let momentum = r0 * Vector3::new(across * omega.x, across * omega.y, along * omega.z);
         let exact =
             exp_rotation(momentum * (10.0 / across)) * r0 * exp_rotation(Vector3::new(0.0, 0.0, (1.0 - along / across) * omega.z * 10.0));

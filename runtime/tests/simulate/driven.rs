@@ -56,7 +56,8 @@ impl Control for Sampled {
     }
 }
 
-/// Rows between two samples are nothing to a controller that is sampled: they neither ask it nor take a sample away.
+/// Rows between two samples are nothing to a controller that is sampled: they neither ask it nor
+/// take a sample away.
 #[test]
 fn a_sampled_table_is_asked_at_samples_alone() {
     let rows = ([0.0, 0.3, 0.5, 0.55, 0.8], [0.0, 1.0, 2.0, 0.0, 0.2]);
@@ -84,7 +85,8 @@ fn a_table_is_followed_through_its_kinks() {
         let settings = if id == IntegratorId::rk4 { stepping(id, 2.0, 0.3) } else { to(id, 2.0, 1e-3) };
         let mut table = TorqueTable::new(vec![0.0, 0.7, 1.4], &[0.0, 1.0, 0.0], 1).unwrap();
         let motion = Simulation::new(&slider(), settings).unwrap().with_energy_balance().run(&[0.0], &[0.0], &mut table, &mut []).unwrap();
-        // ∫ = 0.7, the centre at 0.7. Derivatives in time are differences where steps are linearly implicit.
+        // ∫ = 0.7, the centre at 0.7. Derivatives in time are differences where steps are linearly
+        // implicit.
         let bound = if id == IntegratorId::rodas4 { 1e-9 } else { 1e-14 };
         assert!((motion.v[1] - 0.7).abs() < bound && (motion.q[1] - 0.7 * 1.3).abs() < bound, "{id}: {} {}", motion.v[1], motion.q[1]);
         assert!((motion.work[1] - 0.5 * 0.49).abs() < bound, "{id}: {}", motion.work[1]);
@@ -104,7 +106,8 @@ impl Control for Jump {
     }
 }
 
-/// Steps end at the jump, and no stage of the step before it sees what comes after: parabolas are exact.
+/// Steps end at the jump, and no stage of the step before it sees what comes after: parabolas are
+/// exact.
 #[test]
 fn a_step_that_ends_at_a_jump_is_made_with_the_torques_before_it() {
     for id in [IntegratorId::dopri5, IntegratorId::dop853, IntegratorId::rodas4, IntegratorId::rk4, IntegratorId::lie_midpoint] {
@@ -158,7 +161,8 @@ fn a_controller_brings_a_robot_to_its_target_whatever_integrates_it() {
     assert!(motion.q_at(1).iter().zip(&half).all(|(q, h)| (q - h).abs() < 1e-4), "{:?}", motion.q_at(1));
 }
 
-/// T + U − (T + U)_0 = work + dissipated, with friction, damping, a spring and a motor between command and joint.
+/// T + U − (T + U)_0 = work + dissipated, with friction, damping, a spring and a motor between
+/// command and joint.
 #[test]
 fn energy_is_accounted_for() {
     let on = |effect, on: &str, parameters| Applied { effect, on: on.into(), at: Origin::default(), parameters };
@@ -224,7 +228,8 @@ fn outputs_between_steps_are_as_good_as_steps() {
     }
 }
 
-/// A force that grows with time: velocities are parabolas, which the curve of a step follows from its slopes at both ends.
+/// A force that grows with time: velocities are parabolas, which the curve of a step follows from
+/// its slopes at both ends.
 #[test]
 fn curves_know_the_time_of_their_slopes() {
     let mut growing = |t: f64, _: &[f64], _: &[f64], tau: &mut [f64]| tau[0] = 6.0 * t;
@@ -249,7 +254,8 @@ fn the_curve_of_dop853_is_of_order_seven() {
     }
 }
 
-/// Records are where they were asked for: none twice, none left out, whatever rounding makes of the times.
+/// Records are where they were asked for: none twice, none left out, whatever rounding makes of the
+/// times.
 #[test]
 fn outputs_come_at_their_times() {
     let robot = slider();
@@ -270,7 +276,8 @@ fn outputs_come_at_their_times() {
     assert_eq!(times(to(IntegratorId::dopri5, 1.0, 1e-9)), [0.0, 1.0]);
 }
 
-/// The first step is the one that was asked for, none is longer than allowed, and where one shorter than allowed would be needed, that is an error.
+/// The first step is the one that was asked for, none is longer than allowed, and where one shorter
+/// than allowed would be needed, that is an error.
 #[test]
 fn steps_keep_the_bounds_that_they_are_given() {
     let (q, v) = ([0.4, -0.7, 0.5], [1.0, 0.5, -1.5]);
@@ -318,7 +325,8 @@ impl Control for Kinks {
     }
 }
 
-/// Steps that could be longer than half of what is left are halves, and one that a stretch is too short for says nothing about the next.
+/// Steps that could be longer than half of what is left are halves, and one that a stretch is too
+/// short for says nothing about the next.
 #[test]
 fn steps_are_alike_where_stretches_are_not_whole_multiples_of_them() {
     for id in [IntegratorId::dopri5, IntegratorId::dop853, IntegratorId::rodas4] {
@@ -332,7 +340,8 @@ fn steps_are_alike_where_stretches_are_not_whole_multiples_of_them() {
     }
 }
 
-/// From rest, where the state says nothing about its own size: a hundred of the steps of 1 µs that it was tried with.
+/// From rest, where the state says nothing about its own size: a hundred of the steps of 1 µs that
+/// it was tried with.
 #[test]
 fn a_first_step_is_no_longer_than_a_hundred_trials() {
     for id in [IntegratorId::dopri5, IntegratorId::dop853] {
@@ -342,7 +351,8 @@ fn a_first_step_is_no_longer_than_a_hundred_trials() {
     }
 }
 
-/// Nothing of one motion is left in the next: neither torques that were held, nor derivatives, nor records.
+/// Nothing of one motion is left in the next: neither torques that were held, nor derivatives, nor
+/// records.
 #[test]
 fn a_motion_is_the_same_whatever_the_simulation_did_before() {
     let robot = model("chain", Base::Fixed);
@@ -376,7 +386,8 @@ fn torques_that_are_added_do_not_add_up() {
     assert!((motion.v[4] - 1.0).abs() < 1e-14, "{:?}", motion.v);
 }
 
-/// The rounds of an implicit step begin at the acceleration of the step before, and at none where a motion begins.
+/// The rounds of an implicit step begin at the acceleration of the step before, and at none where a
+/// motion begins.
 #[test]
 fn rounds_are_as_many_as_without_a_motion_before() {
     let robot = slider();
@@ -386,7 +397,8 @@ fn rounds_are_as_many_as_without_a_motion_before() {
     assert_eq!([3.0, 0.0, 3.0].map(&mut rounds), [11, 10, 11]);
 }
 
-/// τ = k_p·(target − q) + k_d·(rate − v): once under way, a body that is to follow a rate lags by what its own acceleration and friction ask for, which is nothing here.
+/// τ = k_p·(target − q) + k_d·(rate − v): once under way, a body that is to follow a rate lags by
+/// what its own acceleration and friction ask for, which is nothing here.
 #[test]
 fn a_controller_with_rates_holds_them() {
     let robot = slider();
@@ -448,7 +460,8 @@ fn every_bundled_robot_keeps_its_energy() {
     }
 }
 
-/// A servo of 1e7 N·m/rad moves far more energy between two records than is left at any of them: the balance is that of all steps, whatever is recorded.
+/// A servo of 1e7 N·m/rad moves far more energy between two records than is left at any of them:
+/// the balance is that of all steps, whatever is recorded.
 #[test]
 fn the_balance_of_energy_does_not_depend_on_what_is_recorded() {
     let robot = one_joint("continuous", 0.3);
@@ -467,7 +480,8 @@ fn the_balance_of_energy_does_not_depend_on_what_is_recorded() {
     assert_eq!(balance(Output::Ends, false), None);
 }
 
-/// Of a body that is thrown up and falls on a map that stops it: T, work and what events brought are known at the end, and nothing is lacking.
+/// Of a body that is thrown up and falls on a map that stops it: T, work and what events brought
+/// are known at the end, and nothing is lacking.
 #[test]
 fn the_balance_of_energy_counts_what_events_bring() {
     let robot = one_joint("prismatic", 0.0);

@@ -31,7 +31,8 @@ fn a_stop_at_a_time_of_output_is_recorded_once() {
     }
 }
 
-/// Where a map and a stop come at a time of output, the state that the map made is the last record, and no record is earlier than one before it.
+/// Where a map and a stop come at a time of output, the state that the map made is the last record,
+/// and no record is earlier than one before it.
 #[test]
 fn what_a_map_made_before_a_stop_is_recorded() {
     let robot = slider();
@@ -111,7 +112,8 @@ fn one_who_watches_can_end_it() {
     assert_eq!((recording.ended, recording.counts.steps, calls.get()), (Ended::ByObserver, 50, 50));
 }
 
-/// What happens where the motion ends has happened: the state behind it is recorded too, and one who watches is asked.
+/// What happens where the motion ends has happened: the state behind it is recorded too, and one
+/// who watches is asked.
 #[test]
 fn a_map_at_the_end_is_part_of_the_motion() {
     let robot = slider();

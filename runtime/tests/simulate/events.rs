@@ -92,8 +92,9 @@ fn what_happens_at_one_time_all_happens() {
     assert!((motion.energy(1).unwrap() / motion.energy(0).unwrap() - 1.0).abs() < 1e-10);
 }
 
-/// A map may take the state away from the zero of its event, as one does that winds a coordinate back: then it is on the side that its function says. Where a map leaves
-/// it at the zero, as a bounce does, what the search left says nothing, however much that is.
+/// A map may take the state away from the zero of its event, as one does that winds a coordinate
+/// back: then it is on the side that its function says. Where a map leaves it at the zero, as a
+/// bounce does, what the search left says nothing, however much that is.
 #[test]
 fn what_a_map_takes_away_from_a_zero_is_not_found_there_again() {
     let robot = one_joint("prismatic", 0.0);
@@ -142,7 +143,8 @@ fn a_ball_that_bounces_ever_faster_is_an_error_that_names_the_event() {
     assert!((t - end).abs() < 1e-9 && event == "floor", "{t} {end}");
 }
 
-/// A map that leaves a ball at rest on the floor, which does not hold it, and a ball that lies there from the start on: neither falls through unnoticed.
+/// A map that leaves a ball at rest on the floor, which does not hold it, and a ball that lies
+/// there from the start on: neither falls through unnoticed.
 #[test]
 fn what_lies_at_zero_and_goes_on_is_an_event() {
     let robot = one_joint("prismatic", 0.0);
@@ -160,7 +162,8 @@ fn what_lies_at_zero_and_goes_on_is_an_event() {
         let told = fall(event, 1.0).unwrap_err();
         assert!(told.starts_with("at t = 0.4515") && told.contains("`floor` happens again and again"), "{told}");
     }
-    // A section on which a motion begins is none of its returns, unless it is said that it arrives there.
+    // A section on which a motion begins is none of its returns, unless it is said that it arrives
+    // there.
     let section = || Event::new("section", |_, q: &[f64], _: &[f64]| q[0]).direction(Direction::Falling);
     assert_eq!(fall(section(), 0.0).unwrap(), []);
     let arrived = fall(section().arriving(Direction::Falling), 0.0).unwrap();
@@ -195,7 +198,8 @@ fn a_pair_of_zeros_within_a_step_is_not_stepped_over() {
     }
 }
 
-/// In the middle between two of the places where a step is looked at, and so near to each other that only the least value leads to them.
+/// In the middle between two of the places where a step is looked at, and so near to each other
+/// that only the least value leads to them.
 #[test]
 fn a_pair_of_zeros_is_found_wherever_it_is_in_a_step() {
     let robot = slider();
@@ -209,7 +213,8 @@ fn a_pair_of_zeros_is_found_wherever_it_is_in_a_step() {
     }
 }
 
-/// What happens at one time again and again happens at many: pairs of maps are counted anew at each.
+/// What happens at one time again and again happens at many: pairs of maps are counted anew at
+/// each.
 #[test]
 fn two_maps_at_each_of_many_times_are_no_error() {
     let map = |name| {
@@ -299,7 +304,8 @@ fn what_is_recorded_where_another_event_maps_happens_once() {
     }
 }
 
-/// In the order of time, whatever that of their list, and where one maps the state, the others of its time happen with it.
+/// In the order of time, whatever that of their list, and where one maps the state, the others of
+/// its time happen with it.
 #[test]
 fn events_of_one_step_happen_in_order() {
     let still = one_joint("prismatic", 0.0).with_gravity([0.0; 3]);
@@ -417,7 +423,8 @@ fn bounds_that_nothing_is_between_are_an_error() {
     }
 }
 
-/// Stretch by stretch nothing is lost and nothing comes twice: what is zero where a stretch ends happened in it.
+/// Stretch by stretch nothing is lost and nothing comes twice: what is zero where a stretch ends
+/// happened in it.
 #[test]
 fn an_event_where_two_stretches_meet_happens_once() {
     let robot = one_joint("prismatic", 0.0);

@@ -22,7 +22,8 @@ fn velocity(motion: &Recording, i: usize) -> Vector3<f64> {
     from_quaternion([q[3], q[4], q[5], q[6]]) * Vector3::new(v[3], v[4], v[5])
 }
 
-/// 3 m/s and 6 rad/s for 10 s, in steps up to a tenth of a rotation: 30 m, whatever the step; a body that tumbles too.
+/// 3 m/s and 6 rad/s for 10 s, in steps up to a tenth of a rotation: 30 m, whatever the step; a
+/// body that tumbles too.
 #[test]
 fn a_body_without_forces_keeps_its_velocity_whatever_the_step() {
     for (moments, omega) in [([0.02; 3], [0.0, 0.0, 6.0]), ([0.02, 0.03, 0.04], [0.3, 6.0, 0.2])] {
@@ -44,7 +45,8 @@ fn a_body_without_forces_keeps_its_velocity_whatever_the_step() {
     }
 }
 
-/// A projectile that spins: after n steps it has fallen by g h² n (n + 1)/2, the sum of the method, and its velocity is exact.
+/// A projectile that spins: after n steps it has fallen by g h² n (n + 1)/2, the sum of the method,
+/// and its velocity is exact.
 #[test]
 fn a_body_that_spins_falls_as_one_that_does_not() {
     let (h, n) = (0.01, 100.0);
@@ -74,7 +76,8 @@ fn flown(id: IntegratorId, step: f64, frame: Vector3<f64>) -> Recording {
     Simulation::new(&robot, stepping(id, 1.0, step)).unwrap().run(&q, &v, &mut control, &mut []).unwrap()
 }
 
-/// Largest difference between a motion in a frame at rest and one in a frame that moves, the velocity of the frame taken out.
+/// Largest difference between a motion in a frame at rest and one in a frame that moves, the
+/// velocity of the frame taken out.
 fn difference(rest: &Recording, moving: &Recording, frame: Vector3<f64>) -> f64 {
     let (i, j) = (rest.len() - 1, moving.len() - 1);
     let largest = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
@@ -90,8 +93,9 @@ fn difference(rest: &Recording, moving: &Recording, frame: Vector3<f64>) -> f64 
         .fold(0.0, f64::max)
 }
 
-/// Galilean invariance: a constant velocity of the frame changes no relative motion, and no momentum but by m times itself. `semi_implicit_euler` keeps it to rounding,
-/// every other method to its order.
+/// Galilean invariance: a constant velocity of the frame changes no relative motion, and no
+/// momentum but by m times itself. `semi_implicit_euler` keeps it to rounding, every other method
+/// to its order.
 #[test]
 fn the_speed_of_the_frame_changes_no_motion() {
     let frame = Vector3::new(40.0, -25.0, 15.0);

@@ -36,7 +36,8 @@ fn slopes<R: Dynamics<f64>>(robot: &R, q: &[f64], v: &[f64], end: f64, derivativ
                 let steps = (f64::from(coarsest(row.id)) * 1.5_f64.powi(k)).round();
                 let motion = driven(robot, stepping(row.id, end, end / steps), q, v);
                 assert_eq!(motion.counts.steps, steps as u64);
-                // An implicit step that is solved to rounding takes fewer rounds the shorter it is: there steps are what it costs.
+                // An implicit step that is solved to rounding takes fewer rounds the shorter it is:
+                // there steps are what it costs.
                 let cost = if row.id == IntegratorId::lie_midpoint { motion.counts.steps } else { motion.counts.evaluations };
                 ((cost as f64).ln(), apart(robot, &exact, &motion).ln())
             })
@@ -84,8 +85,9 @@ fn the_manuals_name_every_integrator_with_its_order() {
     }
 }
 
-/// Hairer, Nørsett & Wanner 1993, §II.4, by hand, of a body of 1 kg that nothing drives: with d_0 = |y|, d_1 = |f| in units of the tolerances h_0 = 0.01 d_0/d_1, and
-/// the step is (0.01/d_1)^(1/6), 100 h_0 at most; 1e-6 s where nothing moves.
+/// Hairer, Nørsett & Wanner 1993, §II.4, by hand, of a body of 1 kg that nothing drives: with d_0 =
+/// |y|, d_1 = |f| in units of the tolerances h_0 = 0.01 d_0/d_1, and the step is (0.01/d_1)^(1/6),
+/// 100 h_0 at most; 1e-6 s where nothing moves.
 #[test]
 fn a_first_step_is_estimated_by_the_rates() {
     let first = |(rtol, atol): (f64, f64), q: f64, v: f64| {

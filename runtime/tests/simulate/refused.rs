@@ -81,7 +81,8 @@ fn a_generated_robot_without_a_joint_answers_as_the_library_does() {
     assert_eq!(answered, 12);
 }
 
-/// A longest step that time cannot tell from none, and a shortest one that the tolerances need shorter.
+/// A longest step that time cannot tell from none, and a shortest one that the tolerances need
+/// shorter.
 #[test]
 fn bounds_of_steps_are_kept_or_told() {
     let far = Settings { start: 1.7e9, end: 1.7e9 + 0.01, max_step: 1e-6, ..to(IntegratorId::dopri5, 1.0, 1e-6) };
@@ -176,7 +177,8 @@ fn coordinates_are_told_with_their_joints() {
     }
 }
 
-/// Links without mass behind the elbow: every acceleration is none, and it is the last joint that moves nothing.
+/// Links without mass behind the elbow: every acceleration is none, and it is the last joint that
+/// moves nothing.
 #[test]
 fn a_joint_that_moves_no_mass_is_named() {
     let joint = |name: &str, parent: &str, child: &str| {
@@ -201,7 +203,8 @@ fn a_joint_that_moves_no_mass_is_named() {
     }
 }
 
-/// Torques that are finite and no motion: all accelerations that are none are told, with their joints.
+/// Torques that are finite and no motion: all accelerations that are none are told, with their
+/// joints.
 #[test]
 fn accelerations_that_are_not_finite_are_all_told() {
     let robot = model("chain", Base::Fixed);
@@ -229,7 +232,8 @@ fn what_is_wrong_with_a_controller_is_called_as_its_arguments_are() {
     assert_eq!(all(Hold::new(NoTorque, -1.0).err()), "period = -1 cannot be used; it should be a finite number above 0, s");
 }
 
-/// A step of a joint that turns freely has an end: its coordinates repeat after a whole turn, and Cayley's map does not reach half of one.
+/// A step of a joint that turns freely has an end: its coordinates repeat after a whole turn, and
+/// Cayley's map does not reach half of one.
 #[test]
 fn a_step_that_turns_too_far_says_by_how_much() {
     let robot = model("handle", Base::Floating).with_gravity([0.0; 3]);
@@ -248,7 +252,8 @@ fn a_step_that_turns_too_far_says_by_how_much() {
     }
 }
 
-/// Numbers that are none: a period, a ball's speed; a kink that is not to come does not hold up the motion.
+/// Numbers that are none: a period, a ball's speed; a kink that is not to come does not hold up the
+/// motion.
 #[test]
 fn what_a_controller_or_a_ball_says_is_looked_at() {
     struct Odd(Option<f64>, f64);
@@ -275,7 +280,8 @@ fn what_a_controller_or_a_ball_says_is_looked_at() {
     assert!(blow.strike(&[0.1; 2], &mut [0.0; 2], f64::NAN).is_err());
 }
 
-/// 1e6 rad/s for 10 s in steps that resolve it: more than a hundred times the steps that are allowed.
+/// 1e6 rad/s for 10 s in steps that resolve it: more than a hundred times the steps that are
+/// allowed.
 #[test]
 fn a_motion_that_makes_no_progress_is_ended_early_and_names_the_joint() {
     let robot = slider();

@@ -39,7 +39,8 @@ pub(crate) fn model(name: &str, base: Base) -> Model<f64> {
     articulated::load(path, base).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
-/// A turning or sliding body of mass 1 and moment of inertia 1 about the axis z of its joint, its centre `off` from the axis along x.
+/// A turning or sliding body of mass 1 and moment of inertia 1 about the axis z of its joint, its
+/// centre `off` from the axis along x.
 pub(crate) fn one_joint(kind: &str, off: f64) -> Model<f64> {
     let text = format!(
         r#"<robot name="one"><link name="base"/><link name="body"><inertial><origin xyz="{off} 0 0"/><mass value="1"/>

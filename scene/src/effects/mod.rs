@@ -262,7 +262,8 @@ fn check(row: &'static Effect, numbers: &Numbers, spot: &Spot<'_>, log: &mut Dia
     }
 }
 
-/// The fields to blame for a broken rule, with their part of `all`: the rule's own if it is written, else those written that break it with zeros for the others.
+/// The fields to blame for a broken rule, with their part of `all`: the rule's own if it is
+/// written, else those written that break it with zeros for the others.
 fn blamed<'a>(row: &'static Effect, numbers: &Numbers, broken: &'static Field, all: &'a [f64]) -> Vec<(&'static Field, &'a [f64])> {
     let parts = row.fields.iter().zip(&numbers.fields).scan(0, |end, (field, said)| {
         let start = *end;

@@ -1,4 +1,5 @@
-//! Effects against a robot: names looked up, `*` spread over joints and links, numbers taken from the URDF, defaults filled in.
+//! Effects against a robot: names looked up, `*` spread over joints and links, numbers taken from
+//! the URDF, defaults filled in.
 
 use crate::table::bare;
 use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Subject, Unused};
@@ -300,7 +301,8 @@ fn has_room(row: &Effect, kind: JointKind) -> bool {
     kind.quaternion().is_none() || !row.needs_coordinate()
 }
 
-/// All numbers: of the first layer that says or takes them from the URDF, otherwise the defaults. The name of a field for which there are none. `layers`: what is said of a joint by its name, and
+/// All numbers: of the first layer that says or takes them from the URDF, otherwise the defaults.
+/// The name of a field for which there are none. `layers`: what is said of a joint by its name, and
 /// of all; what is to be had from the URDF by name is not left out, so that no other says it.
 pub(super) fn fill(
     row: &'static Effect,

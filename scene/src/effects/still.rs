@@ -2,7 +2,8 @@
 
 use articulated_core::description::{Base, Description, Joint};
 
-/// For each joint, whether it lets its child move: it is not fixed, not locked, and does not follow one that is. A chain of followers without an end lets it.
+/// For each joint, whether it lets its child move: it is not fixed, not locked, and does not follow
+/// one that is. A chain of followers without an end lets it.
 pub(crate) fn moving(description: &Description) -> Vec<bool> {
     let joints = &description.joints;
     let (mut moving, mut seen) = (vec![true; joints.len()], vec![false; joints.len()]);

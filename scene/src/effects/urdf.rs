@@ -32,7 +32,8 @@ pub(crate) fn tag(effect: EffectId, field: &str) -> Option<&'static str> {
     }
 }
 
-/// A URDF has effort and velocity of the joint, behind the gear: those of the motor are less and more by its turns.
+/// A URDF has effort and velocity of the joint, behind the gear: those of the motor are less and
+/// more by its turns.
 pub(super) fn before_the_gear(effect: EffectId, filled: &mut [Filled]) {
     let [torque, speed, (gear, _), ..] = filled else { return };
     let Some(gear) = gear.first().filter(|_| effect == EffectId::motor) else { return };

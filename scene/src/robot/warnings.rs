@@ -15,10 +15,12 @@ use crate::effects::{indices, still};
 /// The sun has 274 m/s².
 const MOST_GRAVITY: f64 = 1000.0;
 
-/// A coordinate, rad or m, beyond which double precision has fewer than ten digits of an angle left.
+/// A coordinate, rad or m, beyond which double precision has fewer than ten digits of an angle
+/// left.
 const MOST_COORDINATE: f64 = 1e6;
 
-/// A warning for each joint of which a coordinate in `q`, rad or m, is beyond any sense: sines of such angles, and what follows from them, are rounding.
+/// A warning for each joint of which a coordinate in `q`, rad or m, is beyond any sense: sines of
+/// such angles, and what follows from them, are rounding.
 pub fn beyond_sense(model: &Model<f64>, q: &[f64]) -> Vec<String> {
     let joints = model.joints().iter().filter_map(|joint| {
         let own = q.get(joint.q.0..joint.q.0 + joint.q.1)?;

@@ -1,4 +1,5 @@
-//! What is said of scenes that are wrong: the key, the line, what was found, what would be right; all at once.
+//! What is said of scenes that are wrong: the key, the line, what was found, what would be right;
+//! all at once.
 
 mod robot;
 

@@ -6,11 +6,10 @@
 //! * [`stress`]: a corpus of hard cases, each with a limit that it keeps.
 //! * [`against`]: whole simulations beside peers.
 //!
-//! A robot comes in as a value, [`robot::Robot`], a scene as [`session::Session`]. A measurement gives
-//! a report, which
-//! can be printed as text, as JSON ([`json::json`]), and as files. The command `articulated` reads
-//! the command line,
-//! loads, and prints; tests use [`states`], [`compiled::Compiled`] and [`scaling::chain::chain`].
+//! A robot comes in as a value, [`robot::Robot`], a scene as [`session::Session`]. A measurement
+//! gives a report, which can be printed as text, as JSON ([`json::json`]), and as files. The
+//! command `articulated` reads the command line, loads, and prints; tests use [`states`],
+//! [`compiled::Compiled`] and [`scaling::chain::chain`].
 
 pub mod accuracy;
 pub mod against;

@@ -1,9 +1,12 @@
-//! Functions of libraries that are opened at run time: the one module of the command that needs `unsafe`.
+//! Functions of libraries that are opened at run time: the one module of the command that needs
+//! `unsafe`.
 //!
-//! A library runs whatever is in it. Two kinds are opened here: one that the command has just compiled from its own
-//! source ([`kernel`], [`batch`]), and peers that the user names ([`peer`], [`peer_kernel`]). The signatures there are what both promise; nothing can check them.
+//! A library runs whatever is in it. Two kinds are opened here: one that the command has just
+//! compiled from its own source ([`kernel`], [`batch`]), and peers that the user names ([`peer`],
+//! [`peer_kernel`]). The signatures there are what both promise; nothing can check them.
 #![allow(unsafe_code)]
-// Why: calling across a C interface has no safe form. What can be checked, the lengths of arrays, is checked before every call.
+// Why: calling across a C interface has no safe form. What can be checked, the lengths of arrays,
+// is checked before every call.
 
 mod batch;
 mod entry;
@@ -32,14 +35,16 @@ pub(crate) struct Native {
 }
 
 impl Native {
-    /// Opens a copy of the library at `path`. What a linker has written piece by piece lies scattered in memory, and code that fills the cache for instructions then takes up to a third
+    /// Opens a copy of the library at `path`. What a linker has written piece by piece lies
+    /// scattered in memory, and code that fills the cache for instructions then takes up to a third
     /// longer, or not, as it happens; a copy is written in one go.
     pub(crate) fn open(path: &Path) -> Result<Self, String> {
         let failed = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
         let folder = Folder::new().map_err(|e| failed(&e))?;
         let copy = folder.path().join(path.file_name().unwrap_or_default());
         std::fs::copy(path, &copy).map_err(|e| failed(&e))?;
-        // SAFETY: initialisers of the library run: ours has none, and a peer is a library that the user asked to be run.
+        // SAFETY: initialisers of the library run: ours has none, and a peer is a library that the
+        // user asked to be run.
         let library = unsafe { libloading::Library::new(&copy) }.map_err(|e| failed(&e))?;
         Ok(Self { library: Arc::new(library), _copy: Arc::new(folder) })
     }
@@ -47,7 +52,8 @@ impl Native {
     /// The function `name`, if there is one. It may be called while the library is open.
     ///
     /// # Safety
-    /// T is the type of a pointer to that function: a function pointer with the C interface, and the arguments and the result that the library gives the function.
+    /// T is the type of a pointer to that function: a function pointer with the C interface, and
+    /// the arguments and the result that the library gives the function.
     unsafe fn symbol<T: Copy>(&self, name: &str) -> Option<T> {
         // SAFETY: what this function asks for is what it asks for.
         unsafe { self.library.get::<T>(name.as_bytes()) }.ok().map(|s| *s)
@@ -79,7 +85,8 @@ fn pointers(x: &[&[f64]]) -> [P; 4] {
     std::array::from_fn(|k| x.get(k).map_or(std::ptr::null(), |x| x.as_ptr().cast()))
 }
 
-/// Where each state's arrays begin, found once, so that nothing but calls is in the loop: to look that up is not a part of a function, and a short one would wait for it.
+/// Where each state's arrays begin, found once, so that nothing but calls is in the loop: to look
+/// that up is not a part of a function, and a short one would wait for it.
 fn all_pointers(states: &[Vec<&[f64]>]) -> Vec<[P; 4]> {
     black_box(states.iter().map(|state| pointers(state)).collect())
 }

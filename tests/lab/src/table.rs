@@ -1,6 +1,7 @@
 //! Tables that line up.
 
-/// A table with titles and units over its columns; the first column is text, the others are numbers.
+/// A table with titles and units over its columns; the first column is text, the others are
+/// numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     head: [Vec<String>; 2],
@@ -69,7 +70,8 @@ impl Table {
     }
 }
 
-/// How many columns of a terminal a text takes: marks on the letter before take none, wide letters of East Asia and pictures two (Unicode Standard Annex 11, its large blocks).
+/// How many columns of a terminal a text takes: marks on the letter before take none, wide letters
+/// of East Asia and pictures two (Unicode Standard Annex 11, its large blocks).
 fn columns(text: &str) -> usize {
     let one = |c: char| match c {
         '\u{300}'..='\u{36f}' => 0,
@@ -84,7 +86,8 @@ fn columns(text: &str) -> usize {
 /// How many columns prose takes.
 pub const WIDTH: usize = 100;
 
-/// Prose in lines of at most [`WIDTH`] columns, as far as its spaces allow; what continues a line stands below its beginning.
+/// Prose in lines of at most [`WIDTH`] columns, as far as its spaces allow; what continues a line
+/// stands below its beginning.
 pub fn wrapped(text: &str) -> String {
     text.split_inclusive('\n').map(wrapped_line).collect()
 }

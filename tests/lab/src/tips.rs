@@ -1,6 +1,7 @@
 //! The frames that lists of all functions are about.
 //!
-//! A robot has a frame for each link, and what a function of frames costs grows with them. Such lists take the tips: moving links that carry no other.
+//! A robot has a frame for each link, and what a function of frames costs grows with them. Such
+//! lists take the tips: moving links that carry no other.
 
 use articulated_core::algorithm::{Function, Needs};
 use articulated_core::description::Description;

@@ -123,7 +123,8 @@ impl Case {
         Motions::new(&self.description, self.base, self.gravity)
     }
 
-    /// A state at random: angles in ±π, lengths in ±1 m, rates and accelerations in ±2, torques and wrenches in ±20, steps in ±1.
+    /// A state at random: angles in ±π, lengths in ±1 m, rates and accelerations in ±2, torques and
+    /// wrenches in ±20, steps in ±1.
     pub fn state(&self, random: &mut Random) -> State {
         let (nq, nv) = (self.model.nq(), self.model.nv());
         let (q, v, a) = (self.configuration(random), random.vector(nv, -2.0, 2.0), random.vector(nv, -2.0, 2.0));
@@ -201,7 +202,8 @@ impl Drop for Announce<'_> {
     }
 }
 
-/// Runs a law on trees at random, each on a fixed and on a floating base. If it fails, the seed is printed.
+/// Runs a law on trees at random, each on a fixed and on a floating base. If it fails, the seed is
+/// printed.
 pub fn for_each_tree(count: u64, flavour: Flavour, law: impl Fn(&Case, &mut Random)) {
     for seed in 0..count {
         for base in [Base::Fixed, Base::Floating] {

@@ -19,7 +19,8 @@ pub fn tolerance(row: &Function<Big>) -> f64 {
     if row.inverts_mass_matrix() { SOLVED } else { NEAR }
 }
 
-/// The largest difference, relative to the largest entry or to one; not a number if one entry is not.
+/// The largest difference, relative to the largest entry or to one; not a number if one entry is
+/// not.
 ///
 /// # Panics
 /// If the lengths differ.

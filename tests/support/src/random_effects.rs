@@ -6,7 +6,8 @@ use articulated_core::model::{FLOATING_BASE, Model};
 
 use crate::random::Random;
 
-/// Effects of the kinds that `wanted` says, each on about half of the joints or moving links that can have it.
+/// Effects of the kinds that `wanted` says, each on about half of the joints or moving links that
+/// can have it.
 pub fn random_effects(random: &mut Random, model: &Model<f64>, wanted: impl Fn(EffectId) -> bool) -> Vec<Applied> {
     let mut applied = Vec::new();
     for effect in effects().iter().filter(|e| wanted(e.id)) {
@@ -27,7 +28,8 @@ pub fn random_effects(random: &mut Random, model: &Model<f64>, wanted: impl Fn(E
     applied
 }
 
-/// A spring needs a coordinate for each degree of freedom; a motor drives no joint that follows another.
+/// A spring needs a coordinate for each degree of freedom; a motor drives no joint that follows
+/// another.
 fn can_have(model: &Model<f64>, effect: EffectId, i: usize) -> bool {
     let ball = model.bodies()[i].joint.quaternion().is_some();
     let follows = model.bodies()[i].coordinates.mimic.is_some();

@@ -1,4 +1,5 @@
-//! Robots at random whose limbs are alike, or nearly: what is evaluated in lanes, and what only looks as if it could be.
+//! Robots at random whose limbs are alike, or nearly: what is evaluated in lanes, and what only
+//! looks as if it could be.
 
 use articulated_core::description::{Description, Inertial, Joint, JointKind, Link, Mimic, Origin};
 
@@ -18,7 +19,8 @@ enum Style {
     Uneven,
 }
 
-/// A trunk with two to six limbs of one to four joints. Inertias are those of bodies, but for a link without mass here and there that is no limb's last.
+/// A trunk with two to six limbs of one to four joints. Inertias are those of bodies, but for a
+/// link without mass here and there that is no limb's last.
 pub fn random_limbs(seed: u64) -> Description {
     let random = &mut Random::new(seed);
     let style = *random.choose(&[Style::Copies, Style::Mirrored, Style::Near, Style::Uneven]);
@@ -87,7 +89,8 @@ fn attach(robot: &mut Description, name: &str, parent: usize, joint: Joint, body
     child
 }
 
-/// The image in the plane y = 0: points lose the sign of y, turns those of x and z; the axis may point the other way.
+/// The image in the plane y = 0: points lose the sign of y, turns those of x and z; the axis may
+/// point the other way.
 fn mirror(random: &mut Random, joint: &mut Joint, body: &mut Option<Inertial>) {
     let [point, turn] = [|[x, y, z]: [f64; 3]| [x, -y, z], |[x, y, z]: [f64; 3]| [-x, y, -z]];
     let place = |o: Origin| Origin::new(point(o.xyz), turn(o.rotation.rpy()));

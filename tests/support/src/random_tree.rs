@@ -34,7 +34,8 @@ impl Flavour {
     pub const REGULAR: Self = Self { massless: false, ..Self::ANY };
 }
 
-/// The tree of a seed. Its joints and links are listed in an order of their own, children before parents too.
+/// The tree of a seed. Its joints and links are listed in an order of their own, children before
+/// parents too.
 pub fn random_tree(seed: u64, flavour: Flavour) -> Description {
     let random = &mut Random::new(seed);
     let links = 1 + random.below(flavour.links);

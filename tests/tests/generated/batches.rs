@@ -33,8 +33,9 @@ const FUNCTIONS: [&str; 13] = [
 /// Functions so long that their texts for sixteen registers say what waits in memory.
 const LONG: [&str; 2] = ["coriolis_matrix", "inverse_dynamics_derivatives"];
 
-/// An arm, every kind of joint on a floating base, joints that follow others, a long function, and nothing at all: small ones, since they are compiled for each
-/// instruction set. What is computed is what single evaluation computes, which is tested on many robots.
+/// An arm, every kind of joint on a floating base, joints that follow others, a long function, and
+/// nothing at all: small ones, since they are compiled for each instruction set. What is computed
+/// is what single evaluation computes, which is tested on many robots.
 fn robots(forbid_unsafe: bool) -> Vec<Robot> {
     let robot = |name: &str, urdf: &str, base: Base, functions: &[&str]| {
         let options = Options {

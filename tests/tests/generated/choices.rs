@@ -1,4 +1,5 @@
-//! What a request may choose besides names of functions: several in one, arguments that are constants, ways by count.
+//! What a request may choose besides names of functions: several in one, arguments that are
+//! constants, ways by count.
 
 use articulated::{Dynamics, Model};
 use articulated_codegen::{Request, generate};
@@ -71,7 +72,8 @@ pub(crate) const Q: [f64; 3] = [0.4, -0.9, 1.3];
 pub(crate) const V: [f64; 3] = [1.1, 0.3, -0.8];
 pub(crate) const A: [f64; 3] = [-0.7, 2.0, 0.6];
 
-/// What is large is written into what the caller has too, whatever that held; through the trait that is how it is done.
+/// What is large is written into what the caller has too, whatever that held; through the trait
+/// that is how it is done.
 #[test]
 fn a_large_result_goes_into_what_the_caller_has() {
     let q: [f64; in_lanes::NQ] =
@@ -227,7 +229,8 @@ fn limbs_in_lanes_give_what_each_gives_for_itself() {
     }
 }
 
-/// A wheel that is out of balance stands somewhere; the three beside it in the same vectors do not care.
+/// A wheel that is out of balance stands somewhere; the three beside it in the same vectors do not
+/// care.
 #[test]
 fn one_wheel_of_four_may_be_out_of_balance() {
     pub(crate) const URDF: &str = include_str!("../../robots/rover.urdf");
@@ -308,7 +311,8 @@ fn forward_dynamics_goes_the_way_that_costs_least() {
         (request.options.robot.base, request.options.functions) = (robot.base, vec!["forward_dynamics".into()]);
         generate(&request).unwrap().ledger.functions[0].ways.clone()
     };
-    // Short arms, a tree, and a robot with a joint that follows, which no recursion along a branch can invert.
+    // Short arms, a tree, and a robot with a joint that follows, which no recursion along a branch
+    // can invert.
     assert_eq!(ways("panda_like"), ["LTDL", "mass shifted", "axis rates", "parallel and last rotations folded", "length unit 0.0825 m"]);
     assert_eq!(ways("humanoid"), ["ABA"]);
     assert_eq!(ways("gripper_arm"), ["LTDL", "axis rates"]);

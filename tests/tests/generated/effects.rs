@@ -1,4 +1,5 @@
-//! Effects in generated code: those that are on are the generic library's, those that are off are not there.
+//! Effects in generated code: those that are on are the generic library's, those that are off are
+//! not there.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -44,7 +45,8 @@ fn subject(name: &str, urdf: &str, base: Base, effects: Vec<Applied>) -> Robot {
     with(name.into(), urdf, base, false, options, |f| FUNCTIONS.contains(&f))
 }
 
-/// An arm with everything, four legs alike on the ground and in water, and a tree of every kind of joint.
+/// An arm with everything, four legs alike on the ground and in water, and a tree of every kind of
+/// joint.
 fn robots() -> Vec<Robot> {
     let everything = |seed: u64, urdf: &str, base: Base| {
         let case = articulated_tests::case::Case::new("", read(urdf), base);
@@ -168,7 +170,8 @@ fn every_subset_of_effects_builds_and_costs_what_the_ledger_says() {
     }
 }
 
-/// Without a single number of an effect the module is what it is without the effect, but for the line that names it.
+/// Without a single number of an effect the module is what it is without the effect, but for the
+/// line that names it.
 #[test]
 fn an_effect_that_is_off_costs_nothing() {
     let module = |effects: Vec<Applied>| {

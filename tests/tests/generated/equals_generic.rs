@@ -10,7 +10,8 @@ use crate::robots::{ANYBODYS, CHOSEN, ELSEWHERE, LANES, NATIVE, PORTABLE, ROBOTS
 
 /// Error allowed, in units of u times the yardstick.
 fn allowed(function: &str) -> f64 {
-    // A solution is judged by its backward error, which has its own bound; all else by its difference. Seen: 14.
+    // A solution is judged by its backward error, which has its own bound; all else by its
+    // difference. Seen: 14.
     if function == "forward_dynamics" { 64.0 } else { 16.0 }
 }
 
@@ -66,7 +67,8 @@ fn no_value_makes_generated_code_panic() {
                 PORTABLE.run(&robot.name, row.name, &[arguments(row.name, &state)]);
                 let found = CHOSEN.run(&robot.name, row.name, &[arguments(row.name, &state)]);
                 assert_eq!(found[0].len(), row.len(shape));
-                // Random numbers are between 0 and 1, and quaternions that are normalised have a norm.
+                // Random numbers are between 0 and 1, and quaternions that are normalised have a
+                // norm.
                 let any = ![Argument::Uniform, Argument::Step, Argument::Target].iter().any(|a| row.takes.contains(a));
                 let finite = x.is_finite() && x.abs() < 1e7 && any;
                 assert!(!finite || found[0].iter().all(|y| y.is_finite()), "{}::{} of {x}", robot.name, row.name);

@@ -1,4 +1,5 @@
-//! Generated code, compiled and run as a user's would be: against the generic library, against an independent program, and on odd input.
+//! Generated code, compiled and run as a user's would be: against the generic library, against an
+//! independent program, and on odd input.
 
 mod batches;
 mod c;

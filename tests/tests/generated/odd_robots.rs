@@ -21,8 +21,8 @@ fn a_robot_that_cannot_move_is_generated_and_compiles() {
     assert_eq!(found, [[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]]);
 }
 
-/// Its time as in a build script, unoptimised: `cargo test -p articulated-tests --test generated --config profile.dev.package.articulated-core.opt-level=0
-/// --config profile.dev.package.articulated-codegen.opt-level=0 -- --nocapture a_chain_of_a_thousand`.
+/// Its time as in a build script, unoptimised:
+/// `cargo test -p articulated-tests --test generated --config profile.dev.package.articulated-core.opt-level=0 --config profile.dev.package.articulated-codegen.opt-level=0 -- --nocapture a_chain_of_a_thousand`.
 #[test]
 fn a_chain_of_a_thousand_joints_is_generated() {
     let n = 1000;
@@ -37,7 +37,8 @@ fn a_chain_of_a_thousand_joints_is_generated() {
     assert!(generated.warnings.is_empty(), "{:?}", generated.warnings);
 }
 
-/// A matrix has n² numbers, and each is written out: nobody should learn that from a compiler that does not end.
+/// A matrix has n² numbers, and each is written out: nobody should learn that from a compiler that
+/// does not end.
 #[test]
 fn code_that_is_too_long_to_be_of_use_is_a_warning() {
     let mut request = chain(400, "mass_matrix");
@@ -69,7 +70,8 @@ fn chain(joints: usize, function: &str) -> Request {
     request
 }
 
-/// Slides alone: no Coriolis force, and a large matrix of nothing, which compiles without a warning.
+/// Slides alone: no Coriolis force, and a large matrix of nothing, which compiles without a
+/// warning.
 #[test]
 fn a_result_of_zeros_compiles() {
     use std::fmt::Write;
@@ -126,7 +128,8 @@ fn gravity_and_base_are_the_requests() {
     assert_ne!(program.run("standing", "gravity_torque", &[vec![&[0.3, 0.4]]]), [[0.0, 0.0]]);
 }
 
-/// As cargo compiles by default: with all names for a debugger, where statements must not be inside of one another by the thousand.
+/// As cargo compiles by default: with all names for a debugger, where statements must not be inside
+/// of one another by the thousand.
 #[test]
 fn a_long_function_compiles_with_names_for_debuggers() {
     let robot = articulated_models::robot("golfer").expect("a bundled robot");

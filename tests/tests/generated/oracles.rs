@@ -1,4 +1,5 @@
-//! Against another program's answers, which were derived another way: energies, differentiated (see `tests/oracles/README.md`).
+//! Against another program's answers, which were derived another way: energies, differentiated (see
+//! `tests/oracles/README.md`).
 
 use std::collections::BTreeSet;
 
@@ -9,10 +10,12 @@ use articulated_tests::fixture::{Fixture, Reference, fixture};
 
 use crate::robots::{NATIVE, ROBOTS};
 
-/// Error allowed relative to the fixture's own scale, and, of placements, to a metre. The fixtures are good to the last bit.
+/// Error allowed relative to the fixture's own scale, and, of placements, to a metre. The fixtures
+/// are good to the last bit.
 const TOLERANCE: f64 = 4e-15;
 
-/// The oracle knows no ball joints: the engines of `tests/fixtures` do, and the top has closed forms.
+/// The oracle knows no ball joints: the engines of `tests/fixtures` do, and the top has closed
+/// forms.
 const WITHOUT: &str = "spinning_top";
 
 fn each(law: impl Fn(&Case, &Fixture)) {
@@ -34,7 +37,8 @@ fn torques_hold(name: &str, found: &[f64], reference: &Reference) {
     assert_eq!(found.len(), reference.inverse_dynamics.len());
 }
 
-/// The fixture lists links in an order of its own, so they are found by name; the case has all of them as frames, or some.
+/// The fixture lists links in an order of its own, so they are found by name; the case has all of
+/// them as frames, or some.
 fn placements_hold(case: &Case, links: &[String], found: &[f64], reference: &Reference) {
     let Some(expected) = &reference.placements else { return };
     assert_eq!((found.len(), links.len()), (12 * case.model.frames().len(), expected.len()));

@@ -92,7 +92,8 @@ fn frames(model: &Model<f64>) -> Vec<String> {
     chosen
 }
 
-/// What a compiler needs long for on large robots is generated there for wrenches only: without them it is the same with fewer terms.
+/// What a compiler needs long for on large robots is generated there for wrenches only: without
+/// them it is the same with fewer terms.
 const LONG: [&str; 2] = ["inverse_dynamics_derivatives", "forward_dynamics_derivatives"];
 
 fn has(model: &Model<f64>, frames: &[String], function: &Function<f64>, singular: bool) -> bool {
@@ -114,11 +115,13 @@ pub(crate) static NATIVE: LazyLock<Program> = LazyLock::new(|| {
     program
 });
 
-/// Some of them as `cargo build` compiles for anybody, with every check that the compiler knows: vector instructions and multiply-adds are chosen when it runs.
+/// Some of them as `cargo build` compiles for anybody, with every check that the compiler knows:
+/// vector instructions and multiply-adds are chosen when it runs.
 pub(crate) static CHOSEN: LazyLock<Program> =
     LazyLock::new(|| anybodys(&ANYBODYS, "with the instructions that there are", |source| source));
 
-/// The same on a processor that has neither AVX2 nor fused multiply-add: that is what the programs are told.
+/// The same on a processor that has neither AVX2 nor fused multiply-add: that is what the programs
+/// are told.
 pub(crate) static PORTABLE: LazyLock<Program> = LazyLock::new(|| {
     let asked = "::std::is_x86_feature_detected!(\"avx2\")";
     anybodys(&ANYBODYS, "without multiply-add", |source| source.replace(asked, "false"))

@@ -1,4 +1,5 @@
-//! Against Pinocchio and MuJoCo, whose answers in our conventions are kept in `tests/fixtures` (see `tests/oracles/README.md`).
+//! Against Pinocchio and MuJoCo, whose answers in our conventions are kept in `tests/fixtures` (see
+//! `tests/oracles/README.md`).
 
 use std::collections::BTreeSet;
 
@@ -6,11 +7,13 @@ use articulated_core::algorithm::{function, functions};
 use articulated_tests::answers::{Answered, Answers, answers};
 use articulated_tests::case::Case;
 
-/// Error allowed, relative to the result's largest entry or to 1. Both sides round, and what solves with the mass matrix has its
-/// condition number in the error, up to 2·10⁶ (golfer). Seen: 3·10⁻¹³ there, 1.2·10⁻¹³ elsewhere.
+/// Error allowed, relative to the result's largest entry or to 1. Both sides round, and what solves
+/// with the mass matrix has its condition number in the error, up to 2·10⁶ (golfer). Seen: 3·10⁻¹³
+/// there, 1.2·10⁻¹³ elsewhere.
 const TOLERANCE: f64 = 1e-12;
 
-/// What no engine can be asked for: the numbers that it draws are its own; and what is nothing without effects, which have fixtures of their own (`effects_closed.rs`).
+/// What no engine can be asked for: the numbers that it draws are its own; and what is nothing
+/// without effects, which have fixtures of their own (`effects_closed.rs`).
 const WITHOUT: [&str; 4] = ["random_configuration", "effect_forces", "dissipation", "motor_torques"];
 
 /// Says where results part; nothing if they do not.

@@ -17,7 +17,8 @@ articulated::robot! {
     }
 }
 
-/// What a function of the trait says to arguments and a result that are so much longer than they should be.
+/// What a function of the trait says to arguments and a result that are so much longer than they
+/// should be.
 fn answer<D: Dynamics>(robot: &D, row: &Function<f64>, longer: &[isize]) -> Result<(), FunctionError> {
     let shape = robot.shape();
     let lengths = row.takes.iter().map(|a| a.len(shape)).chain([row.len(shape)]);
@@ -69,7 +70,8 @@ fn a_workspace_of_another_robot_is_an_error() {
     assert_eq!(arm.gravity_torque(&mut pendulum.workspace(), &[0.0; 7], &mut out), Err(FunctionError::Workspace));
 }
 
-/// So is one of as many bodies: on other joints, in another tree, with other frames, of a joint that follows another.
+/// So is one of as many bodies: on other joints, in another tree, with other frames, of a joint
+/// that follows another.
 #[test]
 fn a_workspace_of_another_robot_of_that_size_is_an_error() {
     use JointKind::{Continuous, Planar, Prismatic, Universal};
@@ -178,7 +180,8 @@ fn what_is_not_a_tree_is_an_error() {
 #[test]
 fn a_joint_is_not_called_as_that_of_a_floating_base() {
     let named = tree(2, vec![joint("__floating_base__", JointKind::Continuous, 0, 1)]);
-    // Not where the base is fixed either: who reads a report, or a file of states, could not tell them apart.
+    // Not where the base is fixed either: who reads a report, or a file of states, could not tell
+    // them apart.
     for base in [Base::Floating, Base::Fixed] {
         assert!(matches!(Model::new(&named, base), Err(ModelError::NamedAsBase)));
     }

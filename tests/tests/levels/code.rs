@@ -49,7 +49,8 @@ impl BuiltRobot {
         self.generated.graphs[0].evaluate_as(|argument, k| Big::from_f64(state[argument][k]))
     }
 
-    /// The error and the guaranteed bound of each result, after one has been held to the other. The state has numbers of single precision.
+    /// The error and the guaranteed bound of each result, after one has been held to the other. The
+    /// state has numbers of single precision.
     fn errors(&self, state: &[Vec<f64>], exact: &[Big]) -> Vec<(f64, Option<f64>)> {
         let found = self.call(state);
         let bounds = bound::bounds(&self.generated.graphs[0], self.level, &|argument, k| (state[argument][k], 0.0));
@@ -101,7 +102,8 @@ fn hold(robot: &str, count: usize) {
     let mut single = vec![(0.0_f64, 0.0_f64); levels[0].generated.model.nv()];
     for (state, first) in states_in_parts(&levels[0].generated.model, count) {
         Big::scope(|| {
-            // Graphs of levels differ in nothing but how a node is computed: one evaluation in 96 digits serves all.
+            // Graphs of levels differ in nothing but how a node is computed: one evaluation in 96
+            // digits serves all.
             let exact = levels[0].exact(&state);
             for (worst, level) in worst.iter_mut().zip(&levels) {
                 let errors = level.errors(&state, &exact);
@@ -124,7 +126,8 @@ fn hold(robot: &str, count: usize) {
     assert!(of("f64+fast_10") < of("f32_f64") && of("f32_f64") < of("f32") && of("f32") < 1e-2, "{worst:?}");
 }
 
-/// The largest error and the largest bound of each result: the worst error of all is in a result with one of the largest bounds, and no bound is idle.
+/// The largest error and the largest bound of each result: the worst error of all is in a result
+/// with one of the largest bounds, and no bound is idle.
 fn worst_of_single_is_where_the_bound_says(results: &[(f64, f64)]) {
     let most = results.iter().fold(0.0_f64, |most, r| most.max(r.1));
     let worst = results.iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap();

@@ -18,8 +18,9 @@ texts!(fast_7: "lanes/text/portable/f64" "lanes/text/portable/4" "lanes/text/por
 texts!(fast_10: "lanes/text/portable/f64" "lanes/text/portable/4" "lanes/text/portable/common" "lanes/text/common" "lanes/text/sines/f64" "lanes/text/sines/f64_fast_10");
 texts!(ulp: "lanes/text/portable/f64" "lanes/text/portable/4" "lanes/text/portable/common" "lanes/text/common" "lanes/text/sines/f64" "lanes/text/sines/f64_fused" "lanes/text/sines/f64_split");
 
-/// Doubles that lie nearest to a multiple of π/2: below 10⁵ (found by trying every multiple), of all (6381956970095103·2⁷⁹⁷, Muller, Elementary Functions, 2016, 11.3),
-/// singles that do ([`WORST_SINGLES`]), and others at the ends of ranges.
+/// Doubles that lie nearest to a multiple of π/2: below 10⁵ (found by trying every multiple), of
+/// all (6381956970095103·2⁷⁹⁷, Muller, Elementary Functions, 2016, 11.3), singles that do
+/// ([`WORST_SINGLES`]), and others at the ends of ranges.
 fn worst() -> Vec<f64> {
     let known = [45.553093477052, 91.106186954104, 182.212373908208, 364.424747816416, 728.849495632832, 1457.698991265664];
     let muller = 6381956970095103.0 * 2.0_f64.powi(797);
@@ -30,7 +31,8 @@ fn worst() -> Vec<f64> {
     all.flat_map(|x| [x.next_down(), x, x.next_up()]).filter(|x| x.is_finite()).flat_map(|x| [x, -x]).collect()
 }
 
-/// The `f32` that lie nearest to a multiple of π/2, by continued fractions: 16573937·2⁻¹⁶ of those below 10⁵, 4.2·10⁻⁹ away; 16367173·2⁷² of all, 1.6·10⁻⁹ away.
+/// The `f32` that lie nearest to a multiple of π/2, by continued fractions: 16573937·2⁻¹⁶ of those
+/// below 10⁵, 4.2·10⁻⁹ away; 16367173·2⁷² of all, 1.6·10⁻⁹ away.
 const WORST_SINGLES: [f32; 2] = [16_573_937.0 / 65_536.0, 16_367_173.0 * (1_u128 << 72) as f32];
 
 /// Angles of every size, most of them such as joints have.
@@ -59,7 +61,8 @@ fn hold(count: usize) {
             assert_eq!(two::sin_cos_correct::<false>(x), nearest, "{x:e}");
             assert_eq!(two::sin_cos_correct::<true>(x), nearest, "{x:e}");
             let (s, c) = two::sines_of_two::<false>((x, 0.0));
-            // Of what is so small that a double's remainder is subnormal there is no more to be had.
+            // Of what is so small that a double's remainder is subnormal there is no more to be
+            // had.
             if x.abs() > 1e-200 {
                 let most = 2.0_f64.powi(-100);
                 assert!(relative(sin, s) <= most && relative(cos, c) <= most, "{x:e}: {:e} {:e}", relative(sin, s), relative(cos, c));
@@ -84,8 +87,10 @@ fn sines_are_as_exact_as_their_level_says_at_a_million_angles() {
     hold(1_000_000);
 }
 
-/// Sines of the level f32 (those of doubles, rounded) and those to the nearest, of four numbers by their bits, against the standard library's of doubles. Those are off by
-/// less than 4 ulps of doubles (known: 0.55), which decides what is nearest in all but some hundred cases in all; 96 digits decide these. How many these were.
+/// Sines of the level f32 (those of doubles, rounded) and those to the nearest, of four numbers by
+/// their bits, against the standard library's of doubles. Those are off by less than 4 ulps of
+/// doubles (known: 0.55), which decides what is nearest in all but some hundred cases in all; 96
+/// digits decide these. How many these were.
 fn singles(bits: [u32; 4]) -> usize {
     let x = bits.map(f32::from_bits);
     let (sines, cosines) = ulp::sin_cos(x.map(f64::from));

@@ -1,6 +1,7 @@
 //! What the macro `robot!` accepts, and what it says about what it does not.
 //!
-//! The expected messages are in `fail/*.stderr`; `TRYBUILD=overwrite cargo test -p articulated-tests-ui` writes them anew.
+//! The expected messages are in `fail/*.stderr`;
+//! `TRYBUILD=overwrite cargo test -p articulated-tests-ui` writes them anew.
 
 use std::fs;
 use std::path::Path;
@@ -13,7 +14,8 @@ fn every_mistake_is_named_at_its_word() {
     cases.compile_fail("fail/*.rs");
 }
 
-/// The cases are compiled as a package of their own below the target folder, and paths in `robot!` start at the package's folder.
+/// The cases are compiled as a package of their own below the target folder, and paths in `robot!`
+/// start at the package's folder.
 fn copy_robots() {
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
     let package = target.join("tests/trybuild").join(env!("CARGO_PKG_NAME"));

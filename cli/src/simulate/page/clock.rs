@@ -11,7 +11,8 @@ const SEEN: [f64; 2] = [5.0, 15.0];
 /// For rounding.
 const SLACK: f64 = 1e-9;
 
-/// Seconds of the motion a second that are offered for a motion of this length, s, from the slowest: round numbers, and 1.
+/// Seconds of the motion a second that are offered for a motion of this length, s, from the
+/// slowest: round numbers, and 1.
 pub(super) fn speeds(length: f64) -> Vec<f64> {
     let [slowest, fastest] = [(1.0 - SLACK) * length / OFFERED[1], (1.0 + SLACK) * length / OFFERED[0]];
     let mut all = vec![1.0];
@@ -26,7 +27,8 @@ pub(super) fn speeds(length: f64) -> Vec<f64> {
     all
 }
 
-/// The one of them nearest to 1 at which the motion is seen as long as it should be; else the one that comes nearest to that.
+/// The one of them nearest to 1 at which the motion is seen as long as it should be; else the one
+/// that comes nearest to that.
 pub(super) fn speed(length: f64, speeds: &[f64]) -> f64 {
     let off = |speed: f64| {
         let seen = length / speed;
@@ -37,7 +39,8 @@ pub(super) fn speed(length: f64, speeds: &[f64]) -> f64 {
     speeds.iter().copied().min_by(order).unwrap_or(1.0)
 }
 
-/// Decimal places that tell times of output apart, and one more, as far as doubles of their size have them.
+/// Decimal places that tell times of output apart, and one more, as far as doubles of their size
+/// have them.
 pub(super) fn places(t: &[f64]) -> usize {
     let (Some(first), Some(last)) = (t.first(), t.last()) else { return 0 };
     let (step, size) = ((last - first) / (t.len() - 1).max(1) as f64, first.abs().max(last.abs()));

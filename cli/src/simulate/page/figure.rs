@@ -183,7 +183,8 @@ impl Figure {
         index
     }
 
-    /// Points of a body that hold all that is drawn of it, each with how far around it that reaches, m.
+    /// Points of a body that hold all that is drawn of it, each with how far around it that
+    /// reaches, m.
     pub(super) fn points(&self, body: usize) -> Vec<(Vector3<f64>, f64)> {
         // Of a link that is seen otherwise the box is hidden at first.
         let corners = self.boxes.iter().filter(|b| b.body == body && b.alone).flat_map(Box::corners).map(|p| (p, 0.0));

@@ -56,8 +56,8 @@ impl Geometry {
         Self { points: (0..8).map(corner).collect(), triangles }
     }
 
-    /// The surface that a line of points (distance from the z axis, height), from below, makes about
-    /// that axis.
+    /// The surface that a line of points (distance from the z axis, height), from below, makes
+    /// about that axis.
     fn turned(line: &[[f64; 2]]) -> Self {
         let around = |k: usize| (k as f64 * TAU / AROUND as f64).sin_cos();
         let point = |&[r, z]: &[f64; 2], k: usize| {

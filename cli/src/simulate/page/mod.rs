@@ -1,4 +1,5 @@
-//! A motion as one page that plays it in three dimensions: everything is in the file, and nothing is fetched.
+//! A motion as one page that plays it in three dimensions: everything is in the file, and nothing
+//! is fetched.
 
 mod animation;
 mod clock;

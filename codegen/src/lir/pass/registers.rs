@@ -119,7 +119,8 @@ mod tests {
         (0..n).map(&mut step).collect()
     }
 
-    /// Carries a plan out: whether each operand is where the plan says, and how many registers are full at most.
+    /// Carries a plan out: whether each operand is where the plan says, and how many registers are
+    /// full at most.
     fn carried_out(steps: &[Step], uses: &Uses, plan: &Plan) -> usize {
         let (mut known, mut most) = (Vec::new(), 0);
         for (at, step) in steps.iter().enumerate() {

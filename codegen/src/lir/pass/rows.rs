@@ -92,7 +92,8 @@ pub(crate) fn groups(cells: &[Cell]) -> Vec<Group> {
     groups
 }
 
-/// Where a node's lanes stand, the first of each, the second of each and so on, of all nodes of which all lanes are wanted; in the order of places.
+/// Where a node's lanes stand, the first of each, the second of each and so on, of all nodes of
+/// which all lanes are wanted; in the order of places.
 fn families(cells: &[Cell]) -> Vec<[usize; WIDTH]> {
     let mut places: BTreeMap<usize, [Vec<usize>; WIDTH]> = BTreeMap::new();
     for (k, cell) in cells.iter().enumerate() {

@@ -5,8 +5,8 @@
 //! matrices go column by column, ours row by row, so results are copied. Entries that are zero
 //! at every configuration are left out.
 //!
-//! `jac_f` is there for a function f whose derivatives `f_derivatives` are in the module, of a robot
-//! whose rates are the derivatives of its coordinates.
+//! `jac_f` is there for a function f whose derivatives `f_derivatives` are in the module, of a
+//! robot whose rates are the derivatives of its coordinates.
 
 use std::fmt::Write;
 
@@ -32,7 +32,8 @@ impl Matrix {
         self.entries.len() == self.rows * self.columns
     }
 
-    /// Rows, columns, where each column begins, and the row of each entry; a 1 in place of these two for a dense matrix.
+    /// Rows, columns, where each column begins, and the row of each entry; a 1 in place of these
+    /// two for a dense matrix.
     fn sparsity(&self) -> Vec<usize> {
         if self.is_dense() {
             return vec![self.rows, self.columns, 1];

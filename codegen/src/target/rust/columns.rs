@@ -1,9 +1,12 @@
-//! M X = B for many columns, left a loop: four columns per vector, all vectors of a row in registers.
+//! M X = B for many columns, left a loop: four columns per vector, all vectors of a row in
+//! registers.
 //!
-//! Written out, the solution is two multiply-adds for each number of L and each column, which is most of the derivatives of forward dynamics. A function that leaves it a loop
-//! writes B and the factors of M = Lᵀ D L where the result is to be, which `columns` makes of them.
+//! Written out, the solution is two multiply-adds for each number of L and each column, which is
+//! most of the derivatives of forward dynamics. A function that leaves it a loop writes B and the
+//! factors of M = Lᵀ D L where the result is to be, which `columns` makes of them.
 //!
-//! The loop is core's text [`COLUMNS`], tested there; here it gets the tree's tables. `tests/generated` holds the two together to the generic library on every robot.
+//! The loop is core's text [`COLUMNS`], tested there; here it gets the tree's tables.
+//! `tests/generated` holds the two together to the generic library on every robot.
 
 use std::fmt::Write;
 
@@ -11,8 +14,10 @@ use articulated_core::lanes::COLUMNS;
 
 use crate::program::MultiRhsSolve;
 
-/// Columns of a vector, and vectors of a row of one matrix with which all three matrices are solved for at once: with fewer, one after the other is faster (up to a tenth of the whole function), with
-/// more, the vectors of a row are more than there are registers, or slower on one processor (five of eight: Emerald Rapids 8 %) than they are faster on another (Zen 5: 3 %).
+/// Columns of a vector, and vectors of a row of one matrix with which all three matrices are solved
+/// for at once: with fewer, one after the other is faster (up to a tenth of the whole function),
+/// with more, the vectors of a row are more than there are registers, or slower on one processor
+/// (five of eight: Emerald Rapids 8 %) than they are faster on another (Zen 5: 3 %).
 const ALL_AT_ONCE: [(usize, std::ops::RangeInclusive<usize>); 2] = [(4, 3..=5), (8, 1..=3)];
 
 /// How columns are laid out.
@@ -76,7 +81,8 @@ mod tests {
         assert_eq!(table("BEFORE"), "&[],&[0],&[1,0],&[0],&[3,0],");
         assert_eq!(table("BEYOND"), "&[1,2,3,4],&[2],&[],&[4],&[],");
         assert!(out.contains("const TOGETHER: [usize; 2] = [1, 3];"));
-        // All three matrices where each has three to five vectors of four, and up to three of eight.
+        // All three matrices where each has three to five vectors of four, and up to three of
+        // eight.
         for (n, together) in [(8, [1, 3]), (9, [3, 3]), (20, [3, 3]), (21, [1, 3]), (24, [1, 3]), (25, [1, 1])] {
             assert_eq!(Layout::of(&MultiRhsSolve { ways: vec![vec![]; n] }).together(), together, "{n}");
         }

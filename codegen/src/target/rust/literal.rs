@@ -1,6 +1,7 @@
 //! Numbers in source.
 
-/// The shortest literal that is read back as exactly `x`; infinities, and what is no number, by their names.
+/// The shortest literal that is read back as exactly `x`; infinities, and what is no number, by
+/// their names.
 pub(crate) fn literal(x: f64) -> String {
     match x {
         x if x.is_nan() => "f64::NAN".into(),

@@ -1,4 +1,5 @@
-//! Sines of several vectors of lanes at once: in wider registers, where that does not slow down what comes after.
+//! Sines of several vectors of lanes at once: in wider registers, where that does not slow down
+//! what comes after.
 
 use std::fmt::Write;
 
@@ -48,7 +49,8 @@ fn one_by_one(width: usize, features: &str) -> String {
     text
 }
 
-/// Two of four lanes, or four of two, in a register of AVX-512 where this is compiled for AMD's processors with that; two of two lanes in one of AVX2.
+/// Two of four lanes, or four of two, in a register of AVX-512 where this is compiled for AMD's
+/// processors with that; two of two lanes in one of AVX2.
 fn avx2(width: usize) -> String {
     let features = "#[inline]\n#[target_feature(enable = \"avx2,fma\")]";
     let not_avx512 = format!("#[cfg(not({COMPILED_FOR_AVX512_BESIDE_AVX2}))]\n{features}");

@@ -38,7 +38,8 @@ mod spills {
 /// What stands behind the statements, and behind what is made of them.
 pub(crate) const END: &str = "    }\n";
 
-/// What stands before the statements: the slots, and pointers of which compilers do not know where they lead.
+/// What stands before the statements: the slots, and pointers of which compilers do not know where
+/// they lead.
 pub(crate) fn beginning(out: &mut String, slots: &Slots, ty: &str) {
     *out += "    // Explicit spill slots for 16-register x86-64.\n    use ::core::hint::black_box as hidden;\n";
     *out += "    use self::spills::spill;\n";

@@ -30,7 +30,8 @@ pub(crate) fn tree_shake(text: &str, calls: &Requirements) -> String {
     without_gaps(&rest).iter().map(|line| format!("{line}\n")).collect()
 }
 
-/// The lines without blocks that hold nothing, and without empty lines at the ends of blocks or behind one another.
+/// The lines without blocks that hold nothing, and without empty lines at the ends of blocks or
+/// behind one another.
 fn without_gaps<'a>(lines: &[&'a str]) -> Vec<&'a str> {
     let mut kept: Vec<&str> = Vec::new();
     for line in lines {
@@ -47,7 +48,8 @@ fn without_gaps<'a>(lines: &[&'a str]) -> Vec<&'a str> {
     kept
 }
 
-/// Names of functions that are needed: the first ones, and whatever stands in the text of one that is needed.
+/// Names of functions that are needed: the first ones, and whatever stands in the text of one that
+/// is needed.
 fn live<'a>(lines: &[&'a str], items: &[Item<'a>], first: Vec<&'a str>) -> HashSet<&'a str> {
     let mut bodies: HashMap<&str, Vec<&'a str>> = HashMap::new();
     for item in items {

@@ -17,12 +17,14 @@ use crate::spatial::{ArticulatedInertia, Matrix3, Motion, Twist, Vector3, rate_m
 
 /// a = M(q)⁻¹·(τ − h(q, v)), in a time that grows with the number of joints.
 ///
-/// q: `[nq]`; v: `[nv]`; tau: `[nv]` N·m|N; out: `[nv]` rad/s²|m/s². For models in which no joint follows another. Where M is singular to
-/// working precision the result is what rounding made of a pivot: infinite, not a number, or finite and of no meaning; [`super::checked_forward_dynamics`] tells. A model
-/// with [`Model::massless_joints`] is singular everywhere.
+/// q: `[nq]`; v: `[nv]`; tau: `[nv]` N·m|N; out: `[nv]` rad/s²|m/s². For models in which no joint
+/// follows another. Where M is singular to working precision the result is what rounding made of a
+/// pivot: infinite, not a number, or finite and of no meaning; [`super::checked_forward_dynamics`]
+/// tells. A model with [`Model::massless_joints`] is singular everywhere.
 ///
 /// # Panics
-/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`]
+/// check and return an error.
 pub fn articulated_body<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], out: &mut [S]) {
     articulated_body_with_wrenches(model, ws, q, v, tau, &[], out);
 }
@@ -76,7 +78,8 @@ fn solve<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], t
     }
 }
 
-/// ω, the bias acceleration c, the bias wrench p and the placement in the parent of body `i`, and S of its joint.
+/// ω, the bias acceleration c, the bias wrench p and the placement in the parent of body `i`, and S
+/// of its joint.
 fn velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, v: &[S]) {
     let body = &model.bodies[i];
     let pose = ws.bodies[i].pose;
@@ -84,7 +87,8 @@ fn velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, v: &[S
     let (zeros, zero) = (core::mem::take(&mut ws.zeros), Vector3::zeros());
     with_pose!(pose, p => {
         let mount = Mount::new(p, &body.placement);
-        // The point of the parent accelerates by U_λ p = ω × (ω × p) more than the parent's origin does.
+        // The point of the parent accelerates by U_λ p = ω × (ω × p) more than the parent's origin
+        // does.
         let carried = Motion { omega, alpha: zero, acceleration: rotate(&ws.bodies[body.parent].u, mount.origin) };
         ws.bodies[i].motion = p.motion(carried, |vector| mount.outward(vector), &body.coordinates, v, &zeros);
         for (k, c) in ws.columns_of(i).enumerate() {

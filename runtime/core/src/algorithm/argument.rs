@@ -118,7 +118,8 @@ arguments! {
     A a [Nv] "rad/s²|m/s²";
     /// τ, `[nv]`: N·m or N.
     Tau tau [Nv] "N·m|N";
-    /// Wrenches [m; f] on the frames, `[frames][6]`, N·m and N, as [`Model::wrench_reference`] says.
+    /// Wrenches [m; f] on the frames, `[frames][6]`, N·m and N, as [`Model::wrench_reference`]
+    /// says.
     Wrenches wrenches [Frames, Of(6)] "[m; f] on each frame, N·m and N";
     /// A step in the tangent space, `[nv]`: rad, m, or twist times time.
     Step step [Nv] "rad|m, a small motion in the tangent space";
@@ -126,7 +127,8 @@ arguments! {
     Target target [Nq] "rad|m|unit quaternion";
     /// Numbers in [0, 1), `[nq]`.
     Uniform uniform [Nq] "each uniform in 0 to 1";
-    /// sin q and cos q of each coordinate, `[nq][2]`, for callers that have them: generated functions take it where they are asked to.
+    /// sin q and cos q of each coordinate, `[nq][2]`, for callers that have them: generated
+    /// functions take it where they are asked to.
     SinCos sines [Nq, Of(2)] "[sin q, cos q] of each coordinate that is an angle; the others are not read";
 }
 

@@ -25,7 +25,8 @@ pub enum FunctionError {
         /// How many were expected.
         expected: usize,
     },
-    /// The workspace was made for a robot with another tree, other coordinates or another number of frames.
+    /// The workspace was made for a robot with another tree, other coordinates or another number of
+    /// frames.
     Workspace,
     /// The robot was generated without this function.
     NotGenerated {

@@ -1,10 +1,13 @@
 //! The outward sweep in common axes, from which everything that pairs joints with joints is read.
 //!
-//! All bodies of a tree are expressed in the same axes, each about its own origin: to carry a wrench from body to body takes a cross product and no
-//! rotation, and no moment is ever taken about a far point, where it would cancel. The axes are those of the world frame, or ([`Axes::Tree`]) those of the body
-//! in the middle of the tree: the fewer joints lie between, the more zeros there are. Or those of its first body, where gravity is constant if its joint stands
-//! upright, and the axes of joints that are parallel to the next one are too. Dynamics do not depend on how fast the base moves either: where a tree
-//! hangs on a floating joint, its inertial frame moves with that joint's body.
+//! All bodies of a tree are expressed in the same axes, each about its own origin: to carry a
+//! wrench from body to body takes a cross product and no rotation, and no moment is ever taken
+//! about a far point, where it would cancel. The axes are those of the world frame, or
+//! ([`Axes::Tree`]) those of the body in the middle of the tree: the fewer joints lie between, the
+//! more zeros there are. Or those of its first body, where gravity is constant if its joint stands
+//! upright, and the axes of joints that are parallel to the next one are too. Dynamics do not
+//! depend on how fast the base moves either: where a tree hangs on a floating joint, its inertial
+//! frame moves with that joint's body.
 
 use super::Workspace;
 use super::workspace::{Column, CommonState};
@@ -50,7 +53,8 @@ pub(super) fn positions<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes
     }
 }
 
-/// Rotations of the bodies between the center of each tree and the base, and the base's as its first body has it.
+/// Rotations of the bodies between the center of each tree and the base, and the base's as its
+/// first body has it.
 fn from_the_center<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
     for &center in &ws.centers.bodies {
         ws.common[center].rotation = Matrix3::identity();
@@ -106,7 +110,8 @@ pub(super) fn twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes: A
     }
 }
 
-/// Spatial acceleration of every body, on top of that of the base (−g, or nothing); after [`twists`].
+/// Spatial acceleration of every body, on top of that of the base (−g, or nothing); after
+/// [`twists`].
 pub(super) fn accelerations<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, v: &[S], a: &[S], base: Vector3<S>) {
     for i in model.outward() {
         let body = &model.bodies[i];
@@ -138,7 +143,8 @@ pub(super) fn coriolis<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
     }
 }
 
-/// The wrench that moves every body by itself, F = G V̇ + B(V) ω; after [`accelerations`] and [`coriolis`].
+/// The wrench that moves every body by itself, F = G V̇ + B(V) ω; after [`accelerations`] and
+/// [`coriolis`].
 pub(super) fn forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
     for i in model.outward() {
         let state = &mut ws.common[i];
@@ -146,7 +152,8 @@ pub(super) fn forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
     }
 }
 
-/// Visits the columns on the way from body `i` to the base, each with how far a point is from the origin that the column is about: the point is `from` away from that of body `i`.
+/// Visits the columns on the way from body `i` to the base, each with how far a point is from the
+/// origin that the column is about: the point is `from` away from that of body `i`.
 #[inline(always)]
 pub(super) fn on_the_way<S: Scalar>(
     model: &Model<S>,
@@ -163,7 +170,8 @@ pub(super) fn on_the_way<S: Scalar>(
     }
 }
 
-/// Visits the columns of body `i` and of those on the way to the base, with wrenches on `i` carried along: (whether it is of body `i`, wrenches, column).
+/// Visits the columns of body `i` and of those on the way to the base, with wrenches on `i` carried
+/// along: (whether it is of body `i`, wrenches, column).
 #[inline(always)]
 pub(super) fn carry<S: Scalar, const N: usize>(
     model: &Model<S>,

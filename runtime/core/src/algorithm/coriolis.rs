@@ -7,11 +7,13 @@ use crate::model::Model;
 
 /// C(q, v), with C v + g = h and Ṁ − 2C skew-symmetric.
 ///
-/// q: `[nq]`; v: `[nv]`; out: `[nv · nv]`, row by row, N·m·s|N·s|N·s/m. Of all matrices with these properties it is C = Σ Jᵀ (B J + G J̇), which is that of the
-/// Christoffel symbols where rates are derivatives of coordinates. Echeandia & Wensing, *J. Comput. Nonlinear Dyn.* 16, 2021.
+/// q: `[nq]`; v: `[nv]`; out: `[nv · nv]`, row by row, N·m·s|N·s|N·s/m. Of all matrices with these
+/// properties it is C = Σ Jᵀ (B J + G J̇), which is that of the Christoffel symbols where rates are
+/// derivatives of coordinates. Echeandia & Wensing, *J. Comput. Nonlinear Dyn.* 16, 2021.
 ///
 /// # Panics
-/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`]
+/// check and return an error.
 pub fn coriolis_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
     positions(model, ws, Axes::Tree, q);
     twists(model, ws, Axes::Tree, v);

@@ -10,10 +10,12 @@ use crate::model::Model;
 
 /// M(q), the mass matrix.
 ///
-/// q: `[nq]` rad|m|quaternion; out: `[nv · nv]`, row by row, both triangles; kg·m²|kg·m|kg. O(n · depth). Featherstone 2008, Table 6.2.
+/// q: `[nq]` rad|m|quaternion; out: `[nv · nv]`, row by row, both triangles; kg·m²|kg·m|kg. O(n ·
+/// depth). Featherstone 2008, Table 6.2.
 ///
 /// # Panics
-/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`]
+/// check and return an error.
 pub fn mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
     ws.set_poses(model, q);
     for i in model.outward() {
@@ -27,8 +29,9 @@ pub fn mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], 
     effects::add_inertia(model, ws, q, out);
 }
 
-/// The inertia that joint `i` shares with itself and with each joint beyond: what their columns' wrenches, carried as far as its body, ask of it. Then hands them, and the inertia of
-/// all that it carries, on to the parent.
+/// The inertia that joint `i` shares with itself and with each joint beyond: what their columns'
+/// wrenches, carried as far as its body, ask of it. Then hands them, and the inertia of all that it
+/// carries, on to the parent.
 #[inline(always)]
 fn joint<S: Scalar, P: JointLaw<S>>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, p: &P, out: &mut [S]) {
     let (n, body) = (model.nv, &model.bodies[i]);
@@ -60,8 +63,9 @@ fn joint<S: Scalar, P: JointLaw<S>>(model: &Model<S>, ws: &mut Workspace<S>, i: 
     }
 }
 
-/// As [`mass_matrix`], in common axes, to go with other matrices that are: turns each inertia once, and carries wrenches without turning them. A thin body's
-/// moment about its axis is then as good as its largest moment, no better.
+/// As [`mass_matrix`], in common axes, to go with other matrices that are: turns each inertia once,
+/// and carries wrenches without turning them. A thin body's moment about its axis is then as good
+/// as its largest moment, no better.
 ///
 /// # Panics
 /// As [`mass_matrix`].

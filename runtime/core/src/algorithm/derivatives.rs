@@ -1,7 +1,9 @@
 //! First derivatives of inverse and forward dynamics.
 //!
-//! Singh, Russell & Wensing, *IEEE Robot. Autom. Lett.* 7, 2022, 1824–1831 (joints with several degrees of freedom included), with 2B of their Coriolis
-//! operator as [`crate::spatial::CoriolisInertia`] and everything in common axes about each body's own origin ([`super::common`]):
+//! Singh, Russell & Wensing, *IEEE Robot. Autom. Lett.* 7, 2022, 1824–1831 (joints with several
+//! degrees of freedom included), with 2B of their Coriolis operator as
+//! [`crate::spatial::CoriolisInertia`] and everything in common axes about each body's own origin
+//! ([`super::common`]):
 //!
 //! ```text
 //! ψ̇ = V_λ × S     ψ̈ = V̇_λ × S + V_λ × ψ̇     Ṡ = V_i × S          (l on the way from k to the base)
@@ -9,7 +11,8 @@
 //! ∂τ_k/∂v_l = S_kᵀ [2B^C S_l + I^C (ψ̇_l + Ṡ_l)]  ∂τ_l/∂v_k = S_lᵀ [2B^C S_k + I^C (ψ̇_k + Ṡ_k)]
 //! ```
 //!
-//! with the composites of k's body. Forward dynamics: Carpentier & Mansard, *RSS* 2018: ∂a = −M⁻¹ ∂(inverse dynamics at a).
+//! with the composites of k's body. Forward dynamics: Carpentier & Mansard, *RSS* 2018: ∂a = −M⁻¹
+//! ∂(inverse dynamics at a).
 
 use super::Workspace;
 use super::common::{Axes, accelerations, carry, coriolis, forces, inertias, on_the_way, positions, twists};
@@ -30,7 +33,8 @@ use crate::spatial::{Reference, Twist, Vector3, Wrench, rotate};
 /// joint's child moves by a small motion in its own axes.
 ///
 /// # Panics
-/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`]
+/// check and return an error.
 pub fn inverse_dynamics_derivatives_with_wrenches<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,
@@ -134,9 +138,10 @@ pub fn forward_dynamics_derivatives_with_wrenches<S: Scalar>(
     ws.matrix = matrix;
 }
 
-/// All of [`forward_dynamics_derivatives_with_wrenches`] but the solution of M X = −B column by column,
-/// which is the same for each, so that generated code may leave it a loop: B = ∂τ/∂q and B = ∂τ/∂v,
-/// and in the third matrix M = Lᵀ D L: L below the diagonal, D⁻¹ on it, zeros above. Without motors.
+/// All of [`forward_dynamics_derivatives_with_wrenches`] but the solution of M X = −B column by
+/// column, which is the same for each, so that generated code may leave it a loop: B = ∂τ/∂q and B
+/// = ∂τ/∂v, and in the third matrix M = Lᵀ D L: L below the diagonal, D⁻¹ on it, zeros above.
+/// Without motors.
 ///
 /// # Panics
 /// As [`inverse_dynamics_derivatives_with_wrenches`].
@@ -160,7 +165,8 @@ pub(super) fn unsolved_derivatives<S: Scalar>(
     ws.matrix = matrix;
 }
 
-/// ∂τ/∂q and ∂τ/∂v at the acceleration that τ makes, the slopes of motors with them, in `out`; returns the factors of M, in the workspace's matrix.
+/// ∂τ/∂q and ∂τ/∂v at the acceleration that τ makes, the slopes of motors with them, in `out`;
+/// returns the factors of M, in the workspace's matrix.
 fn unsolved<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,
@@ -218,7 +224,8 @@ fn curls<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
     }
 }
 
-/// V̇_λ × S. What hangs on the base by a revolute joint falls as the base does: then the product is taken before its factors are turned, and is nothing for a joint that stands upright.
+/// V̇_λ × S. What hangs on the base by a revolute joint falls as the base does: then the product is
+/// taken before its factors are turned, and is nothing for a joint that stands upright.
 fn falling<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, k: usize, carried: &Twist<S>) -> Twist<S> {
     let body = &model.bodies[i];
     if body.parent != 0 || !body.joint.is_rotation_about_axis() {
@@ -283,7 +290,8 @@ impl<S: Scalar> Matrices<'_, S> {
     }
 }
 
-/// Subtracts external wrenches from the forces of bodies. Those that do not turn with their body, as the sweep will take all forces to do, are put right in ∂τ/∂q.
+/// Subtracts external wrenches from the forces of bodies. Those that do not turn with their body,
+/// as the sweep will take all forces to do, are put right in ∂τ/∂q.
 fn external<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], wrenches: &[S], by_q: &mut [S]) {
     let reference = model.wrench_reference;
     let mut frame = model.frames.iter().filter(|f| f.body != 0);
@@ -298,8 +306,10 @@ fn external<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], wrenche
     });
 }
 
-/// For each pair (l, k) of columns on the way from `body` to the base, ∂τ_l/∂q_k −= S_lᵀ δ_k, with δ_k what a unit step of k does to the wrench, less what it
-/// would do if the wrench turned with the body, S_k ×* w. In space the wrench stays as it is, but for its moment if it moves along with the point at `offset`.
+/// For each pair (l, k) of columns on the way from `body` to the base, ∂τ_l/∂q_k −= S_lᵀ δ_k, with
+/// δ_k what a unit step of k does to the wrench, less what it would do if the wrench turned with
+/// the body, S_k ×* w. In space the wrench stays as it is, but for its moment if it moves along
+/// with the point at `offset`.
 fn put_right<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, body: usize, w: &Wrench<S>, offset: Option<Vector3<S>>, by_q: &mut [S]) {
     on_the_way(model, ws, body, Vector3::zeros(), |column, d| {
         let (k, axis) = (column.at, column.axis.at(d));

@@ -13,7 +13,8 @@ use crate::spatial::rotate;
 /// q: `[nq]`; v: `[nv]`; out: one number, J. Featherstone 2008, §2.12.
 ///
 /// # Panics
-/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`]
+/// check and return an error.
 pub fn kinetic_energy<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
     let mut row = core::mem::take(&mut ws.row);
     momentum(model, ws, q, v, &effects::LoadCase::empty(), &mut row);
@@ -21,7 +22,8 @@ pub fn kinetic_energy<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S
     ws.row = row;
 }
 
-/// U = −Σ m gᵀc = −gᵀ Σ (m p + R h), zero at the world frame's origin, and what springs, stops, buoyancy and contacts store.
+/// U = −Σ m gᵀc = −gᵀ Σ (m p + R h), zero at the world frame's origin, and what springs, stops,
+/// buoyancy and contacts store.
 ///
 /// q: `[nq]`; out: one number, J. Links fixed to the base do not count.
 ///

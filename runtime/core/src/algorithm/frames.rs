@@ -1,7 +1,8 @@
 //! Twists, accelerations and Jacobians of frames, in three references ([`Reference`]).
 //!
-//! All read the outward sweep in world axes ([`super::common`]): a column of a Jacobian is the motion subspace of one degree of freedom on the way from the frame to
-//! the base, taken at another point and turned. Lynch & Park 2017, §5.1; Featherstone 2008, §2.9 and §2.11.
+//! All read the outward sweep in world axes ([`super::common`]): a column of a Jacobian is the
+//! motion subspace of one degree of freedom on the way from the frame to the base, taken at another
+//! point and turned. Lynch & Park 2017, §5.1; Featherstone 2008, §2.9 and §2.11.
 
 use super::Workspace;
 use super::common::{Axes, accelerations, on_the_way, positions, twists};
@@ -15,7 +16,8 @@ macro_rules! in_three_references {
         $(#[$doc])*
         ///
         /// # Panics
-        /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+        /// If a slice is shorter than stated; [`super::Function::call`] and
+        /// [`crate::dynamics::Dynamics`] check and return an error.
         pub fn $body<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, $($argument: &[S],)* out: &mut [S]) {
             $name(model, ws, Reference::Body, $($argument,)* out);
         }
@@ -44,14 +46,16 @@ in_three_references! {
     /// q: `[nq]`; v: `[nv]`; out: `[frames][6]`.
     frame_twists, twists_body, twists_world, twists_world_aligned, (q, v);
 
-    /// Time derivatives of the twists of all frames, rad/s² and m/s², gravity not added: spatial accelerations.
-    /// About the frame's origin in world axes: [ω̇; p̈], the true acceleration of the origin.
+    /// Time derivatives of the twists of all frames, rad/s² and m/s², gravity not added: spatial
+    /// accelerations. About the frame's origin in world axes: [ω̇; p̈], the true acceleration of
+    /// the origin.
     ///
     /// q: `[nq]`; v: `[nv]`; a: `[nv]`, or empty for zeros; out: `[frames][6]`.
     frame_accelerations, accelerations_body, accelerations_world, accelerations_world_aligned, (q, v, a);
 
-    /// Jacobians of all frames: twist = J v, with the six rows of the twist [ω; v] of the same reference (`_body`: own axes, own origin; `_world`: world axes, the world's
-    /// origin; `_world_aligned`: world axes, own origin) and a column for each degree of freedom.
+    /// Jacobians of all frames: twist = J v, with the six rows of the twist [ω; v] of the same
+    /// reference (`_body`: own axes, own origin; `_world`: world axes, the world's origin;
+    /// `_world_aligned`: world axes, own origin) and a column for each degree of freedom.
     ///
     /// q: `[nq]`; out: `[frames][6][nv]`, 1 and m per rad, or m per m.
     frame_jacobians, jacobians_body, jacobians_world, jacobians_world_aligned, (q);
@@ -75,7 +79,8 @@ impl<S: Scalar> Place<S> {
         Self { frame: Placement { rotation: x.rotation, position: body.position + x.position }, offset: x.position }
     }
 
-    /// A twist that is in world axes about the frame's origin, in the axes and about the point of the reference.
+    /// A twist that is in world axes about the frame's origin, in the axes and about the point of
+    /// the reference.
     fn refer(&self, x: Twist<S>, reference: Reference) -> Twist<S> {
         match reference {
             Reference::WorldAligned => x,
@@ -155,7 +160,8 @@ fn frame_jacobian_rates<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, refe
     }
 }
 
-/// Fills `[6][nv]` with `column(c, d)` for every column c on the way from `body` to the base, d being the origin of `body` from that of the column's body.
+/// Fills `[6][nv]` with `column(c, d)` for every column c on the way from `body` to the base, d
+/// being the origin of `body` from that of the column's body.
 fn columns<S: Scalar>(
     model: &Model<S>,
     ws: &Workspace<S>,
@@ -173,10 +179,12 @@ fn columns<S: Scalar>(
 
 /// ∂(placements)/∂q in the tangent space: for each of the twelve numbers of a frame a row.
 ///
-/// q: `[nq]`; out: `[frames][12][nv]`. Columns of R turn with s_ω: `∂R = [s_ω]× R`; the origin moves with the frame's Jacobian.
+/// q: `[nq]`; out: `[frames][12][nv]`. Columns of R turn with s_ω: `∂R = [s_ω]× R`; the origin
+/// moves with the frame's Jacobian.
 ///
 /// # Panics
-/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`]
+/// check and return an error.
 pub fn placement_derivatives<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
     positions(model, ws, Axes::Base, q);
     let nv = model.nv;

@@ -10,7 +10,8 @@ pub(crate) fn path_to_root(parent_dof: &[usize], k: usize) -> impl Iterator<Item
     core::iter::successors(next(k), move |&i| next(i))
 }
 
-/// How many multiplications [`factor`] takes where no element on the way between two joints is zero.
+/// How many multiplications [`factor`] takes where no element on the way between two joints is
+/// zero.
 pub(super) fn multiplications(parent_dof: &[usize]) -> u64 {
     // Joints between each and the base: a joint stands after those.
     let mut depths: Vec<u64> = Vec::with_capacity(parent_dof.len());
@@ -20,7 +21,8 @@ pub(super) fn multiplications(parent_dof: &[usize]) -> u64 {
     depths.iter().map(|d| d * (d + 5) / 2).sum()
 }
 
-/// M = Lᵀ D L in place: L below the diagonal with ones on it, D⁻¹ on the diagonal. From the last row up, so that the zeros between branches stay.
+/// M = Lᵀ D L in place: L below the diagonal with ones on it, D⁻¹ on the diagonal. From the last
+/// row up, so that the zeros between branches stay.
 pub(super) fn factor<S: Scalar>(m: &mut [S], parent_dof: &[usize]) {
     let n = parent_dof.len();
     for k in (0..n).rev() {
@@ -60,7 +62,8 @@ pub(super) fn solve<S: Scalar>(l: &[S], parent_dof: &[usize], x: &mut [S]) {
     }
 }
 
-/// X = M⁻¹ B in place, for a matrix B of `below.len()` columns, row by row: all its columns at once.
+/// X = M⁻¹ B in place, for a matrix B of `below.len()` columns, row by row: all its columns at
+/// once.
 pub(crate) fn solve_rows<S: Scalar>(l: &[S], parent_dof: &[usize], x: &mut [S]) {
     solve_from(l, parent_dof, x, |_| 0);
 }

@@ -1,8 +1,10 @@
 //! Configurations as points of a manifold: steps, differences, points at random.
 //!
-//! A floating joint's coordinates are a placement, a spherical one's a rotation: they have seven and four numbers for six and three degrees of
-//! freedom. A step δ of the tangent space moves the child along its own body twist: q ⊕ δ = T·exp(δ), R·exp(δ), and q + δ for all other joints. Joints that
-//! follow others have no coordinates, so no step. Barfoot 2017, §7.1.6; Lynch & Park 2017, §3.3.3.
+//! A floating joint's coordinates are a placement, a spherical one's a rotation: they have seven
+//! and four numbers for six and three degrees of freedom. A step δ of the tangent space moves the
+//! child along its own body twist: q ⊕ δ = T·exp(δ), R·exp(δ), and q + δ for all other joints.
+//! Joints that follow others have no coordinates, so no step. Barfoot 2017, §7.1.6; Lynch & Park
+//! 2017, §3.3.3.
 
 use core::f64::consts::{PI, TAU};
 
@@ -13,13 +15,16 @@ use crate::model::{JointInfo, Model};
 use crate::spatial::screw::Quaternion;
 use crate::spatial::{Twist, Vector3, rotate, rotate_back};
 
-/// q ⊕ step: where a motion with constant rates gets to in a unit of time; rates are body twists where a joint has more than it can add up.
+/// q ⊕ step: where a motion with constant rates gets to in a unit of time; rates are body twists
+/// where a joint has more than it can add up.
 ///
-/// q: `[nq]` rad|m|quaternion; step: `[nv]` rad|m|twist times time; out: `[nq]`, quaternions of norm one to 2u. Absolute error some
-/// (4 + |ω|)·u of a quaternion, or times |position| + |v|; one rounding of a sum.
+/// q: `[nq]` rad|m|quaternion; step: `[nv]` rad|m|twist times time; out: `[nq]`, quaternions of
+/// norm one to 2u. Absolute error some (4 + |ω|)·u of a quaternion, or times |position| + |v|; one
+/// rounding of a sum.
 ///
 /// # Panics
-/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`]
+/// check and return an error.
 pub fn integrate<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, q: &[S], step: &[S], out: &mut [S]) {
     for joint in &model.joints {
         let (q, step, out) = (&q[range(joint.q)], &step[range(joint.v)], &mut out[range(joint.q)]);
@@ -39,8 +44,9 @@ pub fn integrate<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, q: &[S], ste
 
 /// target ⊖ q: the step that takes q to the target, with no rotation beyond half a turn.
 ///
-/// q, target: `[nq]` rad|m|quaternion; out: `[nv]` rad|m|twist times time. Absolute error some 8u of a rotation, that times the distance of a
-/// translation, up to half a turn; there the step is one of two, see [`Quaternion::log`]. Angles are subtracted as they are, not taken modulo a turn.
+/// q, target: `[nq]` rad|m|quaternion; out: `[nv]` rad|m|twist times time. Absolute error some 8u
+/// of a rotation, that times the distance of a translation, up to half a turn; there the step is
+/// one of two, see [`Quaternion::log`]. Angles are subtracted as they are, not taken modulo a turn.
 ///
 /// # Panics
 /// As [`integrate`].
@@ -61,8 +67,9 @@ pub fn difference<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, q: &[S], ta
 
 /// A configuration from numbers in [0, 1): uniform if they are.
 ///
-/// uniform: `[nq]`, of the last of each quaternion's four no use is made; out: `[nq]` rad|m|quaternion. Coordinates in their boxes ([`coordinate_box`]).
-/// Rotations uniform: Shoemake, *Uniform random rotations*, Graphics Gems III, 1992.
+/// uniform: `[nq]`, of the last of each quaternion's four no use is made; out: `[nq]`
+/// rad|m|quaternion. Coordinates in their boxes ([`coordinate_box`]). Rotations uniform: Shoemake,
+/// *Uniform random rotations*, Graphics Gems III, 1992.
 ///
 /// # Panics
 /// As [`integrate`].
@@ -165,8 +172,10 @@ fn put_quaternion<S: Scalar>(out: &mut [S], q: &Quaternion<S>) {
     out[..4].copy_from_slice(&q.normalised().to_array());
 }
 
-/// The box of coordinate `k` of a joint, its lower end first, rad or m: within limits where there are some, in whichever order they are written; a bound that is open is 2π or
-/// 2 m from the other, ±π and ±1 m where both are, as those of a sliding joint may be. Of a floating joint ±1 m, and ±1 for the numbers of a quaternion.
+/// The box of coordinate `k` of a joint, its lower end first, rad or m: within limits where there
+/// are some, in whichever order they are written; a bound that is open is 2π or 2 m from the other,
+/// ±π and ±1 m where both are, as those of a sliding joint may be. Of a floating joint ±1 m, and ±1
+/// for the numbers of a quaternion.
 pub fn coordinate_box(joint: &JointInfo, k: usize) -> (f64, f64) {
     if joint.kind.quaternion().is_some() {
         return (-1.0, 1.0);
@@ -184,7 +193,8 @@ fn bounds(limit: Option<Limit>, most: f64) -> (f64, f64) {
     }
 }
 
-/// lower + u·(upper − lower), which rounding must not take beyond the upper bound; where that difference is beyond the range of numbers, from its parts.
+/// lower + u·(upper − lower), which rounding must not take beyond the upper bound; where that
+/// difference is beyond the range of numbers, from its parts.
 fn between<S: Scalar>(lower: f64, upper: f64, u: S) -> S {
     let apart = (upper - lower).is_finite();
     let [lower, upper] = [lower, upper].map(S::from_f64);

@@ -1,7 +1,7 @@
 //! Derivatives of steps and differences on the manifold of configurations.
 //!
-//! A change of a configuration is a small step behind it, as in all derivatives here. With Ad, J_l and J_r of SE(3) for a floating joint, of SO(3)
-//! for a spherical one, and ones for all others,
+//! A change of a configuration is a small step behind it, as in all derivatives here. With Ad, J_l
+//! and J_r of SE(3) for a floating joint, of SO(3) for a spherical one, and ones for all others,
 //!
 //! ```text
 //! (q ⊕ δ) ⊕ s     ≈ (q ⊕ s) ⊕ Ad(exp −s) δ
@@ -10,7 +10,8 @@
 //! (t ⊕ δ) ⊖ q     ≈ d + J_r(d)⁻¹ δ
 //! ```
 //!
-//! Barfoot 2017, §7.1.5; Solà, Deray & Atchuthan 2018, *A micro Lie theory for state estimation in robotics*, §III–IV.
+//! Barfoot 2017, §7.1.5; Solà, Deray & Atchuthan 2018, *A micro Lie theory for state estimation in
+//! robotics*, §III–IV.
 
 use super::Workspace;
 use super::manifold::{Space, range, six, three, turn_between, way_between};
@@ -18,13 +19,16 @@ use crate::Scalar;
 use crate::model::{JointInfo, Model};
 use crate::spatial::screw::{Quaternion, left_jacobian_inverse, right_jacobian, right_jacobian_inverse};
 
-/// ∂(q ⊕ step)/∂q and ∂(q ⊕ step)/∂step, which q has no part in; rows and columns in the tangent spaces of where it ends and begins.
+/// ∂(q ⊕ step)/∂q and ∂(q ⊕ step)/∂step, which q has no part in; rows and columns in the tangent
+/// spaces of where it ends and begins.
 ///
-/// step: `[nv]` rad|m|twist times time; out: `[2][nv][nv]`, 1, of a floating joint's lower left blocks m. Absolute error of an entry some 2u times 1 + the
-/// largest number of the step. The second is singular at |ω| = 2π.
+/// step: `[nv]` rad|m|twist times time; out: `[2][nv][nv]`, 1, of a floating joint's lower left
+/// blocks m. Absolute error of an entry some 2u times 1 + the largest number of the step. The
+/// second is singular at |ω| = 2π.
 ///
 /// # Panics
-/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`]
+/// check and return an error.
 pub fn integrate_derivatives<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, step: &[S], out: &mut [S]) {
     let [by_q, by_step] = halves(out, model.nv);
     for joint in &model.joints {
@@ -45,10 +49,12 @@ pub fn integrate_derivatives<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, 
     }
 }
 
-/// ∂(target ⊖ q)/∂q and ∂(target ⊖ q)/∂target; rows as the difference, columns in the tangent spaces of q and of the target.
+/// ∂(target ⊖ q)/∂q and ∂(target ⊖ q)/∂target; rows as the difference, columns in the tangent
+/// spaces of q and of the target.
 ///
-/// q, target: `[nq]` rad|m|quaternion; out: `[2][nv][nv]`, 1, of a floating joint's lower left blocks m. Absolute error of an entry some 4u times 1 + the
-/// distance. At half a turn the difference jumps; these are the derivatives of the step that [`super::difference`] gives.
+/// q, target: `[nq]` rad|m|quaternion; out: `[2][nv][nv]`, 1, of a floating joint's lower left
+/// blocks m. Absolute error of an entry some 4u times 1 + the distance. At half a turn the
+/// difference jumps; these are the derivatives of the step that [`super::difference`] gives.
 ///
 /// # Panics
 /// As [`integrate_derivatives`].

@@ -1,4 +1,5 @@
-//! The algorithms, each written once over the scalar, and the table of the functions that they give.
+//! The algorithms, each written once over the scalar, and the table of the functions that they
+//! give.
 
 mod aba;
 pub(crate) mod argument;

@@ -1,7 +1,8 @@
 //! Centre of mass and centroidal momentum of the moving links.
 //!
-//! Momentum and its rate are what the base passes on in the recursion of inverse dynamics without gravity, at rest for the momentum itself; the matrix has for its
-//! columns the momenta of composite bodies. Orin, Goswami & Lee, *Auton. Robots* 35, 2013, 161–176.
+//! Momentum and its rate are what the base passes on in the recursion of inverse dynamics without
+//! gravity, at rest for the momentum itself; the matrix has for its columns the momenta of
+//! composite bodies. Orin, Goswami & Lee, *Auton. Robots* 35, 2013, 161–176.
 
 use super::Workspace;
 use super::common::{Axes, inertias, positions};
@@ -13,10 +14,12 @@ use crate::spatial::{Vector3, Wrench, rotate};
 
 /// Centre of mass of the moving links, world axes.
 ///
-/// q: `[nq]`; out: `[3]` m. Links fixed to the base do not count. Without any mass the result is not finite.
+/// q: `[nq]`; out: `[3]` m. Links fixed to the base do not count. Without any mass the result is
+/// not finite.
 ///
 /// # Panics
-/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`]
+/// check and return an error.
 pub fn center_of_mass<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
     let first = places(model, ws, q);
     let (_, center) = center(model, ws);
@@ -51,7 +54,8 @@ pub fn center_of_mass_acceleration<S: Scalar>(model: &Model<S>, ws: &mut Workspa
 
 /// J with ċ = J v, world axes.
 ///
-/// q: `[nq]`; out: `[3][nv]`. The column of a degree of freedom is the momentum of all that it carries, over the whole mass.
+/// q: `[nq]`; out: `[3][nv]`. The column of a degree of freedom is the momentum of all that it
+/// carries, over the whole mass.
 ///
 /// # Panics
 /// As [`center_of_mass`].
@@ -94,7 +98,8 @@ pub fn centroidal_momentum_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspac
     });
 }
 
-/// d/dt [k; l], world axes: the wrench about the centre of mass that gravity, the base and the surroundings must exert together.
+/// d/dt [k; l], world axes: the wrench about the centre of mass that gravity, the base and the
+/// surroundings must exert together.
 ///
 /// q: `[nq]`; v, a: `[nv]`; out: `[6]` N·m and N.
 ///
@@ -105,8 +110,8 @@ pub fn centroidal_momentum_rate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<
     out.copy_from_slice(&rate.to_array());
 }
 
-/// Positions of all bodies about the origin of the first, which it returns, in world axes: however far from the base a robot is, its momentum about its centre of mass has
-/// all its digits.
+/// Positions of all bodies about the origin of the first, which it returns, in world axes: however
+/// far from the base a robot is, its momentum about its centre of mass has all its digits.
 fn places<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]) -> Vector3<S> {
     positions(model, ws, Axes::Base, q);
     let first = model.outward().next().map_or_else(Vector3::zeros, |i| ws.common[i].shift);
@@ -129,14 +134,16 @@ fn center<S: Scalar>(model: &Model<S>, ws: &Workspace<S>) -> (S, Vector3<S>) {
     (inverse, first * inverse)
 }
 
-/// Leaves in each body the momentum of all that it carries, as the wrench that would bring it about in a unit of time.
+/// Leaves in each body the momentum of all that it carries, as the wrench that would bring it about
+/// in a unit of time.
 fn generalised<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S]) {
     let mut row = core::mem::take(&mut ws.row);
     momentum(model, ws, q, v, &LoadCase::bare(), &mut row);
     ws.row = row;
 }
 
-/// The wrenches that the base passes to the bodies that hang on it, together, about `point` in world axes.
+/// The wrenches that the base passes to the bodies that hang on it, together, about `point` in
+/// world axes.
 fn at_the_roots<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, point: Vector3<S>) -> Wrench<S> {
     let one = |i: usize| {
         let (wrench, state) = (&ws.bodies[i].wrench, &ws.common[i]);
@@ -155,7 +162,8 @@ fn rate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a:
     (inverse, at_the_roots(model, ws, center))
 }
 
-/// For each degree of freedom (its index in v, I^C S, the origin that is about), with I^C the inertia of all that it carries.
+/// For each degree of freedom (its index in v, I^C S, the origin that is about), with I^C the
+/// inertia of all that it carries.
 fn composites<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, mut visit: impl FnMut(usize, &Wrench<S>, Vector3<S>)) {
     for i in model.inward() {
         let state = ws.common[i];

@@ -9,12 +9,14 @@ use crate::Scalar;
 use crate::model::{Frame, Model};
 use crate::spatial::Reference;
 
-/// Λ⁻¹ = J M⁻¹ Jᵀ of each frame by itself, J being the frame's Jacobian in world axes about its origin.
+/// Λ⁻¹ = J M⁻¹ Jᵀ of each frame by itself, J being the frame's Jacobian in world axes about its
+/// origin.
 ///
 /// q: `[nq]`; out: `[frames][6][6]`, symmetric.
 ///
 /// # Panics
-/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`]
+/// check and return an error.
 pub fn operational_space_inertia_inverse<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
     let matrix = factored(model, ws, q);
     positions(model, ws, Axes::Base, q);
@@ -26,8 +28,10 @@ pub fn operational_space_inertia_inverse<S: Scalar>(model: &Model<S>, ws: &mut W
 
 /// Λ = (J M⁻¹ Jᵀ)⁻¹ of each frame by itself.
 ///
-/// q: `[nq]`; out: `[frames][6][6]`, symmetric. Not a number for a frame with less than six degrees of freedom on its way to the base. In a configuration in which they do
-/// not move it in all six directions Λ⁻¹ is singular, and its inverse what rounding makes of it: large numbers that mean nothing.
+/// q: `[nq]`; out: `[frames][6][6]`, symmetric. Not a number for a frame with less than six degrees
+/// of freedom on its way to the base. In a configuration in which they do not move it in all six
+/// directions Λ⁻¹ is singular, and its inverse what rounding makes of it: large numbers that mean
+/// nothing.
 ///
 /// # Panics
 /// As [`operational_space_inertia_inverse`].
@@ -38,7 +42,8 @@ pub fn operational_space_inertia<S: Scalar>(model: &Model<S>, ws: &mut Workspace
     }
 }
 
-/// How many degrees of freedom move body `i`, up to six: joints that follow others have none of their own.
+/// How many degrees of freedom move body `i`, up to six: joints that follow others have none of
+/// their own.
 fn freedoms_before<S: Scalar>(model: &Model<S>, mut i: usize) -> usize {
     let (mut found, mut count) = ([0; 6], 0);
     while i != 0 {

@@ -19,7 +19,8 @@ pub struct Shape {
 }
 
 impl<S: Scalar> Model<S> {
-    /// For each degree of freedom those on the way to the base, the next first: where row k of M and of the factors of M = Lᵀ D L has numbers before the diagonal.
+    /// For each degree of freedom those on the way to the base, the next first: where row k of M
+    /// and of the factors of M = Lᵀ D L has numbers before the diagonal.
     pub fn paths_to_root(&self) -> alloc::vec::Vec<alloc::vec::Vec<usize>> {
         let parent_dof = super::workspace::parent_dof(self);
         (0..self.nv).map(|k| super::ltdl::path_to_root(&parent_dof, k).collect()).collect()
@@ -66,7 +67,8 @@ pub struct Way<S: 'static> {
     pub name: &'static str,
     /// Whether it can be had for a model.
     pub applies: fn(&Model<S>) -> bool,
-    /// It takes at least so many multiplications where all joints feel each other; zero where that says nothing. What cannot be the cheapest way need not be tried.
+    /// It takes at least so many multiplications where all joints feel each other; zero where that
+    /// says nothing. What cannot be the cheapest way need not be tried.
     pub least: fn(&Model<S>) -> u64,
     pub(super) run: Run<S>,
 }
@@ -172,12 +174,14 @@ pub struct Function<S: 'static> {
     pub group: Group,
     /// What the robot must be like.
     pub needs: Needs,
-    /// Whether it asks for nothing but joint torques and what follows from them, so that mass may be moved along joints that cannot feel it, and
-    /// frames along their axes.
+    /// Whether it asks for nothing but joint torques and what follows from them, so that mass may
+    /// be moved along joints that cannot feel it, and frames along their axes.
     pub regrouped: bool,
-    /// Ways to compute it, from which the generator takes the cheapest; the first is what [`Function::call`] runs where it applies.
+    /// Ways to compute it, from which the generator takes the cheapest; the first is what
+    /// [`Function::call`] runs where it applies.
     pub ways: &'static [Way<S>],
-    /// All of it but the solution of M X = −B for all columns of `[3][nv][nv]` numbers: two matrices B, and the factors of M = Lᵀ D L in the third, L below the diagonal and D⁻¹ on it;
+    /// All of it but the solution of M X = −B for all columns of `[3][nv][nv]` numbers: two
+    /// matrices B, and the factors of M = Lᵀ D L in the third, L below the diagonal and D⁻¹ on it;
     /// the third X is M⁻¹. For callers that solve column by column by themselves.
     pub unsolved: Option<Way<S>>,
 }
@@ -198,7 +202,8 @@ impl<S: Scalar> Function<S> {
         functions().iter().filter(fits).min_by_key(|f| f.takes.len()).unwrap_or(self.id.row())
     }
 
-    /// Whether the function divides by the mass matrix, so that a joint that moves no mass makes it undefined.
+    /// Whether the function divides by the mass matrix, so that a joint that moves no mass makes it
+    /// undefined.
     pub fn inverts_mass_matrix(&self) -> bool {
         matches!(self.needs, Needs::MassMatrix | Needs::FreeFrames)
     }
@@ -214,7 +219,8 @@ impl<S: Scalar> Function<S> {
         size(self.gives, shape)
     }
 
-    /// Evaluates the function; `arguments` in the order of `takes`, `out` as `gives` says, row by row.
+    /// Evaluates the function; `arguments` in the order of `takes`, `out` as `gives` says, row by
+    /// row.
     pub fn call(&self, model: &Model<S>, ws: &mut Workspace<S>, arguments: &[&[S]], out: &mut [S]) -> Result<(), FunctionError> {
         let way = self.ways.iter().find(|w| (w.applies)(model)).ok_or(FunctionError::NoWay { function: self.name })?;
         self.call_by(way, model, ws, arguments, out)

@@ -1,8 +1,9 @@
 //! Regressors: dynamics are linear in the ten inertial parameters of each link.
 //!
-//! The parameters are π = (m, h_x, h_y, h_z, I_xx, I_xy, I_xz, I_yy, I_yz, I_zz) with h = m c and I about the origin of the link's frame, in its axes;
-//! a link is a moving link with everything that is fixed to it. Atkeson, An & Hollerbach, *Int. J. Robot. Res.* 5, 1986, 101–119; energies: Gautier & Khalil,
-//! *IEEE ICRA* 1988, 1026–1031.
+//! The parameters are π = (m, h_x, h_y, h_z, I_xx, I_xy, I_xz, I_yy, I_yz, I_zz) with h = m c and I
+//! about the origin of the link's frame, in its axes; a link is a moving link with everything that
+//! is fixed to it. Atkeson, An & Hollerbach, *Int. J. Robot. Res.* 5, 1986, 101–119; energies:
+//! Gautier & Khalil, *IEEE ICRA* 1988, 1026–1031.
 
 use super::Workspace;
 use super::common::{Axes, accelerations, on_the_way, positions, twists};
@@ -13,12 +14,15 @@ use crate::spatial::{Matrix3, Twist, Vector3, rate_matrix, rotate_back};
 /// Inertial parameters of a link.
 pub const PARAMETERS: usize = 10;
 
-/// Y with τ = Y π, π as [`Model::inertial_parameters`] has it: of each link m, m c and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz about its origin, in its axes.
+/// Y with τ = Y π, π as [`Model::inertial_parameters`] has it: of each link m, m c and I_xx, I_xy,
+/// I_xz, I_yy, I_yz, I_zz about its origin, in its axes.
 ///
-/// q: `[nq]`; v, a: `[nv]`; out: `[nv][links][10]`, N·m|N per kg, kg·m and kg·m². By virtual power: τ_l = Σ ∫ (s_l(r))·(r̈ − g) dm, with s_l(r) the velocity of the point at unit rate l.
+/// q: `[nq]`; v, a: `[nv]`; out: `[nv][links][10]`, N·m|N per kg, kg·m and kg·m². By virtual power:
+/// τ_l = Σ ∫ (s_l(r))·(r̈ − g) dm, with s_l(r) the velocity of the point at unit rate l.
 ///
 /// # Panics
-/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`]
+/// check and return an error.
 pub fn torque_regressor<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S], out: &mut [S]) {
     positions(model, ws, Axes::Tree, q);
     twists(model, ws, Axes::Tree, v);
@@ -39,7 +43,8 @@ pub fn torque_regressor<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &
     }
 }
 
-/// What a motion (s; t) does on a body whose points at r accelerate by a + U r: per unit of each parameter.
+/// What a motion (s; t) does on a body whose points at r accelerate by a + U r: per unit of each
+/// parameter.
 fn entries<S: Scalar>(axis: &Twist<S>, a: &Vector3<S>, u: &Matrix3<S>) -> [S; PARAMETERS] {
     let (s, t) = (axis.angular, axis.linear);
     // m: t·a;  h: t·(U h) + s·(h × a) = h·(Uᵀt + a × s)
@@ -108,8 +113,8 @@ fn turn<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize) -> Matrix3<S> 
 }
 
 impl<S: Scalar> Model<S> {
-    /// π of every moving link, `[links][10]`: m, h = m c, and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz about the origin of the link's frame, in its axes; kg, kg·m,
-    /// kg·m².
+    /// π of every moving link, `[links][10]`: m, h = m c, and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz
+    /// about the origin of the link's frame, in its axes; kg, kg·m, kg·m².
     pub fn inertial_parameters(&self) -> alloc::vec::Vec<[S; PARAMETERS]> {
         let one = |i: usize| {
             let (inertia, link) = (&self.bodies[i].inertia, &self.bodies[i].link);

@@ -22,7 +22,8 @@ use crate::spatial::{Motion, rate_matrix, rates_about, rotate};
 /// N·m|N. Gravity included. Featherstone 2008, Table 5.1.
 ///
 /// # Panics
-/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`]
+/// check and return an error.
 #[inline]
 pub fn inverse_dynamics_with_wrenches<S: Scalar>(
     model: &Model<S>,
@@ -39,7 +40,8 @@ pub fn inverse_dynamics_with_wrenches<S: Scalar>(
     ws.zeros = zeros;
 }
 
-/// M(q)·v, the generalised momentum: inverse dynamics of the acceleration v at rest and in an empty world.
+/// M(q)·v, the generalised momentum: inverse dynamics of the acceleration v at rest and in an empty
+/// world.
 pub(super) fn momentum<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], load: &LoadCase<S>, out: &mut [S]) {
     let zeros = core::mem::take(&mut ws.zeros);
     recursion(model, ws, q, &zeros, v, load, out);
@@ -76,7 +78,8 @@ pub(super) fn recursion<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &
     }
 }
 
-/// What a recursion has to do on a model, found in one look at its bodies: with one look for each, inverse dynamics takes a twentieth longer on numbers.
+/// What a recursion has to do on a model, found in one look at its bodies: with one look for each,
+/// inverse dynamics takes a twentieth longer on numbers.
 #[derive(Default)]
 struct ModelFeatures {
     on_bodies: bool,
@@ -95,10 +98,11 @@ impl ModelFeatures {
     }
 }
 
-/// The wrench that each joint passes to its child link, gravity included: the torque is what of it the joint feels.
+/// The wrench that each joint passes to its child link, gravity included: the torque is what of it
+/// the joint feels.
 ///
-/// q: `[nq]`; v, a: `[nv]`; out: `[links][6]`, N·m and N, in axes of the link about its origin. The model must be as it was read: a pass that moves mass
-/// between bodies changes these wrenches.
+/// q: `[nq]`; v, a: `[nv]`; out: `[links][6]`, N·m and N, in axes of the link about its origin. The
+/// model must be as it was read: a pass that moves mass between bodies changes these wrenches.
 ///
 /// # Panics
 /// As [`inverse_dynamics_with_wrenches`].

@@ -1,4 +1,5 @@
-//! The one table of functions, from which the generator, the command line, the tests and the documentation all read.
+//! The one table of functions, from which the generator, the command line, the tests and the
+//! documentation all read.
 //!
 //! Adding a function: its algorithm in a file, its row here. A row is
 //!
@@ -6,7 +7,9 @@
 //! name(arguments) -> [dimensions] "units", group, needs, regrouped?, "what it is", "algorithm and source";
 //! ```
 //!
-//! with `by` and a list of ways where there is more than one (its name, where it can be had, its least cost, its algorithm, and in whose axes if not the usual) and `columns` where there is a part of it before M X = B is solved.
+//! with `by` and a list of ways where there is more than one (its name, where it can be had, its
+//! least cost, its algorithm, and in whose axes if not the usual) and `columns` where there is a
+//! part of it before M X = B is solved.
 //!
 //! A preset is a row at zeros. It takes everything but its name, its arguments and its summary from
 //! the row. An argument of the row that it does not list is zero: the algorithm gets an empty slice
@@ -318,7 +321,8 @@ fn factorization<S: Scalar>(model: &Model<S>) -> u64 {
     super::ltdl::multiplications(&super::workspace::parent_dof(model))
 }
 
-/// Whether no joint follows another: a follower ties branches together, and no recursion along one branch can invert M.
+/// Whether no joint follows another: a follower ties branches together, and no recursion along one
+/// branch can invert M.
 fn untied<S: Scalar>(model: &Model<S>) -> bool {
     !model.has_followers()
 }

@@ -13,7 +13,8 @@ use crate::joint::Pose;
 use crate::model::{Body, Model};
 use crate::spatial::{ArticulatedInertia, CoriolisInertia, Motion, Placement, SpatialInertia, Twist, Wrench};
 
-/// Room for one evaluation of any algorithm on one model: made once, used by every call, so that no call allocates.
+/// Room for one evaluation of any algorithm on one model: made once, used by every call, so that no
+/// call allocates.
 #[derive(Clone, Debug)]
 pub struct Workspace<S> {
     /// The sizes of the model it was made for.
@@ -31,7 +32,8 @@ pub struct Workspace<S> {
     pub(super) sizes: Vec<Size<S>>,
     /// Each body in common axes.
     pub(super) common: Vec<CommonState<S>>,
-    /// The columns of all joint subspaces, followers' too; [`Workspace::columns_of`] says which are a body's.
+    /// The columns of all joint subspaces, followers' too; [`Workspace::columns_of`] says which are
+    /// a body's.
     pub(super) columns: Vec<Column<S>>,
     /// First column of each body, and the number of all.
     first: Vec<usize>,
@@ -69,7 +71,8 @@ pub(super) struct BodyState<S> {
     pub(super) wrench: Wrench<S>,
 }
 
-/// One body's quantities of the current evaluation, in common axes, about its own origin; see [`super::common`].
+/// One body's quantities of the current evaluation, in common axes, about its own origin; see
+/// [`super::common`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CommonState<S> {
     /// The body's axes.
@@ -99,7 +102,8 @@ pub(super) struct Centers {
     pub(super) inside: Vec<bool>,
 }
 
-/// One degree of freedom of a body's joint: its motion subspace in common axes, about the body's origin, per unit of the coordinate that moves it.
+/// One degree of freedom of a body's joint: its motion subspace in common axes, about the body's
+/// origin, per unit of the coordinate that moves it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Column<S> {
     /// Index in v.
@@ -164,7 +168,8 @@ impl<S: Scalar> Workspace<S> {
         }
     }
 
-    /// Whether it was made for a model with as many frames, and with the same tree and the same coordinates.
+    /// Whether it was made for a model with as many frames, and with the same tree and the same
+    /// coordinates.
     pub(super) fn fits(&self, model: &Model<S>) -> bool {
         let Shape { nq, nv, frames, .. } = self.shape;
         let alike = |i: usize| {
@@ -178,13 +183,15 @@ impl<S: Scalar> Workspace<S> {
         sizes && model.outward().all(alike)
     }
 
-    /// After inverse dynamics: the wrench that body `i` needs for itself, and the one that its joint passes to it, in its frame.
+    /// After inverse dynamics: the wrench that body `i` needs for itself, and the one that its
+    /// joint passes to it, in its frame.
     pub(crate) fn wrenches_of(&self, model: &Model<S>, i: usize) -> (Wrench<S>, Wrench<S>) {
         let state = &self.bodies[i];
         (model.bodies[i].inertia.wrench(state.motion.acceleration, &state.u), state.wrench)
     }
 
-    /// The poses of all joints, at the coordinates in `q`: before the sweep that needs them, so that it need not wait for sines.
+    /// The poses of all joints, at the coordinates in `q`: before the sweep that needs them, so
+    /// that it need not wait for sines.
     #[inline(always)]
     pub(super) fn set_poses(&mut self, model: &Model<S>, q: &[S]) {
         for (i, body) in model.bodies.iter().enumerate().skip(1) {
@@ -261,7 +268,8 @@ impl<S: Scalar> Column<S> {
     }
 }
 
-/// For each body that hangs on the base, the body beyond and before which no branch has more than half of the degrees of freedom of its tree.
+/// For each body that hangs on the base, the body beyond and before which no branch has more than
+/// half of the degrees of freedom of its tree.
 fn middles<S: Scalar>(model: &Model<S>) -> Vec<usize> {
     let mut weight: Vec<usize> = model.bodies.iter().map(|b| b.joint.nv()).collect();
     for i in model.inward() {
@@ -285,8 +293,9 @@ fn firsts<S: Scalar>(model: &Model<S>) -> impl Iterator<Item = usize> + '_ {
 /// How far from its first body the middle of a tree may be for [`near_the_middle`].
 const NEAR: usize = 4;
 
-/// Whether the first bodies of trees are other bodies than those in the middle, but not far from them, and nothing but turns lies between: then theirs may be the cheaper
-/// axes, as zeros of parallel joints are not where the middle is.
+/// Whether the first bodies of trees are other bodies than those in the middle, but not far from
+/// them, and nothing but turns lies between: then theirs may be the cheaper axes, as zeros of
+/// parallel joints are not where the middle is.
 pub(super) fn near_the_middle<S: Scalar>(model: &Model<S>) -> bool {
     let way = |i: usize| core::iter::successors(Some(i), |&i| Some(model.bodies[i].parent).filter(|p| *p != 0));
     let ways = || middles(model).into_iter().map(way);
@@ -308,8 +317,10 @@ impl Centers {
     }
 }
 
-/// For each degree of freedom the number of the next one on the way to the base plus one; 0 where the base is next. The mass matrix is zero
-/// between degrees of freedom neither of which is on the other's way (Featherstone 2008, §6.5). Joints that follow others tie branches together: then all are one chain.
+/// For each degree of freedom the number of the next one on the way to the base plus one; 0 where
+/// the base is next. The mass matrix is zero between degrees of freedom neither of which is on the
+/// other's way (Featherstone 2008, §6.5). Joints that follow others tie branches together: then all
+/// are one chain.
 pub(super) fn parent_dof<S: Scalar>(model: &Model<S>) -> Vec<usize> {
     let tied = model.has_followers();
     let mut parent_dof: Vec<usize> = (0..model.nv).collect();

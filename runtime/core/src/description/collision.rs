@@ -79,7 +79,8 @@ pub struct ContactSphere {
     pub radius: f64,
 }
 
-/// So many points stand on each rim of a cylinder, the first of them in the direction of its x axis.
+/// So many points stand on each rim of a cylinder, the first of them in the direction of its x
+/// axis.
 pub const RIM_POINTS: usize = 8;
 
 impl Collision {

@@ -1,4 +1,5 @@
-//! Edits of a robot before a model is made of it: joints locked, payloads attached, another robot appended.
+//! Edits of a robot before a model is made of it: joints locked, payloads attached, another robot
+//! appended.
 //!
 //! An edit that is refused leaves the description as it was.
 
@@ -18,17 +19,20 @@ use crate::suggest::Suggester;
 pub struct Payload {
     /// The link that carries it.
     pub link: String,
-    /// Name of the link that stands for it, and of the fixed joint between; `None`: `<link>_payload`, with a number if that is taken.
+    /// Name of the link that stands for it, and of the fixed joint between; `None`:
+    /// `<link>_payload`, with a number if that is taken.
     pub name: Option<String>,
     /// kg, not negative.
     pub mass: f64,
     /// Centre of mass in the carrying link's frame, m.
     pub center_of_mass: [f64; 3],
-    /// Rotational inertia about the centre of mass in axes of the carrying link: xx, xy, xz, yy, yz, zz, kg·m². Zeros: a point mass.
+    /// Rotational inertia about the centre of mass in axes of the carrying link: xx, xy, xz, yy,
+    /// yz, zz, kg·m². Zeros: a point mass.
     pub inertia: [f64; 6],
 }
 
-/// A robot while it is edited. Its names are gathered once, so that thousands of edits are soon made.
+/// A robot while it is edited. Its names are gathered once, so that thousands of edits are soon
+/// made.
 #[derive(Debug)]
 pub struct Editor<'a> {
     pub(super) robot: &'a mut Description,
@@ -64,11 +68,13 @@ impl<'a> Editor<'a> {
         Self { names: Names::of(robot), robot, suggester: Suggester::default() }
     }
 
-    /// Locks the joint called `joint` at these coordinates, as many as its kind has (rad or m; a quaternion as x, y, z, w). Joints that follow
-    /// it stop where it puts them. A locked joint has no place in q and v, and its links belong to the body that they are locked to.
+    /// Locks the joint called `joint` at these coordinates, as many as its kind has (rad or m; a
+    /// quaternion as x, y, z, w). Joints that follow it stop where it puts them. A locked joint has
+    /// no place in q and v, and its links belong to the body that they are locked to.
     ///
-    /// Refused: what does not exist, does not move or moves already no more; a follower (lock what it follows); the base (say that it is fixed); a
-    /// wrong number of coordinates; a quaternion whose norm is not one within [`NORM_TOLERANCE`](crate::spatial::NORM_TOLERANCE).
+    /// Refused: what does not exist, does not move or moves already no more; a follower (lock what
+    /// it follows); the base (say that it is fixed); a wrong number of coordinates; a quaternion
+    /// whose norm is not one within [`NORM_TOLERANCE`](crate::spatial::NORM_TOLERANCE).
     pub fn lock(&mut self, joint: &str, at: &[f64]) -> Result<(), EditError> {
         let Some(index) = self.names.joint(joint) else {
             return Err(match joint {
@@ -96,11 +102,14 @@ impl<'a> Editor<'a> {
         Ok(())
     }
 
-    /// Attaches a payload: a link of its own, whose frame has its origin at the payload's centre of mass and the axes of the carrying link, behind a fixed
-    /// joint of the same name. Gives the name.
+    /// Attaches a payload: a link of its own, whose frame has its origin at the payload's centre of
+    /// mass and the axes of the carrying link, behind a fixed joint of the same name. Gives the
+    /// name.
     ///
-    /// Refused: a link that does not exist, a name that does, a mass or a principal moment below zero, numbers that are not finite, an inertia without mass. One whose principal moments
-    /// [miss the triangle inequality](PrincipalMoments::miss_triangle) is used as it is given, as that of a link is.
+    /// Refused: a link that does not exist, a name that does, a mass or a principal moment below
+    /// zero, numbers that are not finite, an inertia without mass. One whose principal moments
+    /// [miss the triangle inequality](PrincipalMoments::miss_triangle) is used as it is given, as
+    /// that of a link is.
     pub fn attach(&mut self, payload: &Payload) -> Result<String, EditError> {
         let parent = self.link(&payload.link)?;
         check_mass(payload)?;
@@ -115,8 +124,9 @@ impl<'a> Editor<'a> {
         Ok(name)
     }
 
-    /// Appends another robot: its links and joints with `prefix` before their names, and a fixed joint that places its root in the frame of `at_link`, called
-    /// `<prefix><root>_mount`, with a number if that is taken.
+    /// Appends another robot: its links and joints with `prefix` before their names, and a fixed
+    /// joint that places its root in the frame of `at_link`, called `<prefix><root>_mount`, with a
+    /// number if that is taken.
     ///
     /// Refused: a link that does not exist, a name that does, a robot without a root.
     pub fn append(&mut self, at_link: &str, other: &Description, prefix: &str, origin: Origin) -> Result<(), EditError> {
@@ -209,7 +219,8 @@ fn check_mass(payload: &Payload) -> Result<(), EditError> {
     Ok(())
 }
 
-/// Whether a load of this mass may have this inertia. That of no moment is none; without mass there is no other.
+/// Whether a load of this mass may have this inertia. That of no moment is none; without mass there
+/// is no other.
 fn can_be(inertia: [f64; 6], mass: f64) -> bool {
     let massless = mass == 0.0 && inertia != [0.0; 6];
     inertia.iter().all(|x| x.is_finite()) && !massless && !PrincipalMoments::of(inertia).are_negative()

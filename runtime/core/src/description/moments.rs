@@ -1,7 +1,7 @@
 //! Whether a rotational inertia can be.
 //!
-//! Judged by the principal moments relative to the largest of them, so that the units do not matter: a robot with
-//! lengths in nanometres has inertias of 1e-20, and a sound one passes.
+//! Judged by the principal moments relative to the largest of them, so that the units do not
+//! matter: a robot with lengths in nanometres has inertias of 1e-20, and a sound one passes.
 
 use core::fmt;
 
@@ -9,12 +9,14 @@ use crate::eigen::eigenvalues;
 
 /// A principal moment may be below zero by this part of the largest: rounding of written numbers.
 const NEGATIVE: f64 = 1e-9;
-/// The triangle inequality may be missed by this part of the largest moment: files print some six digits.
+/// The triangle inequality may be missed by this part of the largest moment: files print some six
+/// digits.
 const TRIANGLE: f64 = 1e-6;
 
 /// The principal moments of a rotational inertia about the centre of mass, kg·m², the least first.
 ///
-/// Those of a body are not negative, and none is greater than the other two together: Σ = ½ tr(I)·1 − I, the second moments of its mass, is positive semi-definite. Wensing, Kim & Slotine, 2018.
+/// Those of a body are not negative, and none is greater than the other two together: Σ = ½ tr(I)·1
+/// − I, the second moments of its mass, is positive semi-definite. Wensing, Kim & Slotine, 2018.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrincipalMoments([f64; 3]);
 
@@ -27,12 +29,15 @@ impl PrincipalMoments {
         Self(eigenvalues(inertia))
     }
 
-    /// Whether one is below zero, by more than rounding: with it the equations of motion may have no solution.
+    /// Whether one is below zero, by more than rounding: with it the equations of motion may have
+    /// no solution.
     pub fn are_negative(&self) -> bool {
         self.0[0] < -NEGATIVE * self.size()
     }
 
-    /// Whether the greatest is greater than the other two together, by more than written digits, though none is negative: no body has it, and the equations of motion have a solution all the same.
+    /// Whether the greatest is greater than the other two together, by more than written digits,
+    /// though none is negative: no body has it, and the equations of motion have a solution all the
+    /// same.
     pub fn miss_triangle(&self) -> bool {
         let [a, b, c] = self.0;
         !self.are_negative() && c - a - b > TRIANGLE * self.size()
@@ -101,7 +106,8 @@ mod tests {
 
     #[test]
     fn what_lies_between_the_axes_counts() {
-        // With x' = 0.6 between all axes no two of them give it away, nor does one alone where there is no extent along the third.
+        // With x' = 0.6 between all axes no two of them give it away, nor does one alone where
+        // there is no extent along the third.
         assert_eq!([judged([2.0, -0.6, -0.6, 2.0, -0.6, 2.0]), judged([2.0, 0.6, 0.6, 2.0, 0.6, 2.0])], [SOUND, TOO_GREAT]);
         for flat in [[2.0, 0.0, 0.0, 1.0, 1.1, 1.0], [1.0, 0.0, 1.1, 2.0, 0.0, 1.0], [1.0, 1.1, 0.0, 1.0, 0.0, 2.0]] {
             assert_ne!(judged(flat), SOUND, "{flat:?}");

@@ -12,7 +12,8 @@ pub(super) struct Names {
     links: BTreeMap<String, usize>,
     frames: BTreeSet<String>,
     joints: BTreeMap<String, usize>,
-    /// For names that were asked for and taken, the first number that may be free. Names are added only, so those below stay taken.
+    /// For names that were asked for and taken, the first number that may be free. Names are added
+    /// only, so those below stay taken.
     numbers: BTreeMap<String, usize>,
 }
 

@@ -37,7 +37,8 @@ impl Rotation {
     /// No rotation.
     pub const IDENTITY: Self = Self::RollPitchYaw([0.0; 3]);
 
-    /// The rotation matrix: components in the placed frame to components in the frame that it is placed in.
+    /// The rotation matrix: components in the placed frame to components in the frame that it is
+    /// placed in.
     #[must_use]
     pub fn matrix<S: Scalar>(&self) -> Matrix3<S> {
         match self {
@@ -84,7 +85,8 @@ impl Origin {
         Self { xyz, rotation: Rotation::IDENTITY }
     }
 
-    /// As a placement: components in the placed frame to components in the frame that it is placed in.
+    /// As a placement: components in the placed frame to components in the frame that it is placed
+    /// in.
     #[must_use]
     pub fn placement<S: Scalar>(&self) -> Placement<S> {
         Placement { rotation: self.rotation.matrix(), position: Vector3::from(self.xyz).map(S::from_f64) }

@@ -8,7 +8,8 @@ use super::{EditError, Editor, Inertial, Joint, JointKind, Link, Origin};
 use crate::effect::{Applied, EffectId};
 use crate::scalar::Scalar;
 
-/// A fixed joint whose rigid offset bends: a straight uniform shaft, the same in both directions, that neither twists nor stretches.
+/// A fixed joint whose rigid offset bends: a straight uniform shaft, the same in both directions,
+/// that neither twists nor stretches.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shaft {
     /// The fixed joint.
@@ -21,9 +22,11 @@ pub struct Shaft {
     pub damping: f64,
     /// Mass, kg, above zero; `None`: that of the link before the joint, which is taken from there.
     pub mass: Option<f64>,
-    /// Where it begins in the frame of the link before the joint, m; `None`: at that frame's origin.
+    /// Where it begins in the frame of the link before the joint, m; `None`: at that frame's
+    /// origin.
     pub start: Option<[f64; 3]>,
-    /// Where it ends, there too, m; `None`: at the joint's frame. What is left to the joint is rigid.
+    /// Where it ends, there too, m; `None`: at the joint's frame. What is left to the joint is
+    /// rigid.
     pub end: Option<[f64; 3]>,
 }
 
@@ -46,12 +49,16 @@ impl Shaft {
 }
 
 impl Editor<'_> {
-    /// Lets the offset of a fixed joint bend. n pieces of length ℓ bend in their middles, in universal joints called `<joint>_1` … `<joint>_n`, and are rigid beside that: rods
-    /// `<joint>_rod_0` … `<joint>_rod_n` of lengths ½ℓ, ℓ, …, ℓ, ½ℓ, the first fixed to the link before the joint, the last to that behind it. Gives the springs, of stiffness
-    /// E·I/ℓ, and the dampings of these joints. Deflections are those of a beam but for a part ¼/n² at a load on its end. Wittbrodt, Adamiec-Wójcik & Wojciech, Dynamics of
-    /// Flexible Multibody Systems: Rigid Finite Element Method, 2006.
+    /// Lets the offset of a fixed joint bend. n pieces of length ℓ bend in their middles, in
+    /// universal joints called `<joint>_1` … `<joint>_n`, and are rigid beside that: rods
+    /// `<joint>_rod_0` … `<joint>_rod_n` of lengths ½ℓ, ℓ, …, ℓ, ½ℓ, the first fixed to the link
+    /// before the joint, the last to that behind it. Gives the springs, of stiffness E·I/ℓ, and the
+    /// dampings of these joints. Deflections are those of a beam but for a part ¼/n² at a load on
+    /// its end. Wittbrodt, Adamiec-Wójcik & Wojciech, Dynamics of Flexible Multibody Systems: Rigid
+    /// Finite Element Method, 2006.
     ///
-    /// Refused: a joint that does not exist or is not fixed, names that are taken, no pieces, a shaft without length or mass, numbers that are not finite.
+    /// Refused: a joint that does not exist or is not fixed, names that are taken, no pieces, a
+    /// shaft without length or mass, numbers that are not finite.
     pub fn shaft(&mut self, shaft: &Shaft) -> Result<Vec<Applied>, EditError> {
         let Some(index) = self.names.joint(&shaft.joint) else {
             return Err(self.unknown_joint(&shaft.joint, |j| j.kind.is_fixed()));

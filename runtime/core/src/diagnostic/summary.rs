@@ -9,8 +9,8 @@ use core::fmt::Display;
 use super::{Diagnostic, Subject, Unused};
 use crate::listed;
 
-/// A line for each sort of finding: the first of the sort as it is, then how many more there are and
-/// where. Two are of one sort if they have one file, one code and one field.
+/// A line for each sort of finding: the first of the sort as it is, then how many more there are
+/// and where. Two are of one sort if they have one file, one code and one field.
 ///
 /// ```
 /// use articulated_core::diagnostic::{At, Code, Diagnostic, Place, Subject, summary};

@@ -122,8 +122,9 @@ impl fmt::Display for EffectErrors {
 impl core::error::Error for EffectErrors {}
 
 impl Model<f64> {
-    /// The same robot with these effects besides those that it has. Several on one link add up; one that does nothing ([`Effect::is_nothing`]) is left out. All that is wrong is told at
-    /// once. The model must still have all its frames.
+    /// The same robot with these effects besides those that it has. Several on one link add up; one
+    /// that does nothing ([`Effect::is_nothing`]) is left out. All that is wrong is told at once.
+    /// The model must still have all its frames.
     pub fn with_effects(mut self, applied: &[Applied]) -> Result<Self, EffectErrors> {
         if applied.is_empty() {
             return Ok(self);
@@ -205,7 +206,8 @@ fn with_normal<S: Copy>(effect: &Effect, mut parameters: Vec<S>, unit: impl Fn([
 }
 
 impl Effect {
-    /// Numbers of the effect that are symbols, with the normal of its plane, if it has one, made of length one: as [`Model::with_effects`] does with numbers.
+    /// Numbers of the effect that are symbols, with the normal of its plane, if it has one, made of
+    /// length one: as [`Model::with_effects`] does with numbers.
     pub fn with_unit_normal<S: Scalar>(&self, parameters: Vec<S>) -> Vec<S> {
         with_normal(self, parameters, |normal| {
             let length = normal.iter().fold(S::zero(), |sum, x| sum + *x * *x).sqrt();

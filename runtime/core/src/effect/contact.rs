@@ -29,7 +29,8 @@ fn normal<S: Scalar>(p: &[S]) -> Vector3<S> {
 }
 
 impl FrameForce for Law {
-    // F = k x max(0, 1 + c ẋ) n − μ F_n v_t/√(v_t² + s²), at the lowest point, −r n from the sphere's centre
+    // F = k x max(0, 1 + c ẋ) n − μ F_n v_t/√(v_t² + s²), at the lowest point, −r n from the
+    // sphere's centre
     #[inline(always)]
     fn wrench<S: Scalar>(p: &[S], at: &Station<S>) -> Wrench<S> {
         let n = normal(p);

@@ -1,9 +1,11 @@
 //! Effects beyond rigid bodies in a gravity field: what joints, links and the world around them do.
 //!
-//! One effect, one file: its law, generic over the scalar, with its source; and one row in the table below. What a robot is subject to is kept with
-//! its bodies ([`Effects`]); [`crate::model::Model::with_effects`] puts it there. An effect that is not there costs nothing.
+//! One effect, one file: its law, generic over the scalar, with its source; and one row in the
+//! table below. What a robot is subject to is kept with its bodies ([`Effects`]);
+//! [`crate::model::Model::with_effects`] puts it there. An effect that is not there costs nothing.
 //!
-//! Forces are those on the robot: −d v for damping. Inverse dynamics gives what the actuators do against them.
+//! Forces are those on the robot: −d v for damping. Inverse dynamics gives what the actuators do
+//! against them.
 
 mod added_mass;
 mod apply;
@@ -100,7 +102,8 @@ pub enum Zeros {
     Count,
     /// It is nothing: all that it does is multiplied by this.
     Nothing,
-    /// It is nothing if all such fields are 0: what it does is a sum of parts, each multiplied by one of them.
+    /// It is nothing if all such fields are 0: what it does is a sum of parts, each multiplied by
+    /// one of them.
     NothingTogether,
 }
 
@@ -182,7 +185,8 @@ impl Effect {
         self.fields.is_empty()
     }
 
-    /// The first field whose rule these numbers do not keep, with its part of them; `None` too where they are not as many as the effect has.
+    /// The first field whose rule these numbers do not keep, with its part of them; `None` too
+    /// where they are not as many as the effect has.
     pub fn broken<'a>(&self, parameters: &'a [f64]) -> Option<(&'static Field, &'a [f64])> {
         if parameters.len() != self.len() {
             return None;
@@ -232,7 +236,8 @@ pub struct Applied {
     pub parameters: Vec<f64>,
 }
 
-/// A law on a degree of freedom: the force at the coordinate q, rad|m, and the rate v. One of the rate alone is a function, and stores nothing.
+/// A law on a degree of freedom: the force at the coordinate q, rad|m, and the rate v. One of the
+/// rate alone is a function, and stores nothing.
 trait Force {
     fn force<S: Scalar>(p: &[S], q: S, v: S) -> S;
 

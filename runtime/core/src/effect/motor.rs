@@ -11,8 +11,8 @@ pub(super) const FIELDS: &[Field] = &[
     Field::number("smooth", "rad/s|m/s", "rate of the joint below which the loss is smooth").smooth().or(&[1e-3]),
 ];
 
-/// The torque at the joint, where `tau` is asked for at the rate `v`: within ±T(1 ∓ v/v₀) and ±T, with T = torque·gear and v₀ = speed/gear, less the
-/// loss (1 − η) |τ| v/√(v² + s²).
+/// The torque at the joint, where `tau` is asked for at the rate `v`: within ±T(1 ∓ v/v₀) and ±T,
+/// with T = torque·gear and v₀ = speed/gear, less the loss (1 − η) |τ| v/√(v² + s²).
 #[inline(always)]
 pub(super) fn torque<S: Scalar>(p: &[S], tau: S, v: S) -> S {
     let (most, part) = (p[0] * p[2], v * p[2] / p[1]);

@@ -18,7 +18,8 @@ pub struct Station<S> {
 }
 
 impl<S: Scalar> Station<S> {
-    /// The same with the derivatives for the frame's small motion `step` and the change `turn` of its twist, both in its axes: R' = R [ω]×, p' = R v.
+    /// The same with the derivatives for the frame's small motion `step` and the change `turn` of
+    /// its twist, both in its axes: R' = R [ω]×, p' = R v.
     pub(crate) fn moved(&self, step: &Twist<S>, change: &Twist<S>) -> Station<Dual<S>> {
         let Placement { rotation, position } = &self.placement;
         let spin = Matrix3::from_columns(&[0, 1, 2].map(|k| step.angular.cross(&Vector3::ith(k, S::one()))));

@@ -2,7 +2,8 @@
 
 /// The vector made of length one; none for a vector of zeros, or with a number that is not finite.
 ///
-/// First by the largest of its numbers: squares, and the length itself, may be more or less than a number can say.
+/// First by the largest of its numbers: squares, and the length itself, may be more or less than a
+/// number can say.
 pub fn unit(vector: [f64; 3]) -> Option<[f64; 3]> {
     let largest = vector.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     if largest == 0.0 || !vector.iter().all(|x| x.is_finite()) {

@@ -6,8 +6,8 @@ use super::{Coordinates, Freedom, JointLaw};
 use crate::Scalar;
 use crate::spatial::{ArticulatedInertia, Motion, Placement, SpatialInertia, Twist, Wrench, from_quaternion, rotate, rotate_back};
 
-/// q = (position; unit quaternion x, y, z, w) of the child in the joint frame; v = body twist [ω; v] in the child's frame;
-/// a = the time derivative of the six numbers in v; S = 1.
+/// q = (position; unit quaternion x, y, z, w) of the child in the joint frame; v = body twist
+/// [ω; v] in the child's frame; a = the time derivative of the six numbers in v; S = 1.
 ///
 /// The quaternion's norm is taken to be one ([`from_quaternion`]).
 #[derive(Clone, Copy, Debug)]

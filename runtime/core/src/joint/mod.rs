@@ -1,7 +1,9 @@
 //! Joints, one file each: pose, motion and torque of one kind.
 //!
-//! In a [`crate::model::Model`] a joint with an axis turns about or slides along the z-axis of its frame; the model's builder chose the
-//! frames so, and composes planar and universal joints of these. Adding a joint: a file with a type that implements [`JointLaw`], and its row in `joints!`.
+//! In a [`crate::model::Model`] a joint with an axis turns about or slides along the z-axis of its
+//! frame; the model's builder chose the frames so, and composes planar and universal joints of
+//! these. Adding a joint: a file with a type that implements [`JointLaw`], and its row in
+//! `joints!`.
 
 mod floating;
 mod helical;
@@ -120,7 +122,8 @@ macro_rules! joints {
             }
         }
 
-        /// Runs one expression with the pose of the kind that it is: one branch for a whole step of an algorithm. Algorithms need allocation.
+        /// Runs one expression with the pose of the kind that it is: one branch for a whole step of
+        /// an algorithm. Algorithms need allocation.
         #[cfg(feature = "alloc")]
         macro_rules! with_pose {
             ($dollar pose:expr, $dollar p:ident => $dollar body:expr) => {
@@ -266,7 +269,8 @@ impl<S: Scalar> Coordinates<S> {
         self.mimic.as_ref().map(|f| f.multiplier)
     }
 
-    /// What the joint's own torque, N·m or N, is for the coordinate it moves with: power is the same, so τ_leader = multiplier · τ.
+    /// What the joint's own torque, N·m or N, is for the coordinate it moves with: power is the
+    /// same, so τ_leader = multiplier · τ.
     #[inline(always)]
     pub fn to_leader(&self, torque: S) -> S {
         self.rate_of_one().map_or(torque, |multiplier| torque * multiplier)
@@ -280,13 +284,15 @@ impl<S: Scalar> Coordinates<S> {
     }
 }
 
-/// What an algorithm asks of a joint, at one pose. "Joint frame" is the frame fixed in the parent, "child" the one that moves.
+/// What an algorithm asks of a joint, at one pose. "Joint frame" is the frame fixed in the parent,
+/// "child" the one that moves.
 pub trait JointLaw<S: Scalar>: Copy {
     /// Number of coordinates.
     const NQ: usize;
     /// Number of degrees of freedom.
     const NV: usize;
-    /// Which of the coordinates is the first of a unit quaternion (x, y, z, w), if there is one; otherwise each degree of freedom has a coordinate.
+    /// Which of the coordinates is the first of a unit quaternion (x, y, z, w), if there is one;
+    /// otherwise each degree of freedom has a coordinate.
     const QUATERNION: Option<usize>;
     /// The directions in which the child rotates.
     const ROTATION: Freedom;
@@ -309,26 +315,32 @@ pub trait JointLaw<S: Scalar>: Copy {
     /// The child's placement, from that of the joint frame in the same frame.
     fn compose(&self, x_wj: Placement<S>) -> Placement<S>;
 
-    /// Column k of S, the twist of the child about its origin at the unit rate k of the joint, in the axes that `turn` takes the child's to.
+    /// Column k of S, the twist of the child about its origin at the unit rate k of the joint, in
+    /// the axes that `turn` takes the child's to.
     fn subspace(&self, turn: &Matrix3<S>, k: usize) -> Twist<S>;
 
-    /// The child's motion in its axes, from `carried`, the motion that the point of the parent now at the child's origin has, in axes from which `turn` takes vectors to the
-    /// child's, and from the joint's rates in `v` and their derivatives in `a`.
+    /// The child's motion in its axes, from `carried`, the motion that the point of the parent now
+    /// at the child's origin has, in axes from which `turn` takes vectors to the child's, and from
+    /// the joint's rates in `v` and their derivatives in `a`.
     fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S>;
 
     /// The child's mass as seen from the joint frame.
     fn inertia_to_joint(&self, inertia: &SpatialInertia<S>) -> SpatialInertia<S>;
 
-    /// An articulated inertia from axes of the child to axes of the joint frame, about the same point.
+    /// An articulated inertia from axes of the child to axes of the joint frame, about the same
+    /// point.
     fn articulated_to_joint(&self, inertia: &ArticulatedInertia<S>) -> ArticulatedInertia<S>;
 
-    /// Which of the six numbers of a twist [ω; v] of the child about its origin the joint's degree of freedom k is; `None` if it is no single one.
+    /// Which of the six numbers of a twist [ω; v] of the child about its origin the joint's degree
+    /// of freedom k is; `None` if it is no single one.
     fn freedom(k: usize) -> Option<usize>;
 
-    /// I·S_k: the wrench, in the child's frame, that gives a body of this inertia at rest the unit acceleration in the joint's own degree of freedom k.
+    /// I·S_k: the wrench, in the child's frame, that gives a body of this inertia at rest the unit
+    /// acceleration in the joint's own degree of freedom k.
     fn column(&self, inertia: &SpatialInertia<S>, k: usize) -> Wrench<S>;
 
-    /// S_kᵀ F: the joint's own torque k, N·m or N, for the wrench F on the child, in the child's frame.
+    /// S_kᵀ F: the joint's own torque k, N·m or N, for the wrench F on the child, in the child's
+    /// frame.
     fn torque(&self, wrench: &Wrench<S>, k: usize) -> S;
 
     /// The part of the child's inertia, in its frame, that no torque of the joint distinguishes

@@ -6,7 +6,8 @@ use super::{Coordinates, Freedom, JointLaw};
 use crate::Scalar;
 use crate::spatial::{ArticulatedInertia, Motion, Placement, SpatialInertia, Twist, Wrench, from_quaternion, rotate, rotate_back};
 
-/// q = unit quaternion (x, y, z, w) of the child in the joint frame; v = ω in axes of the child; S = [1; 0].
+/// q = unit quaternion (x, y, z, w) of the child in the joint frame; v = ω in axes of the child; S
+/// = [1; 0].
 ///
 /// The quaternion's norm is taken to be one ([`from_quaternion`]).
 #[derive(Clone, Copy, Debug)]

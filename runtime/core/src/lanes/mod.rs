@@ -1,31 +1,44 @@
-//! Arithmetic and sines of several numbers at once: the source of it, for generated code, one module an instruction set, element and width.
+//! Arithmetic and sines of several numbers at once: the source of it, for generated code, one
+//! module an instruction set, element and width.
 //!
-//! A module needs nothing but `std`. It has, all `pub(super)` and all for the processors of its set (see [`Set::features`]):
+//! A module needs nothing but `std`. It has, all `pub(super)` and all for the processors of its set
+//! (see [`Set::features`]):
 //!
 //! * `type Real`, `LANES`, `type V` of that many numbers, `type M` of as many truths;
-//! * `k(x: f64) -> V`, x in every lane; `lanes([Real; LANES]) -> V` and `array(V) -> [Real; LANES]`; `load(&[Real; LANES]) -> V` and
-//!   `store(V, &mut [Real; LANES])`; `lane::<K>(V) -> Real`;
-//! * `add`, `sub`, `mul`, `div`, `neg`, `sqrt`; `fmadd` = ab + c, `fmsub` = ab − c, `fnmadd` = c − ab, `fnmsub` = −ab − c with one rounding, or
-//!   two where the set has no such instruction;
-//! * `positive(x) -> M`, x > 0; `select(m, a, b)`, a where m; `across(x)`, the sum of the lanes in every lane (f64 of 2 and 4);
-//! * `sin_cos(x) -> (V, V)`, x in rad, any, and `atan2(y, x)`, lane by lane by the standard library.
+//! * `k(x: f64) -> V`, x in every lane; `lanes([Real; LANES]) -> V` and
+//!   `array(V) -> [Real; LANES]`; `load(&[Real; LANES]) -> V` and `store(V, &mut [Real; LANES])`;
+//!   `lane::<K>(V) -> Real`;
+//! * `add`, `sub`, `mul`, `div`, `neg`, `sqrt`; `fmadd` = ab + c, `fmsub` = ab − c, `fnmadd` = c −
+//!   ab, `fnmsub` = −ab − c with one rounding, or two where the set has no such instruction;
+//! * `positive(x) -> M`, x > 0; `select(m, a, b)`, a where m; `across(x)`, the sum of the lanes in
+//!   every lane (f64 of 2 and 4);
+//! * `sin_cos(x) -> (V, V)`, x in rad, any, and `atan2(y, x)`, lane by lane by the standard
+//!   library.
 //!
-//! Sets of 4 f64 also write results into `to: &mut [MaybeUninit<f64>]`, number by number from `at` on: `put_one`, `put_two`, and `put(x, to, at)`. Of four,
-//! `put_fours(a, b, c, d, to, [at; 4])` writes a, b, c, d of each lane at a place of its own, `put_twos` two of them, and `put_in_turn(a, b, c, to, at)` those of all lanes one behind the
-//! other, as `every_third(&[f64; 12]) -> [V; 3]` reads them. `across_of_four(a, b, c, d)` has the sums of the lanes of each in its lanes, `across_of_two(a, b)` those of two, twice.
+//! Sets of 4 f64 also write results into `to: &mut [MaybeUninit<f64>]`, number by number from `at`
+//! on: `put_one`, `put_two`, and `put(x, to, at)`. Of four, `put_fours(a, b, c, d, to, [at; 4])`
+//! writes a, b, c, d of each lane at a place of its own, `put_twos` two of them, and
+//! `put_in_turn(a, b, c, to, at)` those of all lanes one behind the other, as
+//! `every_third(&[f64; 12]) -> [V; 3]` reads them. `across_of_four(a, b, c, d)` has the sums of the
+//! lanes of each in its lanes, `across_of_two(a, b)` those of two, twice.
 //!
-//! What [`tiles`] adds turns states that stand one after the other, `[[Real; N]; LANES]`, into vectors with one state per lane: `TILE` numbers of each at a time,
-//! `columns(&states, at) -> [V; TILE]` and `rows([V; TILE], &mut states, at)`, with `at` + `TILE` ≤ N, or 0 where N is less.
+//! What [`tiles`] adds turns states that stand one after the other, `[[Real; N]; LANES]`, into
+//! vectors with one state per lane: `TILE` numbers of each at a time,
+//! `columns(&states, at) -> [V; TILE]` and `rows([V; TILE], &mut states, at)`, with `at` + `TILE` ≤
+//! N, or 0 where N is less.
 //!
-//! These are free functions of raw registers since methods and operators that are inlined into functions of other features take the compiler
-//! eight times as long.
+//! These are free functions of raw registers since methods and operators that are inlined into
+//! functions of other features take the compiler eight times as long.
 //!
-//! A lane's sine depends on no other lane. Its error is below 1 ulp up to 10⁵ rad for f64 (0.9 seen) and 10⁴ rad for f32 (0.97 over all
-//! of them), and the standard library's beyond. All sets that fuse agree to the bit, and so do all that do not. sin(−0) is 0, not −0.
+//! A lane's sine depends on no other lane. Its error is below 1 ulp up to 10⁵ rad for f64 (0.9
+//! seen) and 10⁴ rad for f32 (0.97 over all of them), and the standard library's beyond. All sets
+//! that fuse agree to the bit, and so do all that do not. sin(−0) is 0, not −0.
 //!
 //! [`COLUMNS`] is built on these with four f64.
 //!
-//! The texts: `registers` and `portable`, what a vector is and its arithmetic; `common`, what follows from that; `sines`; `results`, four lanes at places of their own; `tiles`; `loops`, the solution for many right-hand sides.
+//! The texts: `registers` and `portable`, what a vector is and its arithmetic; `common`, what
+//! follows from that; `sines`; `results`, four lanes at places of their own; `tiles`; `loops`, the
+//! solution for many right-hand sides.
 
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -58,11 +71,13 @@ pub enum Real {
 }
 
 impl Set {
-    /// What stands in `#[target_feature(enable = "…")]` of the functions; empty for [`Set::Portable`], whose functions do without.
+    /// What stands in `#[target_feature(enable = "…")]` of the functions; empty for
+    /// [`Set::Portable`], whose functions do without.
     pub fn features(self) -> &'static str {
         match self {
             Self::Portable => "",
-            // The second says nothing, every x86-64 has it, but sets these functions apart from arithmetic in registers.
+            // The second says nothing, every x86-64 has it, but sets these functions apart from
+            // arithmetic in registers.
             Self::Sse2 => "sse2,fxsr",
             Self::Avx2 => "avx2,fma",
             Self::Avx512 => "avx512f,avx512dq,avx2,fma",
@@ -110,17 +125,22 @@ const TRAITS: &str = "#[allow(unused_imports)]\nuse ::core::{convert::From, iter
 /// Where a module in a module begins.
 const HALF: &str = "\nmod half {\n";
 
-/// What to add to such a module for states one after the other; `None` if the set has no such width, or that is not what batches use.
+/// What to add to such a module for states one after the other; `None` if the set has no such
+/// width, or that is not what batches use.
 pub fn tiles(set: Set, real: Real, lanes: usize) -> Option<String> {
     let module = MODULES.iter().find(|module| (module.0, module.1, module.2) == (set, real, lanes))?;
     (!module.4.is_empty()).then(|| module.4.to_string())
 }
 
-/// M X = B for all columns of three `[NV][NV]` matrices B, the third the unit matrix, by M = Lᵀ D L: Featherstone 2008, §6.5.
+/// M X = B for all columns of three `[NV][NV]` matrices B, the third the unit matrix, by M = Lᵀ D
+/// L: Featherstone 2008, §6.5.
 ///
-/// The text of a module that stands beside `portable_f64x4`, `avx2_f64x4`, `avx512_f64x8` and `neon_f64x4`. Before it stand
-/// * `NV`, and `TOGETHER`, how many matrices are solved for at once (3 or 1) in vectors of four columns and in vectors of eight;
-/// * `BEFORE` and `BEYOND`: `[&[(u16, u16)]; NV]`, for each row of L (each column) the column (the row) of each number and its place in `l`.
+/// The text of a module that stands beside `portable_f64x4`, `avx2_f64x4`, `avx512_f64x8` and
+/// `neon_f64x4`. Before it stand
+/// * `NV`, and `TOGETHER`, how many matrices are solved for at once (3 or 1) in vectors of four
+///   columns and in vectors of eight;
+/// * `BEFORE` and `BEYOND`: `[&[(u16, u16)]; NV]`, for each row of L (each column) the column (the
+///   row) of each number and its place in `l`.
 pub const COLUMNS: &str = include_str!("text/loops/columns.rs");
 
 /// Modules' texts, which tests compile: common files in the order in which macros are needed.

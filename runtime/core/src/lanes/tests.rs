@@ -77,7 +77,8 @@ macro_rules! suite {
                 }
             }
 
-            /// Sines and cosines of as many angles as there are; `None` where the processor has not the features.
+            /// Sines and cosines of as many angles as there are; `None` where the processor has not
+            /// the features.
             pub(super) fn sines(x: &[$real]) -> Option<Vec<[$real; 2]>> {
                 // SAFETY: the processor has the features, as is found first.
                 available().then(|| unsafe { blocks(x) })

@@ -16,7 +16,8 @@ use crate::joint::with_pose;
 use crate::joint::{Coordinates, Follow, Joint, JointLaw};
 use crate::spatial::{Placement, Reference, SpatialInertia, nearest_rotation, to_z_axis};
 
-/// Why a description is not a model. Of a description that the URDF reader accepted: numbers that are too large together ([`Self::TooLarge`]), and a joint of the name of a floating base's.
+/// Why a description is not a model. Of a description that the URDF reader accepted: numbers that
+/// are too large together ([`Self::TooLarge`]), and a joint of the name of a floating base's.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ModelError {
     /// A joint locked at coordinates of another number than it has, or at one that is not finite.
@@ -28,19 +29,22 @@ pub enum ModelError {
         /// How many coordinates were given.
         found: usize,
     },
-    /// The links and joints are not one tree: there is no root, or some links cannot be reached from it.
+    /// The links and joints are not one tree: there is no root, or some links cannot be reached
+    /// from it.
     NotATree {
         /// Names of the links that are not reached.
         unreached: Vec<String>,
     },
     /// A joint is called as the joint of a floating base is.
     NamedAsBase,
-    /// A joint follows a joint that is not a coordinate with one degree of freedom, or follows itself.
+    /// A joint follows a joint that is not a coordinate with one degree of freedom, or follows
+    /// itself.
     BadMimic {
         /// Name of the joint.
         joint: String,
     },
-    /// Masses and lengths, or multipliers of joints that follow each other, whose products are beyond the range of doubles.
+    /// Masses and lengths, or multipliers of joints that follow each other, whose products are
+    /// beyond the range of doubles.
     TooLarge {
         /// Names of the joints behind which they are, and of the links that are too far away.
         names: Vec<String>,
@@ -89,8 +93,8 @@ impl core::error::Error for ModelError {}
 impl Model<f64> {
     /// The model of a described robot, with standard gravity.
     ///
-    /// Joints are ordered depth-first, in the order of the file among the children of a link. Body frames are the link frames turned so that
-    /// the joint's axis is z.
+    /// Joints are ordered depth-first, in the order of the file among the children of a link. Body
+    /// frames are the link frames turned so that the joint's axis is z.
     pub fn new(description: &Description, base: Base) -> Result<Self, ModelError> {
         if description.joints.iter().any(|j| j.name == FLOATING_BASE) {
             return Err(ModelError::NamedAsBase);
@@ -301,7 +305,8 @@ impl<'a> Builder<'a> {
         placements.for_each(|x| x.rotation = nearest_rotation(&x.rotation));
     }
 
-    /// The coordinate that a follower moves by. The joint that it follows has to move, and so, as each follower is asked, do all down to the last.
+    /// The coordinate that a follower moves by. The joint that it follows has to move, and so, as
+    /// each follower is asked, do all down to the last.
     fn follow(&self, follower: usize, mimic: &Mimic) -> Option<Coordinates<f64>> {
         let joints = &self.description.joints;
         let lead = self.leads[follower]?;

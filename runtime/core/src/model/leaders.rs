@@ -5,11 +5,13 @@ use alloc::vec::Vec;
 
 use crate::description::{Joint, Mimic};
 
-/// So many leaders are walked through one by one, in whose order multipliers are multiplied; what is behind them is taken as it was found.
+/// So many leaders are walked through one by one, in whose order multipliers are multiplied; what
+/// is behind them is taken as it was found.
 const WALKED: usize = 16;
 
-/// For each joint that follows another, what it moves by: the joint at the end of its chain, which follows none or is locked. `None` where a chain has no end, and for joints that follow
-/// none. Work grows as the number of joints does, however long the chains are.
+/// For each joint that follows another, what it moves by: the joint at the end of its chain, which
+/// follows none or is locked. `None` where a chain has no end, and for joints that follow none.
+/// Work grows as the number of joints does, however long the chains are.
 pub(super) fn leads(joints: &[Joint]) -> Vec<Option<Mimic>> {
     let (mut leads, mut seen) = (vec![None; joints.len()], vec![false; joints.len()]);
     for start in 0..joints.len() {
@@ -26,7 +28,8 @@ pub(super) fn leads(joints: &[Joint]) -> Vec<Option<Mimic>> {
     leads
 }
 
-/// What is moved by at the end of the chain that begins with `first`; of its joints beyond the first few, `known` says it already.
+/// What is moved by at the end of the chain that begins with `first`; of its joints beyond the
+/// first few, `known` says it already.
 fn lead(joints: &[Joint], known: &[Option<Mimic>], first: Mimic) -> Option<Mimic> {
     let (mut lead, mut walked) = (first, 0);
     while let Some(own) = followed(joints.get(lead.joint)?) {

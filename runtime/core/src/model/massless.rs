@@ -11,16 +11,19 @@ use crate::effect::{EffectId, Enters, JointEffect};
 use crate::monitor::pivot_cancellation;
 use crate::spatial::SpatialInertia;
 
-/// So often joints are looked at anew with those found before held: a robot has few of them, and what none is gets an end.
+/// So often joints are looked at anew with those found before held: a robot has few of them, and
+/// what none is gets an end.
 const LOOKS: usize = 64;
 
 impl Model<f64> {
-    /// Indices of the bodies whose joint moves nothing that has mass, whatever the configuration: the mass matrix has a zero row there, and
-    /// forward dynamics is not defined.
+    /// Indices of the bodies whose joint moves nothing that has mass, whatever the configuration:
+    /// the mass matrix has a zero row there, and forward dynamics is not defined.
     ///
-    /// A turn moves something if its body has mass off the axis or inertia about it, or if anything farther out has mass; a slide, if anything from its
-    /// body on has mass, added mass of a fluid too. Only exact zeros count as none. A joint that follows another adds to the other's row. A joint that moves no mass but what others farther out
-    /// can move in the same way is among them too: two coaxial joints with a body without mass between, four axes through one point.
+    /// A turn moves something if its body has mass off the axis or inertia about it, or if anything
+    /// farther out has mass; a slide, if anything from its body on has mass, added mass of a fluid
+    /// too. Only exact zeros count as none. A joint that follows another adds to the other's row. A
+    /// joint that moves no mass but what others farther out can move in the same way is among them
+    /// too: two coaxial joints with a body without mass between, four axes through one point.
     pub fn massless_joints(&self) -> Vec<usize> {
         let (mut carries, mut own) = (vec![false; self.nv], vec![false; self.nv]);
         for (i, felt, moves) in self.moves_mass() {
@@ -43,8 +46,10 @@ impl Model<f64> {
         at.v..at.v + joint.nv()
     }
 
-    /// For each degree of freedom, whether nothing is left of its pivot at two configurations that have nothing special: what is singular there is singular everywhere.
-    /// `idle` move nothing. Whatever is lost gets a rotor before the next look, so that no 0/0 of its reaches the joints that carry it.
+    /// For each degree of freedom, whether nothing is left of its pivot at two configurations that
+    /// have nothing special: what is singular there is singular everywhere. `idle` move nothing.
+    /// Whatever is lost gets a rotor before the next look, so that no 0/0 of its reaches the joints
+    /// that carry it.
     fn repeated(&self, idle: Vec<bool>) -> Vec<bool> {
         let (mut model, mut ws) = (self.clone(), Workspace::new(self));
         let (mut lost, mut fresh) = (idle.clone(), idle);
@@ -69,12 +74,14 @@ impl Model<f64> {
         }
     }
 
-    /// The degrees of freedom of whose pivots nothing is left, of each branch the farthest out: what is left of others says little then.
+    /// The degrees of freedom of whose pivots nothing is left, of each branch the farthest out:
+    /// what is left of others says little then.
     fn without_pivot(&self, ws: &mut Workspace<f64>) -> Vec<bool> {
         let mut left = vec![1.0; self.nv];
         let mut gone = |seed: f64| {
             pivot_cancellation(self, ws, &self.configuration(seed), &mut left);
-            // A pivot below zero, of an inertia that no body has and somebody accepted, is not nothing.
+            // A pivot below zero, of an inertia that no body has and somebody accepted, is not
+            // nothing.
             left.iter().map(|x| x.is_nan() || crate::Scalar::abs(*x) < least_pivot()).collect::<Vec<bool>>()
         };
         let (first, second) = (gone(0.137), gone(0.731));
@@ -105,9 +112,11 @@ impl Model<f64> {
         q
     }
 
-    /// For each moving body, whether its own mass or a rotor is sure to be felt by all of its joint, and whether its joint alone moves mass.
+    /// For each moving body, whether its own mass or a rotor is sure to be felt by all of its
+    /// joint, and whether its joint alone moves mass.
     fn moves_mass(&self) -> Vec<(usize, bool, bool)> {
-        // Whether anything beyond a body's joint has mass: first of what hangs on the body, then with the body itself.
+        // Whether anything beyond a body's joint has mass: first of what hangs on the body, then
+        // with the body itself.
         let mut beyond = vec![false; self.bodies.len()];
         let mut moves = Vec::with_capacity(self.bodies.len());
         for i in self.inward() {
@@ -116,7 +125,8 @@ impl Model<f64> {
             let felt = body.joint.has_inertia(own) || turns_rotors(body);
             // Added mass need not be felt along every axis: numbers tell.
             let added = has_added_mass(body);
-            // Of several degrees of freedom some may be felt and others not: a point mass turns freely. What follows another may undo what that does.
+            // Of several degrees of freedom some may be felt and others not: a point mass turns
+            // freely. What follows another may undo what that does.
             let sure = felt && body.joint.nv() == 1 && body.coordinates.mimic.is_none();
             moves.push((i, sure, felt || added || outside));
             beyond[body.parent] |= outside || added || *own != SpatialInertia::zero();
@@ -129,7 +139,8 @@ fn has_added_mass(body: &Body<f64>) -> bool {
     body.effects.body.iter().any(|e| e.effect.row().enters == Enters::Added)
 }
 
-/// Whether every degree of freedom of the body's joint turns a rotor, which has inertia whatever hangs on it.
+/// Whether every degree of freedom of the body's joint turns a rotor, which has inertia whatever
+/// hangs on it.
 fn turns_rotors(body: &Body<f64>) -> bool {
     let rotor = |k: usize| body.effects.joint.iter().any(|e| e.effect.row().enters == Enters::Inertia && e.freedom == k);
     (0..body.joint.nv()).all(rotor)

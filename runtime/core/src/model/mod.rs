@@ -28,10 +28,12 @@ pub const FLOATING_BASE: &str = "__floating_base__";
 /// Standard gravity in the world frame, m/s².
 pub const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
-/// A tree of bodies. Body 0 is the base; every other body hangs on its parent by one moving joint, parents before children.
+/// A tree of bodies. Body 0 is the base; every other body hangs on its parent by one moving joint,
+/// parents before children.
 ///
-/// Links behind fixed joints are part of the body they are fixed to; each link of the file remains as a frame.
-/// [`Model::new`] builds one of a description. [`Model::into_parts`] and [`Model::from_parts`] change one.
+/// Links behind fixed joints are part of the body they are fixed to; each link of the file remains
+/// as a frame. [`Model::new`] builds one of a description. [`Model::into_parts`] and
+/// [`Model::from_parts`] change one.
 #[derive(Clone, Debug)]
 pub struct Model<S = f64> {
     pub(crate) name: String,
@@ -146,8 +148,8 @@ impl<S: Scalar> Model<S> {
         &self.bodies
     }
 
-    /// A frame for each link of the file and for each of its other frames, in the order of the file,
-    /// or the frames that were chosen.
+    /// A frame for each link of the file and for each of its other frames, in the order of the
+    /// file, or the frames that were chosen.
     #[inline(always)]
     pub fn frames(&self) -> &[Frame<S>] {
         &self.frames
@@ -186,7 +188,8 @@ impl<S: Scalar> Model<S> {
         self.outward().rev()
     }
 
-    /// Indices of the bodies that are moving links of the file: one for each joint that moves, followers included.
+    /// Indices of the bodies that are moving links of the file: one for each joint that moves,
+    /// followers included.
     pub fn links(&self) -> impl Iterator<Item = usize> + '_ {
         self.outward().filter(|&i| self.bodies[i].link.is_some())
     }
@@ -196,7 +199,8 @@ impl<S: Scalar> Model<S> {
         self.bodies.iter().any(|b| b.coordinates.mimic.is_some())
     }
 
-    /// The configuration of zeros, with quaternions that turn nothing, `[nq]` rad|m|quaternion: what a generated module has as `NEUTRAL`.
+    /// The configuration of zeros, with quaternions that turn nothing, `[nq]` rad|m|quaternion:
+    /// what a generated module has as `NEUTRAL`.
     pub fn neutral(&self) -> Vec<S> {
         let mut q = alloc::vec![S::zero(); self.nq];
         crate::algorithm::neutral(self, &mut q);
@@ -208,7 +212,8 @@ impl<S: Scalar> Model<S> {
         self.outward().fold(S::zero(), |sum, i| sum + self.bodies[i].inertia.mass)
     }
 
-    /// Mass that each body's joint carries, kg, the body's own among it: `[bodies]`. Of the model as it was read.
+    /// Mass that each body's joint carries, kg, the body's own among it: `[bodies]`. Of the model
+    /// as it was read.
     pub fn carried(&self) -> Vec<S> {
         let mut carried: Vec<S> = self.bodies.iter().map(|body| body.inertia.mass).collect();
         for i in self.inward() {
@@ -218,7 +223,8 @@ impl<S: Scalar> Model<S> {
         carried
     }
 
-    /// Name of the joint that a degree of freedom, by its index in v, belongs to; empty if there is none.
+    /// Name of the joint that a degree of freedom, by its index in v, belongs to; empty if there is
+    /// none.
     pub fn joint_of(&self, freedom: usize) -> &str {
         self.joints.iter().find(|j| (j.v.0..j.v.0 + j.v.1).contains(&freedom)).map_or("", |j| &j.name)
     }
@@ -236,7 +242,8 @@ impl<S: Scalar> Model<S> {
         freedoms
     }
 
-    /// The same robot with only the named frames, in this order; a name may be there twice. Errors: [`EditError::UnknownLink`] of the first name that none of its frames has.
+    /// The same robot with only the named frames, in this order; a name may be there twice. Errors:
+    /// [`EditError::UnknownLink`] of the first name that none of its frames has.
     pub fn with_frames<N: AsRef<str>>(mut self, names: &[N]) -> Result<Self, EditError> {
         let find = |name: &N| {
             let name = name.as_ref();

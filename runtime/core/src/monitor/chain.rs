@@ -5,13 +5,15 @@ use nalgebra::Matrix3;
 use crate::Scalar;
 use crate::model::Model;
 
-/// The largest entry of |RᵀR − 1|. A product of N rotations, each good to a rounding, keeps it below 4Nu.
+/// The largest entry of |RᵀR − 1|. A product of N rotations, each good to a rounding, keeps it
+/// below 4Nu.
 pub fn orthonormality<S: Scalar<Mask = bool>>(rotation: &Matrix3<S>) -> S {
     let off = rotation.transpose() * rotation - Matrix3::identity();
     off.iter().fold(S::zero(), |most, x| if (x.abs() - most).positive() { x.abs() } else { most })
 }
 
-/// The same of each placement that the function `placements` gives, generated or not; placements: `[frames][12]`, out: `[frames]`.
+/// The same of each placement that the function `placements` gives, generated or not; placements:
+/// `[frames][12]`, out: `[frames]`.
 pub fn placement_orthonormality<S: Scalar<Mask = bool>>(placements: &[S], out: &mut [S]) {
     for (placement, out) in placements.chunks_exact(12).zip(out) {
         *out = orthonormality(&Matrix3::from_row_slice(&placement[..9]));
@@ -20,19 +22,24 @@ pub fn placement_orthonormality<S: Scalar<Mask = bool>>(placements: &[S], out: &
 
 /// (index in q of the first number, norm² − 1) of each quaternion of q; `[nq]`.
 ///
-/// Functions of the table take quaternions as they are: a norm 1 + ε turns into an error of some 2ε of the rotation. `integrate` normalises what it gives.
+/// Functions of the table take quaternions as they are: a norm 1 + ε turns into an error of some 2ε
+/// of the rotation. `integrate` normalises what it gives.
 pub fn quaternion_norms<'a, S: Scalar>(model: &'a Model<S>, q: &'a [S]) -> impl Iterator<Item = (usize, S)> + 'a {
     let all = model.bodies.iter().skip(1).filter_map(|b| Some(b.coordinates.q + b.joint.quaternion()?));
     all.filter_map(move |at| Some((at, q.get(at..at + 4)?.iter().fold(-S::one(), |sum, x| sum + *x * *x))))
 }
 
-/// A condition number of Ad that may be worth a look at the units: of frames a kilometre apart in metres.
+/// A condition number of Ad that may be worth a look at the units: of frames a kilometre apart in
+/// metres.
 pub const ADJOINT_LIMIT: f64 = 1e6;
 
-/// The condition number of Ad(T) in the 2-norm, ((d + √(d² + 4))/2)², where d is the distance of the frames' origins.
+/// The condition number of Ad(T) in the 2-norm, ((d + √(d² + 4))/2)², where d is the distance of
+/// the frames' origins.
 ///
-/// It depends on the units of length alone: two frames 1 m apart have 2.6, and a million where the metre is the unit and 1000 lie between, or the same metre is
-/// written in millimetres. No digits are lost with it, since moments and forces are never added up. [`ADJOINT_LIMIT`] is where `stress` remarks upon it.
+/// It depends on the units of length alone: two frames 1 m apart have 2.6, and a million where the
+/// metre is the unit and 1000 lie between, or the same metre is written in millimetres. No digits
+/// are lost with it, since moments and forces are never added up. [`ADJOINT_LIMIT`] is where
+/// `stress` remarks upon it.
 pub fn adjoint_condition<S: Scalar>(distance: S) -> S {
     // σ_max/σ_min of [1 0; [p]× 1]: σ² + 1/σ² = d² + 2
     let d = distance.abs();

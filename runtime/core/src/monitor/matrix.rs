@@ -5,7 +5,8 @@ use crate::algorithm::checked::{Factor, articulated_body_pivots};
 use crate::algorithm::{Workspace, articulated_body, mass_matrix};
 use crate::model::Model;
 
-/// What elimination leaves of each joint's inertia, D/(Σ|terms|) in (0, 1], where others give way; a few units of roundoff where M is singular.
+/// What elimination leaves of each joint's inertia, D/(Σ|terms|) in (0, 1], where others give way;
+/// a few units of roundoff where M is singular.
 ///
 /// q: `[nq]`; out: `[nv]`. By ABA at rest, or LᵀDL of M where joints follow others. Allocates.
 ///
@@ -21,10 +22,12 @@ pub fn pivot_cancellation<S: Scalar<Mask = bool>>(model: &Model<S>, ws: &mut Wor
     articulated_body_pivots(model, ws, |freedom, left| out[freedom] = left);
 }
 
-/// An estimate of the condition number of M(q), scaled to a diagonal of ones ([`Factor::condition`]); infinite where M is singular to working precision.
+/// An estimate of the condition number of M(q), scaled to a diagonal of ones
+/// ([`Factor::condition`]); infinite where M is singular to working precision.
 ///
-/// q: `[nq]`. Accelerations move relatively by about this times a relative change of M or τ; a result may be exact for a robot a few roundings away and
-/// yet have a forward error of this many roundings. Allocates.
+/// q: `[nq]`. Accelerations move relatively by about this times a relative change of M or τ; a
+/// result may be exact for a robot a few roundings away and yet have a forward error of this many
+/// roundings. Allocates.
 ///
 /// # Panics
 /// If q is shorter.

@@ -8,11 +8,13 @@ use crate::algorithm::{Workspace, inverse_dynamics};
 use crate::model::Model;
 use crate::spatial::Vector3;
 
-/// How wrenches grow on their way inward: for each moving body the moment and the force that its joint passes to it, over the largest that any one body from
-/// there on needs for itself.
+/// How wrenches grow on their way inward: for each moving body the moment and the force that its
+/// joint passes to it, over the largest that any one body from there on needs for itself.
 ///
-/// q: `[nq]`; v, a: `[nv]`; gives `[moving bodies]` of (moment's, force's); zero where nothing is needed. N alike bodies in a straight row at rest give N of forces and N²
-/// of moments: rounding errors of a torque are measured against the largest wrench that was handed on, and not against the torque. Allocates.
+/// q: `[nq]`; v, a: `[nv]`; gives `[moving bodies]` of (moment's, force's); zero where nothing is
+/// needed. N alike bodies in a straight row at rest give N of forces and N² of moments: rounding
+/// errors of a torque are measured against the largest wrench that was handed on, and not against
+/// the torque. Allocates.
 ///
 /// # Panics
 /// If a slice is shorter than stated.
@@ -56,7 +58,8 @@ mod tests {
     use super::*;
     use crate::description::{Base, Description, Inertial, Joint, JointKind, Link, Origin};
 
-    /// Weights of 1 N in a level row, 8 m from one to the next: each needs a force of 1 and a moment of 4.
+    /// Weights of 1 N in a level row, 8 m from one to the next: each needs a force of 1 and a
+    /// moment of 4.
     #[test]
     fn moments_are_measured_by_moments_and_forces_by_forces() {
         let at = |x: f64| Origin { xyz: [x, 0.0, 0.0], ..Origin::default() };

@@ -1,8 +1,8 @@
 //! Precision of generated code, and the source of the arithmetic that it needs.
 //!
-//! A precision is an arithmetic, an accuracy of sines and cosines, and whether a multiply-add may be
-//! one instruction. The graph of a function is the same for every precision; only the computation of
-//! each node changes. Options and scenes call it `level`.
+//! A precision is an arithmetic, an accuracy of sines and cosines, and whether a multiply-add may
+//! be one instruction. The graph of a function is the same for every precision; only the
+//! computation of each node changes. Options and scenes call it `level`.
 
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;

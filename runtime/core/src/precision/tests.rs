@@ -72,7 +72,8 @@ fn the_sines_of_whole_numbers_are_those_of_two_doubles() {
     assert_eq!(correct::sin_cos_correct::<false>(1e22).0, -0.852_200_849_767_188_8);
 }
 
-/// Pairs of all signs and sizes, each with a second part below half a unit of the first: multiples of the golden section, modulo 1.
+/// Pairs of all signs and sizes, each with a second part below half a unit of the first: multiples
+/// of the golden section, modulo 1.
 fn pairs() -> impl Iterator<Item = [(f64, f64); 2]> {
     let part = |k: f64| (0.618_033_988_749_895 * k) % 1.0 - 0.5;
     (1..400).map(move |k| {
@@ -140,7 +141,8 @@ fn pairs_carry_what_was_lost_to_first_order() {
         near(pair::div::<false>(a, b), double_double::div::<false>(a, b));
         let positive = if a.0 < 0.0 { (-a.0, -a.1) } else { a };
         near(pair::sqrt::<true>(positive), double_double::sqrt::<true>(positive));
-        // The angle itself is the standard library's; what is lost turns it: here so much that it is seen.
+        // The angle itself is the standard library's; what is lost turns it: here so much that it
+        // is seen.
         let (y, x) = ((a.0, 1e-9), (b.0, -2e-9));
         let (angle, lost) = pair::atan2::<true>(y, x);
         let size = (a.0 * a.0 + b.0 * b.0).sqrt();

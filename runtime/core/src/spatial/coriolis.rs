@@ -6,10 +6,12 @@ use super::inertia::complement;
 use super::{SpatialInertia, Twist, Wrench, rotate, rotate_back};
 use crate::Scalar;
 
-/// B(V) of a body with twist V: the wrench ∫ [r; 1] × (ω × u_r) dm for an angular velocity ω, with u_r the velocity of the point at r.
+/// B(V) of a body with twist V: the wrench ∫ [r; 1] × (ω × u_r) dm for an angular velocity ω, with
+/// u_r the velocity of the point at r.
 ///
-/// It is ½[(V×*)G − G(V×) + (G V)×̄*] of Echeandia & Wensing (*J. Comput. Nonlinear Dyn.* 16, 2021), which maps a 6-vector (ω; v) and turns out
-/// to depend on ω alone: K = ∫ u_r rᵀ dm and p = ∫ u_r dm are all there is to it. These add up over bodies like moments of mass.
+/// It is ½[(V×*)G − G(V×) + (G V)×̄*] of Echeandia & Wensing (*J. Comput. Nonlinear Dyn.* 16,
+/// 2021), which maps a 6-vector (ω; v) and turns out to depend on ω alone: K = ∫ u_r rᵀ dm and p =
+/// ∫ u_r dm are all there is to it. These add up over bodies like moments of mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoriolisInertia<S> {
     /// p, the linear momentum, kg·m/s.
@@ -24,7 +26,8 @@ impl<S: Scalar> CoriolisInertia<S> {
         Self { momentum: Vector3::zeros(), second: Matrix3::zeros() }
     }
 
-    /// Of a body of this inertia that moves with this twist, both in the same frame: `p = m v + ω × h, K = v hᵀ + [ω]× Σ`.
+    /// Of a body of this inertia that moves with this twist, both in the same frame:
+    /// `p = m v + ω × h, K = v hᵀ + [ω]× Σ`.
     #[inline(always)]
     pub fn new(inertia: &SpatialInertia<S>, twist: &Twist<S>) -> Self {
         let (w, v, h) = (twist.angular, twist.linear, inertia.first);

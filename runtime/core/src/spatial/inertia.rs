@@ -5,11 +5,11 @@ use nalgebra::{Matrix3, Vector3};
 use super::{Placement, Wrench, rotate};
 use crate::Scalar;
 
-/// The mass properties of a body as the moments of its mass about the origin of its frame, in axes of that frame:
-/// m = ∫dm, h = ∫r dm = m·c and Σ = ∫r rᵀ dm.
+/// The mass properties of a body as the moments of its mass about the origin of its frame, in axes
+/// of that frame: m = ∫dm, h = ∫r dm = m·c and Σ = ∫r rᵀ dm.
 ///
-/// The rotational inertia about the origin is tr(Σ)·1 − Σ. In these ten numbers all of dynamics is linear, bodies add up by adding them,
-/// and a shift of the origin never subtracts.
+/// The rotational inertia about the origin is tr(Σ)·1 − Σ. In these ten numbers all of dynamics is
+/// linear, bodies add up by adding them, and a shift of the origin never subtracts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpatialInertia<S> {
     /// m, kg.
@@ -26,7 +26,8 @@ impl<S: Scalar> SpatialInertia<S> {
         Self { mass: S::zero(), first: Vector3::zeros(), second: Matrix3::zeros() }
     }
 
-    /// From the mass, the rotational inertia about the centre of mass, and the frame that inertia is given in (its origin is the centre).
+    /// From the mass, the rotational inertia about the centre of mass, and the frame that inertia
+    /// is given in (its origin is the centre).
     pub fn from_central(mass: S, inertia: Matrix3<S>, frame: &Placement<S>) -> Self {
         let half = S::from_f64(0.5) * inertia.trace();
         // Σ_c = ½ tr(I_c)·1 − I_c
@@ -34,7 +35,8 @@ impl<S: Scalar> SpatialInertia<S> {
         Self { mass, first: Vector3::zeros(), second }.moved(frame)
     }
 
-    /// The same body seen from the frame a, where `x_ab` places the frame b that the moments are given in.
+    /// The same body seen from the frame a, where `x_ab` places the frame b that the moments are
+    /// given in.
     ///
     /// m' = m, h' = R h + m p, Σ' = R Σ Rᵀ + (R h) pᵀ + p (R h)ᵀ + m p pᵀ.
     #[inline(always)]
@@ -46,11 +48,13 @@ impl<S: Scalar> SpatialInertia<S> {
 
     /// The wrench that moves the body, about its origin: f = m a + U h, n = h × a + ∫ r × (U r) dm.
     ///
-    /// `acceleration`: of the origin, gravity subtracted, m/s²; `u`: the rate matrix. All in body axes.
+    /// `acceleration`: of the origin, gravity subtracted, m/s²; `u`: the rate matrix. All in body
+    /// axes.
     #[inline(always)]
     pub fn wrench(&self, acceleration: Vector3<S>, u: &Matrix3<S>) -> Wrench<S> {
         let (s, h) = (&self.second, self.first);
-        // ∫ r × (U r) dm has the components (UΣ)_zy − (UΣ)_yz and so on round, with what Σ's off-diagonals multiply taken together.
+        // ∫ r × (U r) dm has the components (UΣ)_zy − (UΣ)_yz and so on round, with what Σ's
+        // off-diagonals multiply taken together.
         let spin = Vector3::new(
             sum([(u.m31, s.m12), (-u.m21, s.m13), (u.m33 - u.m22, s.m23), (u.m32, s.m22), (-u.m23, s.m33)]),
             sum([(u.m12, s.m23), (-u.m32, s.m12), (u.m11 - u.m33, s.m13), (u.m13, s.m33), (-u.m31, s.m11)]),
@@ -59,7 +63,8 @@ impl<S: Scalar> SpatialInertia<S> {
         Wrench { moment: h.cross(&acceleration) + spin, force: acceleration * self.mass + rotate(u, h) }
     }
 
-    /// G V = [I ω + h × v; m v − h × ω]: the momentum of the body with twist V, or the wrench for an acceleration of it at rest.
+    /// G V = [I ω + h × v; m v − h × ω]: the momentum of the body with twist V, or the wrench for
+    /// an acceleration of it at rest.
     #[inline(always)]
     pub fn apply(&self, v: &super::Twist<S>) -> Wrench<S> {
         let h = self.first;
@@ -67,7 +72,8 @@ impl<S: Scalar> SpatialInertia<S> {
         Wrench { moment: rotate(&self.rotational(), v.angular) + h.cross(&v.linear), force: v.linear * self.mass + v.angular.cross(&h) }
     }
 
-    /// The same body about the origin that lies at −`d`: h' = h + m d, Σ' = Σ + x dᵀ + d xᵀ with x = h + ½ m d.
+    /// The same body about the origin that lies at −`d`: h' = h + m d, Σ' = Σ + x dᵀ + d xᵀ with x
+    /// = h + ½ m d.
     #[inline(always)]
     #[must_use]
     pub fn shifted(&self, d: Vector3<S>) -> Self {
@@ -106,7 +112,8 @@ impl<S: Scalar> SpatialInertia<S> {
         complement(&self.second)
     }
 
-    /// From the ten inertial parameters m, m·c and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz, I about the origin; kg, kg·m, kg·m². Σ = ½ tr(I)·1 − I.
+    /// From the ten inertial parameters m, m·c and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz, I about the
+    /// origin; kg, kg·m, kg·m². Σ = ½ tr(I)·1 − I.
     pub fn from_parameters(p: [S; 10]) -> Self {
         let [mass, hx, hy, hz, xx, xy, xz, yy, yz, zz] = p;
         let half = S::from_f64(0.5) * (xx + yy + zz);

@@ -2,11 +2,12 @@
 
 use crate::Scalar;
 
-/// Largest accepted |norm − 1| of an input quaternion, which four written digits keep. Within it, the
-/// quaternion is normalised.
+/// Largest accepted |norm − 1| of an input quaternion, which four written digits keep. Within it,
+/// the quaternion is normalised.
 pub const NORM_TOLERANCE: f64 = 1e-3;
 
-/// The norm of an input quaternion. Errors: the norm, where it is not one within [`NORM_TOLERANCE`].
+/// The norm of an input quaternion. Errors: the norm, where it is not one within
+/// [`NORM_TOLERANCE`].
 pub fn input_norm(quaternion: &[f64]) -> Result<f64, f64> {
     let norm = Scalar::sqrt(quaternion.iter().map(|x| x * x).sum::<f64>());
     if Scalar::abs(norm - 1.0) <= NORM_TOLERANCE { Ok(norm) } else { Err(norm) }

@@ -1,6 +1,7 @@
 //! Spatial algebra: 6-vectors are (angular; linear).
 //!
-//! Sources: Lynch & Park, *Modern Robotics*, 2017, ch. 3 and 8; Featherstone, *Rigid Body Dynamics Algorithms*, 2008, ch. 2.
+//! Sources: Lynch & Park, *Modern Robotics*, 2017, ch. 3 and 8; Featherstone, *Rigid Body Dynamics
+//! Algorithms*, 2008, ch. 2.
 
 mod articulated;
 mod coriolis;

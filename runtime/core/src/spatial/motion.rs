@@ -6,8 +6,9 @@ use crate::Scalar;
 
 /// How a body turns and how its origin accelerates, in axes of the body.
 ///
-/// The acceleration is the classical one of the point (d²r/dt²), not the linear part of a spatial acceleration: no linear
-/// velocity is needed to carry it outward. Gravity enters as an acceleration −g of the base.
+/// The acceleration is the classical one of the point (d²r/dt²), not the linear part of a spatial
+/// acceleration: no linear velocity is needed to carry it outward. Gravity enters as an
+/// acceleration −g of the base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion<S> {
     /// ω, rad/s.
@@ -26,7 +27,8 @@ impl<S: Scalar> Motion<S> {
     }
 }
 
-/// `U = [ω̇]× + [ω]×[ω]×`: a point at r from the origin accelerates by U·r more than the origin does.
+/// `U = [ω̇]× + [ω]×[ω]×`: a point at r from the origin accelerates by U·r more than the origin
+/// does.
 #[inline(always)]
 pub fn rate_matrix<S: Scalar>(omega: Vector3<S>, alpha: Vector3<S>) -> Matrix3<S> {
     let (xx, yy, zz) = (omega.x * omega.x, omega.y * omega.y, omega.z * omega.z);
@@ -44,9 +46,11 @@ pub fn rate_matrix<S: Scalar>(omega: Vector3<S>, alpha: Vector3<S>) -> Matrix3<S
     )
 }
 
-/// ω̇ and U of a body from `omega` = ω, rad/s, `alpha_z` = ω̇_z, rad/s², and `axis` = ë = U e_z, 1/s², the second derivative of its z-axis. All in axes of the body.
+/// ω̇ and U of a body from `omega` = ω, rad/s, `alpha_z` = ω̇_z, rad/s², and `axis` = ë = U e_z,
+/// 1/s², the second derivative of its z-axis. All in axes of the body.
 ///
-/// ë = [ω_x ω_z + ω̇_y; ω_y ω_z − ω̇_x; −(ω_x² + ω_y²)], so that the third row of U and its third column add up to 2 ω_z ω. `diagonal`: the diagonal from ë_z, in two squares, not in three.
+/// ë = [ω_x ω_z + ω̇_y; ω_y ω_z − ω̇_x; −(ω_x² + ω_y²)], so that the third row of U and its third
+/// column add up to 2 ω_z ω. `diagonal`: the diagonal from ë_z, in two squares, not in three.
 #[inline(always)]
 pub fn rates_about<S: Scalar>(omega: Vector3<S>, alpha_z: S, axis: Vector3<S>, diagonal: bool) -> (Vector3<S>, Matrix3<S>) {
     let (w, twice) = (omega, omega.z + omega.z);

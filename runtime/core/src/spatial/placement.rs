@@ -33,7 +33,8 @@ impl<S: Scalar> Placement<S> {
         Self { rotation: Matrix3::from_columns(&[column(0), column(1), column(2)]), position: self.transform(x_bc.position) }
     }
 
-    /// Row-major rotation, then position: the twelve numbers of [R | p] as the interface gives them.
+    /// Row-major rotation, then position: the twelve numbers of [R | p] as the interface gives
+    /// them.
     pub fn to_array(&self) -> [S; 12] {
         let (r, p) = (&self.rotation, &self.position);
         [r.m11, r.m12, r.m13, r.m21, r.m22, r.m23, r.m31, r.m32, r.m33, p.x, p.y, p.z]

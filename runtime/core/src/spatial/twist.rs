@@ -5,7 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 use super::{Wrench, rotate, rotate_back};
 use crate::Scalar;
 
-/// A velocity [ω; v] of a body: angular velocity, rad/s, and velocity of the frame's origin, m/s, in axes of that frame.
+/// A velocity [ω; v] of a body: angular velocity, rad/s, and velocity of the frame's origin, m/s,
+/// in axes of that frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Twist<S> {
     /// ω, rad/s.

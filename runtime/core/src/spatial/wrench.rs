@@ -5,7 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 use super::{Twist, rotate, rotate_back};
 use crate::Scalar;
 
-/// A force [m; f] on a body: moment about the frame's origin, N·m, and force, N, in axes of that frame.
+/// A force [m; f] on a body: moment about the frame's origin, N·m, and force, N, in axes of that
+/// frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wrench<S> {
     /// m, N·m.
@@ -71,7 +72,8 @@ impl<S: Scalar> Wrench<S> {
         [m.x, m.y, m.z, f.x, f.y, f.z]
     }
 
-    /// The power ω·m + v·f that the wrench gives to a body moving with `twist`, W. Both in the same frame.
+    /// The power ω·m + v·f that the wrench gives to a body moving with `twist`, W. Both in the same
+    /// frame.
     pub fn power(&self, twist: &Twist<S>) -> S {
         twist.angular.dot(&self.moment) + twist.linear.dot(&self.force)
     }

@@ -1,4 +1,5 @@
-//! Robots whose equations can be written on one line; the parameters stand in the headers of their URDF files.
+//! Robots whose equations can be written on one line; the parameters stand in the headers of their
+//! URDF files.
 
 use articulated_test_support::case::{Case, State};
 use articulated_test_support::random::Random;

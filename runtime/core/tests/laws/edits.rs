@@ -1,4 +1,5 @@
-//! What locking a joint, attaching a payload and appending a robot do to the dynamics; and what is refused.
+//! What locking a joint, attaching a payload and appending a robot do to the dynamics; and what is
+//! refused.
 
 use articulated_core::description::{Base, Description, EditError, Inertial, JointKind, Link, Origin, Payload};
 use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
@@ -191,7 +192,8 @@ fn a_quaternion_is_normalised_if_it_nearly_is_one() {
     assert!((z.hypot(*w) - 1.0).abs() < 1e-15 && (z / w - 0.6 / 0.8001).abs() < 1e-15);
 }
 
-/// A norm that is off by the fourth digit is a matter of writing, one that is off by the third is not.
+/// A norm that is off by the fourth digit is a matter of writing, one that is off by the third is
+/// not.
 #[test]
 fn a_quaternion_may_be_off_by_a_thousandth() {
     for (by, right) in [(9e-4, true), (-9e-4, true), (1.1e-3, false), (-1.1e-3, false)] {
@@ -202,7 +204,8 @@ fn a_quaternion_may_be_off_by_a_thousandth() {
     }
 }
 
-/// c = 3 b + 0.7 and b = 2 a + 0.3, with a locked at 0.5: where the robot that is not locked has them there.
+/// c = 3 b + 0.7 and b = 2 a + 0.3, with a locked at 0.5: where the robot that is not locked has
+/// them there.
 #[test]
 fn who_follows_a_locked_joint_through_another_stops_where_they_put_it() {
     let joint = |name: &str, parent: &str, child: &str, follows: &str| {

@@ -158,7 +158,8 @@ fn nothing_of_nothing_is_nothing() {
     });
 }
 
-/// An effect is left out where its numbers make nothing of it, and nowhere else: put on a body by hand, it changes accelerations then and only then.
+/// An effect is left out where its numbers make nothing of it, and nowhere else: put on a body by
+/// hand, it changes accelerations then and only then.
 #[test]
 fn what_is_left_out_does_nothing_and_what_stays_does_something() {
     let arm = Case::bundled(articulated_models::robot("ur5_like").expect("a bundled robot")).model;
@@ -269,7 +270,8 @@ fn effects_that_are_half_right_are_refused_too() {
         assert!(text.contains("speed: found ") && text.contains("expected a finite number, at least 1e-15"), "{text}");
     }
     assert!(told(on(EffectId::motor, &[1.0, 0.0, 1.0, 1.0, 1e-3])).contains("speed: found 0"));
-    // Σ ≥ 0 in its blocks alone is not enough: m w² + I ω² + 2 c ω w < 0 for some motion with c² > I m.
+    // Σ ≥ 0 in its blocks alone is not enough: m w² + I ω² + 2 c ω w < 0 for some motion with c² >
+    // I m.
     let coupled = |c: f64| {
         [[2.0, 0.0, 0.0, 2.0, 0.0, 2.0].as_slice(), &[3.0, 0.0, 0.0, 3.0, 0.0, 3.0], &[0.0, c, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]].concat()
     };

@@ -109,7 +109,8 @@ fn a_motor_gives_what_its_line_allows_less_its_loss() {
     assert_near(motor(-2.0, -5.0, 0.9), -4.5);
 }
 
-/// Acceleration [ω̇; v̇] of the ball with its effects, in its frame, standing as the base does at height z and moving with the twist v.
+/// Acceleration [ω̇; v̇] of the ball with its effects, in its frame, standing as the base does at
+/// height z and moving with the twist v.
 fn moves(effects: &[Applied], z: f64, v: [f64; 6]) -> Vec<f64> {
     let model = ball().with_effects(effects).expect("effects on a ball");
     call(&model, "forward_dynamics", &[&[0.0, 0.0, z, 0.0, 0.0, 0.0, 1.0], &v, &[0.0; 6]])
@@ -169,7 +170,8 @@ fn added_mass_turns_a_body_broadside_on() {
     let effects = [on(EffectId::added_mass, "ball", &added)];
     let (u, w) = (1.5, -0.6);
     let found = moves(&effects, 1.0, [0.0, 0.0, 0.0, u, 0.0, w]);
-    // I ω̇ = −p × v with p the momentum of the fluid: (v × p)_y = w (x u) − u (z w), and gravity on the ball alone.
+    // I ω̇ = −p × v with p the momentum of the fluid: (v × p)_y = w (x u) − u (z w), and gravity on
+    // the ball alone.
     assert_all_near(&found, &[0.0, -(w * x * u - u * z * w) / INERTIA, 0.0, 0.0, 0.0, -G * MASS / (MASS + z)]);
 }
 
@@ -212,7 +214,8 @@ fn a_rotor_makes_a_massless_joint_move_something() {
     assert_near(call(&driven, "forward_dynamics", &[&[0.3], &[0.7], &[5.0]])[0], 5.0 / 4.0);
 }
 
-/// Water that has to be moved is inertia too: along a slide, and not about an axis through its middle.
+/// Water that has to be moved is inertia too: along a slide, and not about an axis through its
+/// middle.
 #[test]
 fn added_mass_makes_a_massless_joint_move_something() {
     let mut bare = slide();

@@ -70,7 +70,8 @@ fn links_on_fixed_joints_are_one_body() {
     });
 }
 
-/// Lumping may change the order in which the file's joints are met: where each joint of `new` is in `old`.
+/// Lumping may change the order in which the file's joints are met: where each joint of `new` is in
+/// `old`.
 fn permutation(old: &articulated_core::model::Model, new: &articulated_core::model::Model) -> Vec<(usize, usize)> {
     let place = |name: &str| old.joints().iter().position(|j| j.name == name).unwrap();
     new.joints().iter().enumerate().map(|(k, j)| (place(&j.name), k)).collect()
@@ -93,7 +94,8 @@ fn only_the_direction_of_an_axis_counts() {
 
 #[test]
 fn a_reversed_axis_reverses_coordinate_rate_and_torque() {
-    // A locked joint's coordinate is in the description, and a plane's directions have a rule of their own.
+    // A locked joint's coordinate is in the description, and a plane's directions have a rule of
+    // their own.
     for_each_tree(60, Flavour { mimic: false, every_kind: false, locked: false, ..Flavour::ANY }, |case, random| {
         let state = case.state(random);
         let mut reversed = case.description.clone();
@@ -128,7 +130,8 @@ fn gravity_is_an_acceleration_of_a_floating_base_upward() {
     }
 }
 
-/// A fixed base is a floating one that is held: at the identity, at rest, with the same torques in the joints.
+/// A fixed base is a floating one that is held: at the identity, at rest, with the same torques in
+/// the joints.
 #[test]
 fn a_floating_base_at_rest_is_a_fixed_base() {
     for seed in 0..60 {

@@ -1,6 +1,8 @@
-//! Laws of dynamics, held against the generic library on random trees. Each file is one family of laws.
+//! Laws of dynamics, held against the generic library on random trees. Each file is one family of
+//! laws.
 //!
-//! `cargo test -p articulated-core` runs them, and compiles neither the generator nor the command for it.
+//! `cargo test -p articulated-core` runs them, and compiles neither the generator nor the command
+//! for it.
 
 mod base_parameters;
 mod closed_forms;

@@ -49,7 +49,8 @@ fn largest(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(difference).fold(0.0, f64::max)
 }
 
-/// What errors of translations grow with: 1 m and the longest way from one configuration to the other.
+/// What errors of translations grow with: 1 m and the longest way from one configuration to the
+/// other.
 fn reach(model: &Model<f64>, q: &[f64], target: &[f64]) -> f64 {
     let floating = model.joints().iter().filter(|j| j.kind == JointKind::Floating).map(|j| j.q.0);
     1.0 + floating.map(|at| (at..at + 3).map(|k| (target[k] - q[k]).powi(2)).sum::<f64>().sqrt()).fold(0.0, f64::max)
@@ -166,7 +167,8 @@ fn steps_and_differences_in_double_precision_are_those_in_many_digits() {
     });
 }
 
-/// From no turn to nearly a whole one, and differences up to half a turn; a mixed joint's entries grow with the way.
+/// From no turn to nearly a whole one, and differences up to half a turn; a mixed joint's entries
+/// grow with the way.
 #[test]
 fn derivatives_of_steps_and_differences_in_double_precision_are_those_in_many_digits() {
     for_each_tree(25, Flavour::ANY, |case, random| {
@@ -255,7 +257,8 @@ fn limits_as_wide_as_numbers_are_kept() {
     }
 }
 
-/// URDF gives bounds of a continuous joint no meaning: it turns all the way round, whatever is written there.
+/// URDF gives bounds of a continuous joint no meaning: it turns all the way round, whatever is
+/// written there.
 #[test]
 fn a_continuous_joint_has_no_limits() {
     let text = r#"<robot name="r"><link name="base"/>
@@ -292,7 +295,8 @@ fn random_configurations_keep_to_the_limits_and_are_rotations() {
     });
 }
 
-/// Of uniform rotations, the angle is below π/2 with probability (π/2 − 1)/π, and all axes are alike.
+/// Of uniform rotations, the angle is below π/2 with probability (π/2 − 1)/π, and all axes are
+/// alike.
 #[test]
 fn random_rotations_are_uniform() {
     let robot = articulated_models::robot("quadruped").expect("bundled");

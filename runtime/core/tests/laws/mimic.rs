@@ -74,7 +74,8 @@ fn a_follower_that_turns_back_keeps_the_tip_level() {
     let case = Case::new("parallel", articulated_test_support::case::read(&urdf), robot.base);
     assert_eq!(case.model.nv(), 1);
     let state = State::new(vec![0.7], vec![1.1], vec![-0.4]);
-    // The lower rod swings on a circle without turning: τ = (I1 + m1 l1²/4 + m2 l1²) a + (m1 l1/2 + m2 l1) g sin q
+    // The lower rod swings on a circle without turning: τ = (I1 + m1 l1²/4 + m2 l1²) a + (m1 l1/2 +
+    // m2 l1) g sin q
     let expected = (0.083_433_333_333_3 + 0.25 + 0.5) * -0.4 + 9.81 * (0.5 + 0.5) * 0.7_f64.sin();
     assert!((case.inverse_dynamics(&state)[0] - expected).abs() < 1e-14);
     let placed = placements(&case.model, &state.q);

@@ -1,4 +1,5 @@
-//! What is left of a pivot, D/(Σ|terms|), against closed forms: two robots whose terms can be counted by hand.
+//! What is left of a pivot, D/(Σ|terms|), against closed forms: two robots whose terms can be
+//! counted by hand.
 
 use articulated_core::algorithm::Workspace;
 use articulated_core::algorithm::checked::checked_forward_dynamics;
@@ -23,7 +24,8 @@ fn smallest(links: Vec<Link>, joints: Vec<Joint>) -> f64 {
     checked_forward_dynamics(&model, &mut Workspace::new(&model), &zero, &zero, &zero, &mut zero.clone()).expect("regular")
 }
 
-/// M = a + m² b. The terms are √A + |m| √B squared, with A, B the halved sums of the moments of each body.
+/// M = a + m² b. The terms are √A + |m| √B squared, with A, B the halved sums of the moments of
+/// each body.
 #[test]
 fn a_follower_counts_with_its_rate() {
     let (a, b, m) = (1.0, 0.01, 80.0);
@@ -34,8 +36,9 @@ fn a_follower_counts_with_its_rate() {
     assert!((left - (a + m * m * b) / terms).abs() < 1e-14, "{left}");
 }
 
-/// A ball of mass m and moments b turns about a joint at a distance d. The inner joint carries m d² and none of b:
-/// D = a + m d². Its terms are those of its own body, 3a/2, and of the ball: 3b, b taken away again, and 3m moved by d.
+/// A ball of mass m and moments b turns about a joint at a distance d. The inner joint carries m d²
+/// and none of b: D = a + m d². Its terms are those of its own body, 3a/2, and of the ball: 3b, b
+/// taken away again, and 3m moved by d.
 #[test]
 fn what_a_child_hands_on_is_moved_to_its_parent() {
     let (a, b, m, d) = (0.1, 0.01, 1.0, 2.0);

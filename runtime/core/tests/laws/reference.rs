@@ -77,7 +77,8 @@ fn the_textbook_in_double_precision_is_the_textbook_in_many_digits() {
         let far = Big::scope(|| {
             let [q, v, a] = state.cast::<Big>();
             let expected = case.textbook::<Big>().inverse_dynamics(&q, &v, &a);
-            // It forms linear velocities, which cancel only in the end: every torque is as good as the largest.
+            // It forms linear velocities, which cancel only in the end: every torque is as good as
+            // the largest.
             let largest = torque_scale(case, &state).into_iter().fold(0.0, f64::max);
             distance_from(&found, &expected, &vec![largest; found.len()])
         });
@@ -126,7 +127,8 @@ fn textbook_and_virtual_power_agree_to_sixty_digits() {
     });
 }
 
-/// A double's quaternion has a norm of one to 16 digits only, and the two forms differ in what they make of the rest.
+/// A double's quaternion has a norm of one to 16 digits only, and the two forms differ in what they
+/// make of the rest.
 fn normalise(case: &Case, q: &mut [Big]) {
     for joint in case.model.joints().iter().filter(|j| matches!(j.q.1, 4 | 7)) {
         let end = joint.q.0 + joint.q.1;

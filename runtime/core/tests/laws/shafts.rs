@@ -8,7 +8,8 @@ use articulated_test_support::case::{inverse_dynamics, mass_matrix, placements};
 const LENGTH: f64 = 1.2;
 const STIFFNESS: f64 = 40.0;
 
-/// A link held by the base's only joint, a fixed joint, and what hangs on it. The joint's offset is `along`.
+/// A link held by the base's only joint, a fixed joint, and what hangs on it. The joint's offset is
+/// `along`.
 fn rod(along: [f64; 3], head: f64) -> Description {
     let link = |name: &str, mass: f64| Link {
         name: name.into(),
@@ -56,7 +57,8 @@ fn a_straight_shaft_leaves_everything_where_it_was() {
     }
 }
 
-/// A force f across the end turns each joint by f·(its distance to the end)/k; the end gives way by f L³/(3 E I), less a part ¼/n².
+/// A force f across the end turns each joint by f·(its distance to the end)/k; the end gives way by
+/// f L³/(3 E I), less a part ¼/n².
 #[test]
 fn the_end_gives_way_as_that_of_a_beam_but_for_a_quarter_of_n_squared() {
     for n in [1, 2, 3, 8, 20] {
@@ -82,7 +84,8 @@ fn the_end_gives_way_as_that_of_a_beam_but_for_a_quarter_of_n_squared() {
     }
 }
 
-/// ω₁ = 1.875104² √(E I/(m L³)) of a beam that is clamped at one end. The error falls with the square of the number of pieces.
+/// ω₁ = 1.875104² √(E I/(m L³)) of a beam that is clamped at one end. The error falls with the
+/// square of the number of pieces.
 #[test]
 fn the_lowest_frequency_becomes_that_of_a_beam() {
     let mass = 0.3;

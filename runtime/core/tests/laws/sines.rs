@@ -18,7 +18,8 @@ lanes!(portable: "portable/f64" "portable/4" "portable/common" "common" "sines/f
 #[cfg(target_arch = "x86_64")]
 lanes!(avx2: "registers/avx2_f64x4" "registers/in_registers" "registers/in_registers_fused" "registers/avx2" "registers/common" "common" "sines/f64" "sines/f64_fused");
 
-/// Sines and cosines by each way that this processor has. Other instruction sets agree with one of these to the bit.
+/// Sines and cosines by each way that this processor has. Other instruction sets agree with one of
+/// these to the bit.
 fn ways(x: [f64; 4]) -> Vec<[[f64; 4]; 2]> {
     let (sin, cos) = portable::sin_cos(x);
     #[allow(unused_mut)]
@@ -80,7 +81,8 @@ fn a_sine_is_off_by_at_most_an_ulp_anywhere() {
 
 #[test]
 fn a_sine_next_to_a_multiple_of_half_pi_is_no_worse() {
-    // The doubles below 10⁵ that lie nearest to a multiple of π/2, found by trying every multiple in 200-bit arithmetic.
+    // The doubles below 10⁵ that lie nearest to a multiple of π/2, found by trying every multiple
+    // in 200-bit arithmetic.
     let hardest = [45.553093477052, 91.106186954104, 182.212373908208, 364.424747816416, 728.849495632832, 1457.698991265664];
     // And the doubles around every 37th multiple.
     let near = (1..1700).map(|k| f64::from(37 * k) * std::f64::consts::FRAC_PI_2);

@@ -107,7 +107,8 @@ fn joints_that_move_no_mass_are_found() {
     for_each_tree(150, Flavour::ANY, |case, random| {
         let found = case.model.massless_joints();
         let m = mass_matrix(&case.model, &case.state(random).q);
-        // A zero row, or one that others make up for: either way M is singular, and where none is found it is not.
+        // A zero row, or one that others make up for: either way M is singular, and where none is
+        // found it is not.
         let left = smallest_scaled_eigenvalue(&m);
         assert!(found.is_empty() || left <= 1e-12, "joints {found:?} do move mass: {left:e}");
         assert!(!found.is_empty() || left > 1e-12, "M is singular, {left:e}, and no joint is found");
@@ -121,7 +122,8 @@ fn joints_that_move_no_mass_are_found() {
     });
 }
 
-/// Two joints without mass of their own carry one that moves none, or one that only repeats another: those alone are named, not what carries them.
+/// Two joints without mass of their own carry one that moves none, or one that only repeats
+/// another: those alone are named, not what carries them.
 #[test]
 fn joints_that_carry_a_massless_one_are_not_blamed() {
     let body = |at: &str| {
@@ -151,7 +153,8 @@ fn joints_that_carry_a_massless_one_are_not_blamed() {
     assert_eq!(model(&(camera.replace("'camera'", "'lens'") + &twice)).massless_joints(), [4, 5]);
 }
 
-/// A joint that follows another backwards leaves its body where it was: what mass that has nothing moves.
+/// A joint that follows another backwards leaves its body where it was: what mass that has nothing
+/// moves.
 #[test]
 fn a_follower_that_undoes_its_leader_moves_no_mass() {
     for (kind, multiplier) in [("prismatic", -1.0), ("revolute", -1.0), ("prismatic", -0.5), ("revolute", 1.0)] {
@@ -171,7 +174,8 @@ fn a_follower_that_undoes_its_leader_moves_no_mass() {
     }
 }
 
-/// A rod that hangs in a ball joint and points along one of its axes does not feel that turn, though it feels the other two.
+/// A rod that hangs in a ball joint and points along one of its axes does not feel that turn,
+/// though it feels the other two.
 #[test]
 fn a_rod_in_a_ball_joint_can_turn_about_itself() {
     for (axis, inertia) in [(0, [0.0, 0.0, 0.0, 1.0, 0.0, 1.0]), (1, [1.0, 0.0, 0.0, 0.0, 0.0, 1.0]), (2, [1.0, 0.0, 0.0, 1.0, 0.0, 0.0])] {

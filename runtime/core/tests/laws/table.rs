@@ -1,5 +1,5 @@
-//! Every function of the table, in each of its ways, is what the textbook says. What the textbook's functions are to each
-//! other, and with that those of the library, is held in [`super::textbook`].
+//! Every function of the table, in each of its ways, is what the textbook says. What the textbook's
+//! functions are to each other, and with that those of the library, is held in [`super::textbook`].
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Function, FunctionId, Workspace, functions};

@@ -1,5 +1,6 @@
-//! Four mistakes that are common in pseudo-code of the recursion, each made on purpose in a small matrix form of it: the laws of
-//! this crate must tell them from the right one. A law that nobody has seen fail proves little.
+//! Four mistakes that are common in pseudo-code of the recursion, each made on purpose in a small
+//! matrix form of it: the laws of this crate must tell them from the right one. A law that nobody
+//! has seen fail proves little.
 
 use articulated_core::description::{Base, Description};
 use articulated_test_support::case::{Case, State, read};
@@ -108,7 +109,8 @@ impl Chain {
         tau
     }
 
-    /// The composite rigid body algorithm; without composing, it is the mistake of taking it for n calls of the recursion on single links.
+    /// The composite rigid body algorithm; without composing, it is the mistake of taking it for n
+    /// calls of the recursion on single links.
     fn mass_matrix(&self, q: &[f64], compose: bool) -> nalgebra::DMatrix<f64> {
         let n = self.links.len();
         let out: Vec<Matrix6<f64>> = (0..n).map(|i| adjoint(&self.relative(i, q).try_inverse().unwrap())).collect();
@@ -212,7 +214,8 @@ fn virtual_power_catches_every_trap() {
     }
 }
 
-/// Trap 4: the composite rigid body algorithm composes inertias; n calls of the recursion give the same matrix, single links do not.
+/// Trap 4: the composite rigid body algorithm composes inertias; n calls of the recursion give the
+/// same matrix, single links do not.
 #[test]
 fn composite_bodies_give_the_matrix_of_n_recursions_and_single_links_do_not() {
     let (case, chain) = arm();

@@ -88,7 +88,8 @@ impl<'r, R: Dynamics<f64>> Pursuit<'r, R> {
         };
         difference(self.robot, &mut self.ws, from, to, &mut self.rate)?;
         self.rate.iter_mut().for_each(|r| *r /= span);
-        // from ⊕ (t − t_from) target': the shortest way at a constant rate, which plain coordinates take anyway.
+        // from ⊕ (t − t_from) target': the shortest way at a constant rate, which plain coordinates
+        // take anyway.
         if !self.is_flat() {
             self.step.iter_mut().zip(&self.rate).for_each(|(step, rate)| *step = since * rate);
             self.robot.integrate(&mut self.ws, from, &self.step, &mut self.target)?;

@@ -63,7 +63,8 @@ impl<F: FnMut(f64, &[f64], &[f64], &mut [f64])> Control for F {
     }
 }
 
-/// A control by reference: [`Hold`] samples `&mut control as &mut dyn Control`, and the caller keeps the control. A mutable reference to a closure is a control anyway.
+/// A control by reference: [`Hold`] samples `&mut control as &mut dyn Control`, and the caller
+/// keeps the control. A mutable reference to a closure is a control anyway.
 impl Control for &mut (dyn Control + '_) {
     fn torques(&mut self, t: f64, q: &[f64], v: &[f64], tau: &mut [f64]) {
         (**self).torques(t, q, v, tau);

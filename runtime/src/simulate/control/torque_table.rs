@@ -13,7 +13,8 @@ pub struct TorqueTable {
 }
 
 impl TorqueTable {
-    /// times: `[n]`, s, each later than the one before; rows: `[n][nv]`, N·m|N. Everything that is wrong.
+    /// times: `[n]`, s, each later than the one before; rows: `[n][nv]`, N·m|N. Everything that is
+    /// wrong.
     pub fn new(times: Vec<f64>, rows: &[f64], nv: usize) -> Result<Self, SimulateError> {
         let rows = rows.chunks(nv.max(1)).map(<[f64]>::to_vec).collect();
         let series = Series { times, rows, hold: false };

@@ -58,7 +58,8 @@ impl Detectors {
         self.left[e]
     }
 
-    /// All zeros of a step, in `zeros`; its curve is ready. A zero at the end belongs to the next step, if it is not the `last`.
+    /// All zeros of a step, in `zeros`; its curve is ready. A zero at the end belongs to the next
+    /// step, if it is not the `last`.
     pub(crate) fn scan<R: Dynamics<f64>>(
         &mut self,
         events: &mut [Event],
@@ -159,7 +160,8 @@ impl<R: Dynamics<f64>> Search<'_, '_, '_, '_, R> {
         value(self.events, e, self.system, self.curve, theta, true)
     }
 
-    /// Where g goes from one side to the other: halving, and the false position of Anderson & Björck (BIT 13, 1973) where that is faster.
+    /// Where g goes from one side to the other: halving, and the false position of Anderson &
+    /// Björck (BIT 13, 1973) where that is faster.
     fn zero(&mut self, e: usize, (mut a, side): (f64, f64), (mut b, _): (f64, f64)) -> Result<f64, SimulateError> {
         let (mut ga, mut gb) = (self.at(e, a)?, self.at(e, b)?);
         let (mut last, mut halve) = (0.0, ga * gb >= 0.0);
@@ -193,7 +195,8 @@ impl<R: Dynamics<f64>> Search<'_, '_, '_, '_, R> {
         Ok(if self.at(e, a)?.abs() < self.at(e, b)?.abs() { a } else { b })
     }
 
-    /// A place in (a, b) where g is not on this side, if the least of |g| leads to one: golden section (Kiefer 1953).
+    /// A place in (a, b) where g is not on this side, if the least of |g| leads to one: golden
+    /// section (Kiefer 1953).
     fn beyond(&mut self, e: usize, (mut a, mut b): (f64, f64), side: f64) -> Result<Option<f64>, SimulateError> {
         const GOLDEN: f64 = 0.618_033_988_749_894_9;
         let mut inner = [b - GOLDEN * (b - a), a + GOLDEN * (b - a)];

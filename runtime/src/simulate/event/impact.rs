@@ -13,9 +13,10 @@ use crate::simulate::{SimulateError, StateError};
 /// p = (1 + e)·(v_n − v_b)·m_b/(m_b·nᵀ J M⁻¹ Jᵀ n + 1)      v += −M⁻¹ Jᵀ n p      v_b += p/m_b
 /// ```
 ///
-/// with v_n = nᵀ J v, the velocity of the point along n, and J its translational Jacobian: Newton's law of restitution with the momentum of the whole robot,
-/// Brach, *Mechanical Impact Dynamics*, 1991, §3. A ball at rest leaves at (1 + e)·v_n·m_h/(m_h + m_b), where 1/m_h = nᵀ J M⁻¹ Jᵀ n. Energy lost:
-/// ½(1 − e²)(v_n − v_b)²·m_h m_b/(m_h + m_b).
+/// with v_n = nᵀ J v, the velocity of the point along n, and J its translational Jacobian: Newton's
+/// law of restitution with the momentum of the whole robot, Brach, *Mechanical Impact Dynamics*,
+/// 1991, §3. A ball at rest leaves at (1 + e)·v_n·m_h/(m_h + m_b), where 1/m_h = nᵀ J M⁻¹ Jᵀ n.
+/// Energy lost: ½(1 − e²)(v_n − v_b)²·m_h m_b/(m_h + m_b).
 ///
 /// The robot needs the functions `placements`, `jacobians_world_aligned` and `solve_mass_matrix`.
 pub struct Impact<'r, R: Dynamics<f64>> {
@@ -59,7 +60,8 @@ impl<'r, R: Dynamics<f64>> Impact<'r, R> {
         Ok(impact)
     }
 
-    /// The state before becomes the state after: v `[nv]` is changed; `ball` is the ball's speed along the normal before, m/s.
+    /// The state before becomes the state after: v `[nv]` is changed; `ball` is the ball's speed
+    /// along the normal before, m/s.
     pub fn strike(&mut self, q: &[f64], v: &mut [f64], ball: f64) -> Result<Struck, SimulateError> {
         let nv = self.row.len();
         check_length("v", v.len(), nv)?;

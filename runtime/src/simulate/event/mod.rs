@@ -32,7 +32,8 @@ pub enum Direction {
 /// A function of time and state, g(t, q, v).
 type Function<'a> = dyn FnMut(f64, &[f64], &[f64]) -> f64 + 'a;
 
-/// A map of the state at time t: q `[nq]` and v `[nv]` may be changed; it may give a number to be recorded.
+/// A map of the state at time t: q `[nq]` and v `[nv]` may be changed; it may give a number to be
+/// recorded.
 pub type Map<'a> = dyn FnMut(f64, &mut [f64], &mut [f64]) -> Result<Option<f64>, SimulateError> + 'a;
 
 /// The action at an event; the event is recorded in any case.
@@ -60,9 +61,11 @@ pub struct ContactPoint {
 
 /// An event at the zeros of g(t, q, v).
 ///
-/// g is looked at eleven times a step on the integrator's curve: at its ends, and between so closely that a zero between two of them is found where g changes its
-/// sign, and a pair of zeros where |g| has a least value among them. What is missed is a pair that comes and goes between two neighbours without |g| falling towards them:
-/// less than an eighth of a step, which `max_step` can bound.
+/// g is looked at eleven times a step on the integrator's curve: at its ends, and between so
+/// closely that a zero between two of them is found where g changes its sign, and a pair of zeros
+/// where |g| has a least value among them. What is missed is a pair that comes and goes between two
+/// neighbours without |g| falling towards them: less than an eighth of a step, which `max_step` can
+/// bound.
 pub struct Event<'a> {
     pub(crate) name: Arc<str>,
     /// The entry of q or v that it depends on, if it is one.
@@ -127,7 +130,8 @@ impl<'a> Event<'a> {
         &self.name
     }
 
-    /// Coordinate i of q leaves the limits: g = (q − lower)(upper − q)/(upper − lower), falling; with one bound infinite the distance from the other.
+    /// Coordinate i of q leaves the limits: g = (q − lower)(upper − q)/(upper − lower), falling;
+    /// with one bound infinite the distance from the other.
     pub fn limit(name: impl Into<String>, i: usize, lower: f64, upper: f64) -> Self {
         let g = move |_: f64, q: &[f64], _: &[f64]| {
             let x = number(q, i);
@@ -163,7 +167,8 @@ impl<'a> Event<'a> {
         beyond.into_iter().chain(bounds)
     }
 
-    /// A sphere of this radius, m, about a point touches the plane nᵀx = height, m, of the world frame, n its normal made of length one: its distance falls through zero.
+    /// A sphere of this radius, m, about a point touches the plane nᵀx = height, m, of the world
+    /// frame, n its normal made of length one: its distance falls through zero.
     ///
     /// The robot needs the function `placements`. Errors: all invalid numbers, at once.
     pub fn contact<R: Dynamics<f64>>(

@@ -1,7 +1,8 @@
-//! Dormand's, Prince's and Hairer's method of order 8 with errors of orders 5 and 3: twelve stages, a thirteenth that is the first of the next step, three more for a
-//! curve of order 7.
+//! Dormand's, Prince's and Hairer's method of order 8 with errors of orders 5 and 3: twelve stages,
+//! a thirteenth that is the first of the next step, three more for a curve of order 7.
 //!
-//! Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 1993, §II.5 (method), (II.10.17) (error), §II.6 (curve); test of stiffness as in dopri5.
+//! Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 1993, §II.5 (method),
+//! (II.10.17) (error), §II.6 (curve); test of stiffness as in dopri5.
 
 use articulated_core::dynamics::Dynamics;
 

@@ -1,7 +1,9 @@
-//! Dormand's and Prince's pair of orders 5(4): seven stages, of which the last is the first of the next step.
+//! Dormand's and Prince's pair of orders 5(4): seven stages, of which the last is the first of the
+//! next step.
 //!
-//! Coefficients: Dormand & Prince, *A family of embedded Runge–Kutta formulae*, J. Comput. Appl. Math. 6, 1980; curve of order 4 and test of
-//! stiffness: Hairer, Nørsett & Wanner 1993, (II.6.12), and Hairer & Wanner 1996, §IV.2.
+//! Coefficients: Dormand & Prince, *A family of embedded Runge–Kutta formulae*, J. Comput. Appl.
+//! Math. 6, 1980; curve of order 4 and test of stiffness: Hairer, Nørsett & Wanner 1993, (II.6.12),
+//! and Hairer & Wanner 1996, §IV.2.
 
 use articulated_core::dynamics::Dynamics;
 

@@ -13,7 +13,8 @@ impl Lu {
         Self { n, matrix: vec![0.0; n * n], rows: vec![0; n] }
     }
 
-    /// Factorises `matrix` in place; false if it is singular or not finite. Golub & Van Loan 2013, Algorithm 3.4.1.
+    /// Factorises `matrix` in place; false if it is singular or not finite. Golub & Van Loan 2013,
+    /// Algorithm 3.4.1.
     pub(super) fn factorize(&mut self) -> bool {
         let (n, m) = (self.n, &mut self.matrix);
         for k in 0..n {

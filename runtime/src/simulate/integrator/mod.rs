@@ -69,7 +69,8 @@ pub(crate) trait Method<R: Dynamics<f64>> {
         None
     }
 
-    /// Largest |factor| by which a step of length h multiplies a motion with the characteristic equation λ² = aλ + b; `None` for implicit methods.
+    /// Largest |factor| by which a step of length h multiplies a motion with the characteristic
+    /// equation λ² = aλ + b; `None` for implicit methods.
     fn amplification(&self, _a: f64, _b: f64, _h: f64) -> Option<f64> {
         None
     }
@@ -79,7 +80,8 @@ pub(crate) trait Method<R: Dynamics<f64>> {
         None
     }
 
-    /// The fastest motion that the last step of an explicit method saw, 1/s, roughly, and two points where it may be; zero if it saw nothing that makes its step suspicious.
+    /// The fastest motion that the last step of an explicit method saw, 1/s, roughly, and two
+    /// points where it may be; zero if it saw nothing that makes its step suspicious.
     fn fastest(&self) -> Option<(f64, [&[f64]; 2])> {
         None
     }

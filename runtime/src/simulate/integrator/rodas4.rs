@@ -4,11 +4,14 @@
 //! (1/(hγ) − J) k_i = f(t + α_i h, y + Σ a_ij k_j) + Σ c_ij k_j/h + h γ_i ∂f/∂t      y_1 = y + Σ a_6j k_j + k_6,  error k_6
 //! ```
 //!
-//! Its factor for a decay e^{−xt}, R(−hx), is between 0 and 1 for every hx > 0: a decay is never turned round. Hairer & Wanner, *Solving Ordinary Differential
-//! Equations II*, 1996, §IV.7 (method, form without products by J), §VI.4 (RODAS: coefficients and curve of order 3).
+//! Its factor for a decay e^{−xt}, R(−hx), is between 0 and 1 for every hx > 0: a decay is never
+//! turned round. Hairer & Wanner, *Solving Ordinary Differential Equations II*, 1996, §IV.7
+//! (method, form without products by J), §VI.4 (RODAS: coefficients and curve of order 3).
 //!
-//! J is exact: derivatives of forward dynamics along ⊕, −½ ad(v) for joints that turn freely, and those of the controller by differences. The first half of the
-//! equations is eliminated by hand, so that what is factorised is `[nv][nv]`. Work and losses are integrated over the curve, by Gauss with three nodes.
+//! J is exact: derivatives of forward dynamics along ⊕, −½ ad(v) for joints that turn freely, and
+//! those of the controller by differences. The first half of the equations is eliminated by hand,
+//! so that what is factorised is `[nv][nv]`. Work and losses are integrated over the curve, by
+//! Gauss with three nodes.
 
 use articulated_core::dynamics::Dynamics;
 use articulated_core::nalgebra::{Matrix6, Vector6};
@@ -145,7 +148,8 @@ impl Rodas4 {
             y[column] = start.y[column];
         }
         if depends.time {
-            // A small part of the step, as far as times so small are told apart; not across a jump, with which the step ends.
+            // A small part of the step, as far as times so small are told apart; not across a jump,
+            // with which the step ends.
             let later = start.t + (small * start.h).max(8.0 * (start.t.abs().next_up() - start.t.abs()));
             if later < system.kink {
                 self.q.copy_from_slice(&system.origin);

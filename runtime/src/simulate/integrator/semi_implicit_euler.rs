@@ -1,6 +1,8 @@
-//! v₁ = v₀ + h a(t₀, q₀, v₀), q₁ = q₀ ⊕ h v₁: order 1, symplectic where the mass matrix is constant and forces are the slope of an energy of q.
+//! v₁ = v₀ + h a(t₀, q₀, v₀), q₁ = q₀ ⊕ h v₁: order 1, symplectic where the mass matrix is constant
+//! and forces are the slope of an energy of q.
 //!
-//! The linear velocity of a floating joint is stepped in axes that do not rotate with it: [`Manifold::semi_implicit_step`](crate::simulate::manifold::Manifold::semi_implicit_step).
+//! The linear velocity of a floating joint is stepped in axes that do not rotate with it:
+//! [`Manifold::semi_implicit_step`](crate::simulate::manifold::Manifold::semi_implicit_step).
 
 use articulated_core::dynamics::Dynamics;
 
@@ -14,7 +16,8 @@ use crate::simulate::{Control, SimulateError};
 
 pub(crate) struct SemiImplicitEuler {
     curve: Hermite,
-    /// Where the last step began, in the chart of the present one, and its rate; from there to here.
+    /// Where the last step began, in the chart of the present one, and its rate; from there to
+    /// here.
     before: Vec<f64>,
     rate: Vec<f64>,
     fastest: Fastest,
@@ -64,7 +67,8 @@ impl<R: Dynamics<f64>> Method<R> for SemiImplicitEuler {
 
     hand_on_to_hermite!();
 
-    /// One step of ü = a u̇ + b u: the matrix [1 + h²b, h(1 + ha); hb, 1 + ha], μ² = (2 + ha + h²b) μ − (1 + ha).
+    /// One step of ü = a u̇ + b u: the matrix [1 + h²b, h(1 + ha); hb, 1 + ha], μ² = (2 + ha + h²b)
+    /// μ − (1 + ha).
     fn amplification(&self, a: f64, b: f64, h: f64) -> Option<f64> {
         let both = roots(2.0 + h * a + h * h * b, -(1.0 + h * a));
         Some(both.into_iter().map(|(re, im)| re.hypot(im)).fold(0.0, f64::max))

@@ -75,7 +75,8 @@ impl Stages {
         Ok(())
     }
 
-    /// out = y + h·Σ a_j k_j. Inlined, so that nothing is asked of coefficients that are known where it is called.
+    /// out = y + h·Σ a_j k_j. Inlined, so that nothing is asked of coefficients that are known
+    /// where it is called.
     #[inline(always)]
     pub(super) fn combine(&self, y: &[f64], h: f64, a: &[f64], out: &mut [f64]) {
         let n = self.n;
@@ -109,12 +110,14 @@ impl Stages {
     }
 }
 
-/// So many times the rate that matters is stable with no explicit method: what stages see after that is what it made of the motion.
+/// So many times the rate that matters is stable with no explicit method: what stages see after
+/// that is what it made of the motion.
 const WILD: f64 = 10.0;
 
-/// The fastest motion seen between points of a step: the λ with |Δa| = λ²|Δu| + λ|Δv|, which for springs and for damping by itself is at least 0.6 of the true one, and
-/// where it was seen: at that of the two points with the larger acceleration, and halfway between, where a force that changes its side is steepest. What is slower than
-/// matters is not looked at closely.
+/// The fastest motion seen between points of a step: the λ with |Δa| = λ²|Δu| + λ|Δv|, which for
+/// springs and for damping by itself is at least 0.6 of the true one, and where it was seen: at
+/// that of the two points with the larger acceleration, and halfway between, where a force that
+/// changes its side is steepest. What is slower than matters is not looked at closely.
 #[derive(Clone, Debug)]
 pub(super) struct Fastest {
     rate: f64,
@@ -147,7 +150,8 @@ impl Fastest {
         let nv = (self.at[0].len() - 2) / 2;
         let square = |pair: [&[f64]; 2], at: usize| squared_distance(&pair[0][at..at + nv], &pair[1][at..at + nv]);
         let (turn, change) = (square(y, nv), square(f, nv));
-        // Then |Δa| ≤ λ²|Δu| + λ|Δv| for certain with this λ: nothing is faster. Mostly so, and without roots.
+        // Then |Δa| ≤ λ²|Δu| + λ|Δv| for certain with this λ: nothing is faster. Mostly so, and
+        // without roots.
         let known = self.rate.max(self.least).powi(2);
         if change <= known * turn {
             return;

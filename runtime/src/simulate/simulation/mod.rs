@@ -64,7 +64,8 @@ struct Progress {
     controller: Option<Controller>,
     /// The step to try next, s.
     h: f64,
-    /// Of a sampled control: whether the next step is the first after a sample, and the step to try there, s, by the error of the last such step.
+    /// Of a sampled control: whether the next step is the first after a sample, and the step to try
+    /// there, s, by the error of the last such step.
     after_sample: (bool, f64),
     /// Where the present stretch began, and its steps so far.
     stretch: (f64, u64),
@@ -190,7 +191,8 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         self.known.recording(&self.system, &self.settings)
     }
 
-    /// The motion from q `[nq]` and v `[nv]` at the start to the end, or to the first event that stops it.
+    /// The motion from q `[nq]` and v `[nv]` at the start to the end, or to the first event that
+    /// stops it.
     pub fn run(&mut self, q: &[f64], v: &[f64], control: &mut dyn Control, events: &mut [Event]) -> Result<Recording, SimulateError> {
         let mut recording = self.recording();
         self.run_into(q, v, control, events, &mut recording, &mut |_, _| true)?;
@@ -231,7 +233,8 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         torques.into_iter().chain(period)
     }
 
-    /// Where a torque was no number, that is why nothing else is; where there is no mass to move, that is why there are no accelerations.
+    /// Where a torque was no number, that is why nothing else is; where there is no mass to move,
+    /// that is why there are no accelerations.
     fn blamed(&mut self, error: SimulateError) -> SimulateError {
         let nv = self.shape.nv;
         match (&error, self.system.no_torque) {
@@ -404,7 +407,8 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     fn make_step(&mut self, run: &mut Run) -> Result<f64, SimulateError> {
         let until = self.progress.until;
         let Some(mut controller) = self.progress.controller else { return self.fixed_step(run, until) };
-        // Torques jump at samples, and a step just after a jump is shorter than one before it: each kind of step has its own length.
+        // Torques jump at samples, and a step just after a jump is shorter than one before it: each
+        // kind of step has its own length.
         let after_sample = std::mem::take(&mut self.progress.after_sample.0);
         if after_sample {
             self.progress.h = self.progress.h.min(self.progress.after_sample.1);

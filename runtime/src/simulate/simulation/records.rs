@@ -25,7 +25,8 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         Ok(())
     }
 
-    /// As [`Self::record_here`], unless this time is recorded already, as that of an output that is a rounding away.
+    /// As [`Self::record_here`], unless this time is recorded already, as that of an output that is
+    /// a rounding away.
     pub(super) fn record_end(&mut self, run: &mut Run) -> Result<(), SimulateError> {
         let near = if self.settings.output == Output::Steps { 0.0 } else { rounding(self.t) };
         let recorded = run.recording.t.last().is_some_and(|t| (self.t - t).abs() <= near);

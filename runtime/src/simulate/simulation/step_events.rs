@@ -9,7 +9,8 @@ use crate::simulate::integrator::Start;
 use crate::simulate::step_control::rounding;
 use crate::simulate::{Action, Direction, Event, Hit, SimulateError, StateError};
 
-/// The curve of the step from the state to `$t`: of the parts of a simulation that it takes, so that others stay free.
+/// The curve of the step from the state to `$t`: of the parts of a simulation that it takes, so
+/// that others stay free.
 macro_rules! curve {
     ($of:ident, $t:ident) => {
         Curve {
@@ -22,7 +23,8 @@ macro_rules! curve {
 }
 
 impl<R: Dynamics<f64>> Simulation<'_, R> {
-    /// Outputs and events of the step to t, which is not yet the state; where it is cut short, `end` is there. The time up to which it counts, and what is next.
+    /// Outputs and events of the step to t, which is not yet the state; where it is cut short,
+    /// `end` is there. The time up to which it counts, and what is next.
     pub(super) fn look(&mut self, run: &mut Run, t: f64) -> Result<(f64, Outcome), SimulateError> {
         let (cut, outcome) = if run.events.is_empty() { (1.0, Outcome::GoOn) } else { self.events(run, t)? };
         let stop = if cut < 1.0 { self.t + cut * (t - self.t) } else { t };
@@ -34,7 +36,8 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         Ok((stop, outcome))
     }
 
-    /// Records the events of the step to t. The part of it after which one of them cuts it short, and what is next.
+    /// Records the events of the step to t. The part of it after which one of them cuts it short,
+    /// and what is next.
     fn events(&mut self, run: &mut Run, t: f64) -> Result<(f64, Outcome), SimulateError> {
         let (start, h) = (self.t, t - self.t);
         let tolerance = self.settings.event_tolerance.max(rounding(t) / 4.0) / h;
@@ -43,7 +46,8 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         self.detectors.scan(run.events, &mut self.system, &mut curve, (tolerance, t >= self.settings.end))?;
         let (mut cut, mut outcome, first) = (1.0, Outcome::GoOn, run.recording.events.len());
         for &Zero { theta, event, direction } in &self.detectors.zeros {
-            // What happens at the same time as the first that cuts the step short happens too; the rest is found again, if it still comes.
+            // What happens at the same time as the first that cuts the step short happens too; the
+            // rest is found again, if it still comes.
             if !matches!(outcome, Outcome::GoOn) && theta > cut + tolerance {
                 break;
             }
@@ -106,7 +110,8 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
     fn map_by(&mut self, run: &mut Run, hit: usize) -> Result<bool, SimulateError> {
         let (nv, event) = (self.shape.nv, run.recording.events[hit].event);
         let Event { action: Action::Map(map), name, .. } = &mut run.events[event] else { return Ok(false) };
-        // The same event again at the same time: it would never end. Others may happen at one time, but not for ever.
+        // The same event again at the same time: it would never end. Others may happen at one time,
+        // but not for ever.
         let again = self.t - self.progress.last_map.1 <= 2.0 * self.settings.event_tolerance.max(rounding(self.t));
         self.progress.chatter = if again { self.progress.chatter + 1 } else { 0 };
         if again && (self.progress.last_map.0 == event || self.progress.chatter > 100) {
@@ -126,8 +131,9 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         Ok(true)
     }
 
-    /// On which side of zero each event is from here on; of those that have just happened, where it is a moment later, unless a map has taken it away from zero. What a map leaves at rest at zero
-    /// is where it came from: it happens again if it goes on.
+    /// On which side of zero each event is from here on; of those that have just happened, where it
+    /// is a moment later, unless a map has taken it away from zero. What a map leaves at rest at
+    /// zero is where it came from: it happens again if it goes on.
     pub(super) fn take_sides(&mut self, run: &mut Run) -> Result<(), SimulateError> {
         const MOMENT: f64 = 1e-9;
         let nv = self.shape.nv;

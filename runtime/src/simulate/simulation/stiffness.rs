@@ -60,7 +60,8 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         Ok(())
     }
 
-    /// Hairer & Wanner 1996, §IV.2: fifteen steps held back by stability, with no six between that are not; looked for every thousand steps.
+    /// Hairer & Wanner 1996, §IV.2: fifteen steps held back by stability, with no six between that
+    /// are not; looked for every thousand steps.
     pub(super) fn check_stiffness(&mut self, h: f64) -> Result<(), SimulateError> {
         let due =
             self.settings.stiffness != Stiffness::Ignore && (self.system.counts.steps.is_multiple_of(1000) || self.progress.held.steps > 0);

@@ -1,7 +1,9 @@
 //! Errors of all levels of a function in one state.
 //!
-//! Two references, each of 320 bits: the textbook's formulas on the numbers of the URDF, which share nothing with what is judged (with effects, which they do not know, the generic library), and the very graph that is emitted, in
-//! the constants that it has. The difference to the second is rounding alone.
+//! Two references, each of 320 bits: the textbook's formulas on the numbers of the URDF, which
+//! share nothing with what is judged (with effects, which they do not know, the generic library),
+//! and the very graph that is emitted, in the constants that it has. The difference to the second
+//! is rounding alone.
 
 use articulated_codegen::graph::Graph;
 use articulated_codegen::{Generated, Precision, bound};
@@ -41,7 +43,8 @@ pub(super) fn graph<'a>(generated: &'a Generated, function: &str) -> Option<&'a 
     generated.graphs.get(place).filter(|graph| !graph.outputs.is_empty())
 }
 
-/// What a state says of each; `None` where there is no right answer. `state`: the arguments in the function's order.
+/// What a state says of each; `None` where there is no right answer. `state`: the arguments in the
+/// function's order.
 pub(super) fn verdicts(
     reference: &Exact,
     model: &Model<f64>,

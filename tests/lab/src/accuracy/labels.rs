@@ -35,7 +35,8 @@ impl Labels {
         Self { within, taken, leaders: Vec::new() }
     }
 
-    /// Beside a mark, or the nearest free place from which a line leads to it, one that crosses no other if there is any. It is taken then.
+    /// Beside a mark, or the nearest free place from which a line leads to it, one that crosses no
+    /// other if there is any. It is taken then.
     pub(super) fn place(&mut self, mark: Point, name: &str) -> Place {
         let free = |p: &Place| {
             let area = area(p, name);

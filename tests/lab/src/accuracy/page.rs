@@ -51,7 +51,8 @@ const CHOICE: &str = "<h2>What to choose when</h2><ul>\
 <li><b>Long orbits</b> of conservative systems: <code>compensated</code> for the right-hand side only if the integrator's own error is below 1e-13; see the report of the integrators.</li>\
 <li><b>Checking other code</b>: <code>double_double</code>; it is right to the last bit of its result save for constants.</li></ul>\n";
 
-/// What the longest call of plain doubles takes of a cycle of 1 ms; nothing where none was measured.
+/// What the longest call of plain doubles takes of a cycle of 1 ms; nothing where none was
+/// measured.
 fn cycle(report: &Report) -> String {
     let calls = report.functions.iter().flat_map(|f| f.points.iter().filter(|p| p.level == "f64").map(|p| (f.function, p.time.median)));
     let longest = calls.max_by(|a, b| a.1.total_cmp(&b.1));

@@ -97,15 +97,18 @@ pub(super) struct Point {
     pub(super) peer: bool,
     /// ns per call.
     pub(super) time: Summary,
-    /// Of each state the largest error of a result, relative to the sum of the magnitudes of its terms; against [`Report::reference`].
+    /// Of each state the largest error of a result, relative to the sum of the magnitudes of its
+    /// terms; against [`Report::reference`].
     pub(super) relative: Spread,
     /// The same in units in the last place of a double.
     pub(super) ulps: Spread,
     /// As `relative`, against the graph that is emitted, in the reference's digits: rounding alone.
     pub(super) rounding: Option<Spread>,
-    /// How far the torques that a solution needs are from those given, relative to the magnitudes of their terms.
+    /// How far the torques that a solution needs are from those given, relative to the magnitudes
+    /// of their terms.
     pub(super) backward: Option<Spread>,
-    /// The largest relative error on the hard states, not a number where the result is none, and what is hard about it.
+    /// The largest relative error on the hard states, not a number where the result is none, and
+    /// what is hard about it.
     #[serde(serialize_with = "hard")]
     pub(super) hard: Option<(f64, &'static str)>,
     /// The largest guaranteed bound on `rounding`, over the random states.

@@ -25,7 +25,8 @@ pub(crate) struct Peer {
     steps: usize,
 }
 
-/// Those of the libraries that make steps and read the robot, and why others do not. They start at (q, v), in our order, and go on for so many seconds.
+/// Those of the libraries that make steps and read the robot, and why others do not. They start at
+/// (q, v), in our order, and go on for so many seconds.
 pub(crate) fn open(
     session: &Session,
     libraries: &[Library],
@@ -79,7 +80,8 @@ impl Peer {
         self.native.methods()
     }
 
-    /// Goes to the end in so many equal steps; q and v there in our order, or nothing if it went astray.
+    /// Goes to the end in so many equal steps; q and v there in our order, or nothing if it went
+    /// astray.
     pub(crate) fn go(&self, method: &Stepping, steps: usize) -> Option<(Vec<f64>, Vec<f64>)> {
         let (mut q, mut v) = self.start.clone();
         self.native.simulate(method, &mut q, &mut v, self.length / steps as f64, steps)?;

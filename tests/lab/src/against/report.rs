@@ -20,7 +20,8 @@ pub struct Report {
 /// Everybody at the same error.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Target {
-    /// Of the last state, the largest difference of a coordinate or rate: rad, m, and those a second.
+    /// Of the last state, the largest difference of a coordinate or rate: rad, m, and those a
+    /// second.
     pub(super) error: f64,
     pub(super) reached: Vec<Reached>,
     /// The fastest peer's time over that of our fastest integrator.

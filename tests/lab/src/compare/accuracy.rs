@@ -1,7 +1,9 @@
-//! Errors against a reference of 96 digits: the textbook's form, which shares no formula with what it judges; of a robot with effects, which that does not know, the generic library.
+//! Errors against a reference of 96 digits: the textbook's form, which shares no formula with what
+//! it judges; of a robot with effects, which that does not know, the generic library.
 //!
-//! A result is compared with the textbook form's. The accelerations of forward dynamics are judged by their backward error
-//! instead: how far the torques that they need are from those that were given.
+//! A result is compared with the textbook form's. The accelerations of forward dynamics are judged
+//! by their backward error instead: how far the torques that they need are from those that were
+//! given.
 
 use articulated_codegen::Options;
 use articulated_core::Scalar;
@@ -60,7 +62,8 @@ impl Reference {
         self.against
     }
 
-    /// Said in reports: where results are not held to the textbook, and what of the scene has no part in them.
+    /// Said in reports: where results are not held to the textbook, and what of the scene has no
+    /// part in them.
     pub(crate) fn note(&self) -> Vec<String> {
         let note = "the textbook's form knows no effects: the reference is the generic library in 320 bits, which tells roundings, not whether its formulas are right";
         let effects = (self.against() == Against::Library).then(|| note.into());
@@ -86,7 +89,8 @@ pub(crate) fn inverse_of(function: &Function<f64>) -> Option<&'static str> {
     solves.then(|| inverse.at_zero(|argument| argument == Argument::Wrenches && !function.takes.contains(&argument)).name)
 }
 
-/// The largest errors over some of the states; `None` where the reference does not have the function.
+/// The largest errors over some of the states; `None` where the reference does not have the
+/// function.
 pub(super) fn errors(
     reference: &Reference,
     model: &Model<f64>,
@@ -122,7 +126,8 @@ pub(super) fn errors(
     })
 }
 
-/// Whether the reference divided by nothing, or by what its 96 digits left of nothing: no answer is right there.
+/// Whether the reference divided by nothing, or by what its 96 digits left of nothing: no answer is
+/// right there.
 pub(crate) fn singular(exact: &[Big]) -> bool {
     exact.iter().map(|x| x.to_f64()).any(|x| x.is_nan() || x.abs() >= 1e40)
 }
@@ -142,11 +147,13 @@ fn forward(exact: &[Big], model: &Model<f64>, name: &str, state: &[&[f64]], foun
     Some([largest(exact, &found[0], &where_suspect(&own, &moved, is_suspect)), generic])
 }
 
-/// How much of the scale of a result may be left of its zeros by the roundings of the reference's 96 digits, and more than that.
+/// How much of the scale of a result may be left of its zeros by the roundings of the reference's
+/// 96 digits, and more than that.
 const RESIDUE: f64 = 1e-60;
 
-/// Scales that are no less than what is left in the reference where the model knows that a result is zero. Where all of it is, there is no scale to go
-/// by: that of numbers near one is taken, and any number that is not tiny beyond that is wrong.
+/// Scales that are no less than what is left in the reference where the model knows that a result
+/// is zero. Where all of it is, there is no scale to go by: that of numbers near one is taken, and
+/// any number that is not tiny beyond that is wrong.
 pub(crate) fn above_residues(mut scale: Vec<f64>) -> Vec<f64> {
     let largest = scale.iter().copied().fold(0.0, f64::max);
     let floor = RESIDUE * if largest == 0.0 { 1.0 } else { largest };
@@ -159,7 +166,9 @@ fn both([a, b]: [Option<f64>; 2]) -> Option<[f64; 2]> {
     Some([a?, b?])
 }
 
-/// η = maxᵢ |ID_exact(q, v, a) − τ|ᵢ / (scale of ID + that of τ)ᵢ, in units of 2⁻⁵³, for the state (q, v, τ, …) and accelerations that were found; τ is what the motors deliver when commanded that of the state.
+/// η = maxᵢ |ID_exact(q, v, a) − τ|ᵢ / (scale of ID + that of τ)ᵢ, in units of 2⁻⁵³, for the state
+/// (q, v, τ, …) and accelerations that were found; τ is what the motors deliver when commanded that
+/// of the state.
 pub(crate) fn backward(reference: &Exact, model: &Model<f64>, inverse: &str, state: &[&[f64]], found: &[f64]) -> Option<f64> {
     let asked = [*state.get(1)?, *state.get(2)?];
     if found.iter().any(|x| !x.is_finite()) {
@@ -174,7 +183,8 @@ pub(crate) fn backward(reference: &Exact, model: &Model<f64>, inverse: &str, sta
     Some(largest(&exact(reference, model, inverse, &state)?, &tau, &scale))
 }
 
-/// What the reference gives. A double's quaternion has a norm of one to 16 digits only, and what the rest does is nobody's error: it is of norm one here.
+/// What the reference gives. A double's quaternion has a norm of one to 16 digits only, and what
+/// the rest does is nobody's error: it is of norm one here.
 pub(crate) fn exact(reference: &Exact, model: &Model<f64>, function: &str, state: &[&[f64]]) -> Option<Vec<Big>> {
     let row = articulated_core::algorithm::function::<f64>(function)?;
     let precise = |(argument, x): (&Argument, &&[f64])| {

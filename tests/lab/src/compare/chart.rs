@@ -1,4 +1,5 @@
-//! The medians as dots, in SVG: a panel for each function, a row for each contender, on a logarithmic axis. A bar would have a length, which says nothing there.
+//! The medians as dots, in SVG: a panel for each function, a row for each contender, on a
+//! logarithmic axis. A bar would have a length, which says nothing there.
 
 use super::batch::BatchReport;
 use super::report::{FunctionReport, Report};
@@ -98,7 +99,8 @@ fn head(out: &mut Drawing, report: &Report) {
     out.text([12.0, 42.0], Anchor::Start, 11.0, GREY, &how);
 }
 
-/// A dot with its name before the axis, a dotted line from one to the other, and its numbers beside it. `y` is the middle of the row.
+/// A dot with its name before the axis, a dotted line from one to the other, and its numbers beside
+/// it. `y` is the middle of the row.
 fn draw(out: &mut Drawing, axis: &Axis, row: &Row, y: f64) {
     let (x, line) = (axis.at(row.time), y + 4.0);
     out.text([LABELS - 8.0, line], Anchor::End, SIZE, INK, &row.label);

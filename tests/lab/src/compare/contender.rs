@@ -11,7 +11,8 @@ use super::timing::Run;
 use crate::compiled::Compiled;
 use crate::native::{Kernel, PeerKernel};
 
-/// One way to compute a function. What is timed is a run through all states, so that those that take several at once have their time a state too.
+/// One way to compute a function. What is timed is a run through all states, so that those that
+/// take several at once have their time a state too.
 pub struct Contender<'a> {
     way: Way<'a>,
     out: usize,
@@ -73,7 +74,8 @@ impl<'a> Contender<'a> {
         self.timed(states, Calls::Independent)
     }
 
-    /// The same for calls that each wait for the result of the call before; [`can_wait`](Self::can_wait).
+    /// The same for calls that each wait for the result of the call before;
+    /// [`can_wait`](Self::can_wait).
     pub fn run_dependent<'b>(&'b self, states: &'b [Vec<&'b [f64]>]) -> Run<'b> {
         self.timed(states, Calls::Dependent)
     }
@@ -104,7 +106,8 @@ impl<'a> Contender<'a> {
 /// Whether each call waits for the result of the call before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Calls {
-    /// As a batch of states would call it: the processor may begin a call before the last one has ended.
+    /// As a batch of states would call it: the processor may begin a call before the last one has
+    /// ended.
     Independent,
     /// As a controller calls it: the next state follows from the last result.
     Dependent,
@@ -120,8 +123,10 @@ fn near<'s, 'x>(states: &'s [Vec<&'x [f64]>]) -> &'s [Vec<&'x [f64]>] {
     &states[..states.len().min((NEAR / bytes.max(1)).max(1))]
 }
 
-/// Where results go. A processor takes what it reads for what it has just written if the last twelve bits of both addresses agree, and waits: a function that writes much takes up to
-/// a third longer wherever its result happens to lie so. So the place moves from batch to batch, through a page.
+/// Where results go. A processor takes what it reads for what it has just written if the last
+/// twelve bits of both addresses agree, and waits: a function that writes much takes up to a third
+/// longer wherever its result happens to lie so. So the place moves from batch to batch, through a
+/// page.
 struct Room {
     numbers: Vec<f64>,
     out: usize,

@@ -1,4 +1,5 @@
-//! What it takes to make code: generation and compilation of several functions together, ours beside the peers'.
+//! What it takes to make code: generation and compilation of several functions together, ours
+//! beside the peers'.
 
 use std::time::Instant;
 
@@ -14,7 +15,8 @@ pub(super) struct Making {
     /// All those that were compared of which these generators have code.
     pub(super) functions: Vec<&'static str>,
     pub(super) generation_seconds: f64,
-    /// `rustc` on one module to its object file, start included: what the peers' compilers are timed for.
+    /// `rustc` on one module to its object file, start included: what the peers' compilers are
+    /// timed for.
     pub(super) compilation_seconds: f64,
     pub(super) peers: Vec<PeerMaking>,
 }
@@ -26,12 +28,14 @@ pub(super) struct PeerMaking {
     pub(super) generation_seconds: Option<f64>,
     /// The sum over files of one function each; of a library that serves any robot, all of it.
     pub(super) compilation_seconds: f64,
-    /// Of both together; `None` of a library that serves any robot, whose other functions were compiled too.
+    /// Of both together; `None` of a library that serves any robot, whose other functions were
+    /// compiled too.
     pub(super) peer_over_ours: Option<f64>,
 }
 
 impl Making {
-    /// One for each set of functions of which a generator among the peers has code. Ours are made again, with nothing else going on.
+    /// One for each set of functions of which a generator among the peers has code. Ours are made
+    /// again, with nothing else going on.
     pub(super) fn all(plan: &Plan, prepared: &[Prepared], peers: &[Peer]) -> Result<Vec<Self>, Error> {
         let mut sets: Vec<(Vec<&'static str>, Vec<PeerMaking>)> = Vec::new();
         for peer in peers {

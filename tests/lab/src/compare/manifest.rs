@@ -96,7 +96,8 @@ pub(crate) fn named(paths: &[PathBuf], manifest: Option<&Path>) -> Result<Vec<Li
     Ok(libraries)
 }
 
-/// The libraries of a manifest: a list of objects with `path`, or an object with such a list as `peers`.
+/// The libraries of a manifest: a list of objects with `path`, or an object with such a list as
+/// `peers`.
 pub(crate) fn read(file: &Path) -> Result<Vec<Library>, String> {
     let wrong = |e: &dyn std::fmt::Display| format!("{}: {e}", file.display());
     let bytes = articulated_formats::read_file(file, articulated_formats::MOST_BYTES).map_err(|e| wrong(&e))?;

@@ -38,7 +38,8 @@ use prepare::{Plan, PrepareError, Prepared};
 use report::{FunctionReport, PeerLibrary, PeerReport, VariantReport};
 pub use report::{Report, Settings};
 
-/// Other code of ours may differ from generic code by this much of the sum of the magnitudes of the terms.
+/// Other code of ours may differ from generic code by this much of the sum of the magnitudes of the
+/// terms.
 const VARIANT_BOUND: f64 = 1e-9;
 
 /// The name of code compiled without options for this machine.
@@ -147,7 +148,8 @@ fn function_report(ready: &Prepared, peers: &[Peer], repetitions: usize) -> Func
     runs.extend(batches.iter().map(Many::run));
     runs.extend(known.iter().zip(&theirs).map(|((_, c), x)| c.run(x)));
     runs.extend(in_lanes.iter().map(Lanes::run));
-    // Calls that wait for each other: of generated code first, then of each peer that writes its result.
+    // Calls that wait for each other: of generated code first, then of each peer that writes its
+    // result.
     let independent = runs.len();
     runs.extend(generated.can_wait().then(|| generated.run_dependent(&arguments)));
     runs.extend(known.iter().zip(&theirs).filter(|((_, c), _)| c.can_wait()).map(|((_, c), x)| c.run_dependent(x)));

@@ -105,7 +105,8 @@ impl Peer {
         self.native.kernel(function.name, &lengths, states * function.len(model.shape()), is_kept(function.gives))
     }
 
-    /// Whether the peer's frames are the model's, in its order; they are made so if the peer lets them be chosen.
+    /// Whether the peer's frames are the model's, in its order; they are made so if the peer lets
+    /// them be chosen.
     fn has_frames(&self, model: &Model<f64>) -> bool {
         let names: Vec<&str> = model.frames().iter().map(|f| f.name.as_str()).collect();
         self.native.choose_frames(&names) || self.native.frames() == names
@@ -118,8 +119,8 @@ impl Peer {
         function.takes.iter().zip(ours).map(reorder).collect()
     }
 
-    /// The largest difference between the peer's results and ours, relative to the sum of the magnitudes of the terms; `None` where the peer
-    /// keeps its results to itself.
+    /// The largest difference between the peer's results and ours, relative to the sum of the
+    /// magnitudes of the terms; `None` where the peer keeps its results to itself.
     pub(super) fn difference(
         &self,
         function: &'static Function<f64>,
@@ -136,7 +137,8 @@ impl Peer {
         difference(function, model, ours, generic, told)
     }
 
-    /// The peer's result as ours is laid out. Of a configuration's quaternions, which are rotations with either sign, with the signs of ours.
+    /// The peer's result as ours is laid out. Of a configuration's quaternions, which are rotations
+    /// with either sign, with the signs of ours.
     pub(crate) fn in_our_order(&self, theirs: &[f64], ours: &[f64], function: &Function<f64>, model: &Model<f64>) -> Vec<f64> {
         let mut result = vec![f64::NAN; ours.len()];
         for (k, x) in theirs.iter().enumerate() {
@@ -167,8 +169,9 @@ impl Peer {
     }
 }
 
-/// The largest difference between what generic code and others give in these states, relative to the sum of the magnitudes of the terms. `other`
-/// gets the number of the state and the generic result; `None` where it does not tell.
+/// The largest difference between what generic code and others give in these states, relative to
+/// the sum of the magnitudes of the terms. `other` gets the number of the state and the generic
+/// result; `None` where it does not tell.
 pub(super) fn difference(
     function: &'static Function<f64>,
     model: &Model<f64>,
@@ -192,7 +195,8 @@ pub(super) fn difference(
     Some(worst)
 }
 
-/// Whether a peer gives a result of these dimensions only when asked: all but rows of numbers and square matrices, which it writes out each time.
+/// Whether a peer gives a result of these dimensions only when asked: all but rows of numbers and
+/// square matrices, which it writes out each time.
 fn is_kept(gives: &[Dim]) -> bool {
     let row = gives.len() < 2 && !gives.contains(&Dim::Frames) && !gives.contains(&Dim::Links);
     !row && gives != [Dim::Nv, Dim::Nv]

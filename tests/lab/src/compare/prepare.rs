@@ -1,4 +1,5 @@
-//! All about a function but its time: generated, compiled, judged. Functions are prepared several at once; the clock runs when all are done.
+//! All about a function but its time: generated, compiled, judged. Functions are prepared several
+//! at once; the clock runs when all are done.
 
 use std::time::{Duration, Instant};
 
@@ -28,11 +29,13 @@ pub(super) struct Plan {
     pub(super) seed: u64,
     /// The types in which many states at once are compared too.
     pub(super) batch: Vec<Real>,
-    /// Whether the user named the functions: otherwise those that rustc needs minutes for are left out.
+    /// Whether the user named the functions: otherwise those that rustc needs minutes for are left
+    /// out.
     pub(super) named: bool,
 }
 
-/// With more instructions than this a function is compared only if it is named: rustc takes longer than all others together.
+/// With more instructions than this a function is compared only if it is named: rustc takes longer
+/// than all others together.
 const MOST: u64 = 20_000;
 
 /// A function that is ready to run.

@@ -93,7 +93,8 @@ pub struct Report {
     pub(super) gravity: [f64; 3],
     pub(super) joints: usize,
     pub(super) degrees_of_freedom: usize,
-    /// The frames of functions of frames, and whether the user chose them or they are the robot's tips.
+    /// The frames of functions of frames, and whether the user chose them or they are the robot's
+    /// tips.
     pub(super) frames: Vec<String>,
     pub(super) frames_chosen: bool,
     pub(super) states: u32,
@@ -110,11 +111,13 @@ pub struct Report {
     /// Whether the command itself is optimised; generic code and generation are as fast as it is.
     pub(super) optimised: bool,
     pub(super) units: Units,
-    /// Bytes of machine code, operations and seconds of peers are of each build; what a generator made of this robot is with the functions.
+    /// Bytes of machine code, operations and seconds of peers are of each build; what a generator
+    /// made of this robot is with the functions.
     pub(super) peers: Vec<PeerLibrary>,
     pub(super) notes: Vec<String>,
     pub(super) functions: Vec<FunctionReport>,
-    /// What it took to make the functions of which generators among the peers have code, all together.
+    /// What it took to make the functions of which generators among the peers have code, all
+    /// together.
     pub(super) making: Vec<Making>,
 }
 
@@ -180,7 +183,8 @@ pub(super) struct PeerReport {
     pub(super) engine: String,
     /// ns per call.
     pub(super) time: Summary,
-    /// ns per call that waits for the result of the call before; none where the peer keeps its result.
+    /// ns per call that waits for the result of the call before; none where the peer keeps its
+    /// result.
     pub(super) dependent: Option<Summary>,
     pub(super) generic_over_peer: Summary,
     pub(super) generated_over_peer: Summary,
@@ -193,7 +197,8 @@ pub(super) struct PeerReport {
 }
 
 impl PeerReport {
-    /// `times`: ns per call of the peer, of generated code and of generic code; `dependent`: ns per call of the peer that waits.
+    /// `times`: ns per call of the peer, of generated code and of generic code; `dependent`: ns per
+    /// call of the peer that waits.
     pub(super) fn new(
         peer: &Peer,
         function: &str,
@@ -216,7 +221,8 @@ impl PeerReport {
 }
 
 impl FunctionReport {
-    /// `times`: ns per call of generated code and of generic code; `dependent`: of generated code that waits.
+    /// `times`: ns per call of generated code and of generic code; `dependent`: of generated code
+    /// that waits.
     pub(super) fn new(
         ready: &Prepared,
         times: [&[f64]; 2],

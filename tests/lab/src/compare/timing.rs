@@ -1,4 +1,5 @@
-//! Times that can be compared: everybody is timed in every repetition, so that what drifts drifts for all, and from its second round on, so that all find their caches warm.
+//! Times that can be compared: everybody is timed in every repetition, so that what drifts drifts
+//! for all, and from its second round on, so that all find their caches warm.
 
 use std::time::Duration;
 

@@ -55,7 +55,8 @@ impl Compiled {
         Self::build_for(Target::Own, rustc, generated)
     }
 
-    /// As [`Compiled::build`], for certain processors. Where numbers are `f32`, arrays of kernels hold two of them in the place of a double.
+    /// As [`Compiled::build`], for certain processors. Where numbers are `f32`, arrays of kernels
+    /// hold two of them in the place of a double.
     pub fn build_for(target: Target, rustc: &Rustc, generated: &Generated) -> Result<Self, CompileError> {
         let names: Vec<&str> = generated.ledger.functions.iter().map(|f| f.function.as_str()).collect();
         let library = Library::build(target, rustc, &generated.source, &wrapper::source(&names, &generated.source))?;
@@ -67,14 +68,16 @@ impl Compiled {
         Ok(Self { functions, shape, single, time: library.time, _library: library })
     }
 
-    /// How long `rustc` takes to the object file, its start included, as long as a C compiler's `-c`.
+    /// How long `rustc` takes to the object file, its start included, as long as a C compiler's
+    /// `-c`.
     pub fn object_time(rustc: &Rustc, generated: &Generated) -> Result<Duration, CompileError> {
         let names: Vec<&str> = generated.ledger.functions.iter().map(|f| f.function.as_str()).collect();
         let folder = sources(&generated.source, &wrapper::source(&names, &generated.source))?;
         rustc.compile(&folder.path().join("lib.rs"), &folder.path().join("lib.o"), Makes::Object, Target::Own)
     }
 
-    /// Calls a function by its name; arguments in the registry's order. Where numbers are `f32` these are rounded to them.
+    /// Calls a function by its name; arguments in the registry's order. Where numbers are `f32`
+    /// these are rounded to them.
     pub fn call(&self, name: &str, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), FunctionError> {
         let row = function::<f64>(name).ok_or(FunctionError::NotGenerated { function: "of this name" })?;
         let kernel = self.kernel(name).ok_or(FunctionError::NotGenerated { function: row.name })?;
@@ -94,8 +97,8 @@ impl Compiled {
         Ok(())
     }
 
-    /// Bytes of machine code of a function with everything that belongs to it alone, where the library says so. Sines and cosines of the
-    /// mathematics library are not in it.
+    /// Bytes of machine code of a function with everything that belongs to it alone, where the
+    /// library says so. Sines and cosines of the mathematics library are not in it.
     pub fn code_bytes(&self, name: &str) -> Option<u64> {
         self.functions.iter().find(|f| f.name == name)?.bytes
     }

@@ -17,7 +17,8 @@ impl Sizes {
         Self(text.filter_map(|s| Some((s.name().ok()?.to_owned(), s.size()))).collect())
     }
 
-    /// The bytes of the symbol and of everything that the compiler left outside it of the generated function of this name.
+    /// The bytes of the symbol and of everything that the compiler left outside it of the generated
+    /// function of this name.
     pub(super) fn function(&self, name: &str, symbol: &str) -> Option<u64> {
         let own = self.0.iter().find(|(n, _)| n == symbol)?.1;
         // A mangled path holds each name with its length in front.

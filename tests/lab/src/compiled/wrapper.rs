@@ -1,4 +1,5 @@
-//! The C interface around a generated module: one function each, on plain pointers, in a symbol of its own.
+//! The C interface around a generated module: one function each, on plain pointers, in a symbol of
+//! its own.
 
 use articulated_core::algorithm::function;
 use articulated_core::lanes::Real;

@@ -48,7 +48,8 @@ impl Numbers {
     }
 }
 
-/// A function on slices of so many states or blocks, with the numbers of each that it was promised to have. Keeps its library open.
+/// A function on slices of so many states or blocks, with the numbers of each that it was promised
+/// to have. Keeps its library open.
 #[derive(Clone, Debug)]
 pub(crate) struct BatchKernel {
     entry: OfStates,
@@ -59,9 +60,11 @@ pub(crate) struct BatchKernel {
 }
 
 impl Native {
-    /// The function `name`, which takes so many numbers of each state, or block of states, and writes `out` of each.
+    /// The function `name`, which takes so many numbers of each state, or block of states, and
+    /// writes `out` of each.
     pub(crate) fn batch_kernel(&self, name: &str, real: Real, arguments: &[usize], out: usize) -> Option<BatchKernel> {
-        // SAFETY: compiled functions of many states take their arguments' arrays, the one of the result, and how many states there are.
+        // SAFETY: compiled functions of many states take their arguments' arrays, the one of the
+        // result, and how many states there are.
         let entry = unsafe { OfStates::open(self, name, arguments.len())? };
         Some(BatchKernel { entry, real, arguments: arguments.to_vec(), out, _library: self.clone() })
     }
@@ -77,7 +80,8 @@ impl BatchKernel {
         assert!(x.len() == self.arguments.len() && is(out, self.out));
         assert!(x.iter().zip(&self.arguments).all(|(x, each)| is(x, *each)));
         let arrays: [P; 4] = std::array::from_fn(|k| x.get(k).map_or(std::ptr::null(), |x| x.lines.as_ptr().cast()));
-        // SAFETY: the arrays have the type and the lengths that the library reads and writes, and it is open as long as the kernel lives.
+        // SAFETY: the arrays have the type and the lengths that the library reads and writes, and
+        // it is open as long as the kernel lives.
         unsafe { self.entry.run(rounds, black_box(&[arrays]), out.lines.as_mut_ptr().cast(), count) }
     }
 }

@@ -5,7 +5,8 @@ use std::mem::transmute;
 use super::peer::H;
 use super::{Native, O, P};
 
-/// A type of functions that take what stands before the semicolon, then the arrays that they read, then the rest.
+/// A type of functions that take what stands before the semicolon, then the arrays that they read,
+/// then the rest.
 macro_rules! entry {
     ($(#[$doc:meta])* $name:ident($($first:ident: $First:ty)?; $($rest:ident: $Rest:ty),*)) => {
         $(#[$doc])*
@@ -21,9 +22,11 @@ macro_rules! entry {
             /// The function `symbol` of a library, if there is one and it reads so many arrays.
             ///
             /// # Safety
-            /// By its library's interface it takes that many arrays, and beside them what this type says.
+            /// By its library's interface it takes that many arrays, and beside them what this type
+            /// says.
             pub(super) unsafe fn open(library: &Native, symbol: &str, arrays: usize) -> Option<Self> {
-                // SAFETY: a function's address is a pointer; the rest is what this function asks for.
+                // SAFETY: a function's address is a pointer; the rest is what this function asks
+                // for.
                 unsafe { Self::at(library.symbol::<P>(symbol)?, arrays) }
             }
 
@@ -47,10 +50,12 @@ macro_rules! entry {
                 }
             }
 
-            /// Calls the function on all states, so many rounds: one loop for each number of arrays, so that nothing is chosen inside.
+            /// Calls the function on all states, so many rounds: one loop for each number of
+            /// arrays, so that nothing is chosen inside.
             ///
             /// # Safety
-            /// The library is open, each state has as many arrays as the function reads, and all arrays are as long as it reads or writes.
+            /// The library is open, each state has as many arrays as the function reads, and all
+            /// arrays are as long as it reads or writes.
             #[inline(always)]
             pub(super) unsafe fn run(self, rounds: usize, states: &[[P; 4]], $($first: $First,)? $($rest: $Rest),*) {
                 // SAFETY: what this function asks for is what they ask for.
@@ -71,10 +76,12 @@ macro_rules! entry {
 macro_rules! waiting {
     ($name:ident($($first:ident: $First:ty)?; $($rest:ident: $Rest:ty),*)) => {
         impl $name {
-            /// The same, each call after the one before: its first array is a copy that waits for the result before (see [`Waiting`]).
+            /// The same, each call after the one before: its first array is a copy that waits for
+            /// the result before (see [`Waiting`]).
             ///
             /// # Safety
-            /// As [`run`](Self::run); the function writes at least one number to the waiting call's result.
+            /// As [`run`](Self::run); the function writes at least one number to the waiting call's
+            /// result.
             #[inline(always)]
             pub(super) unsafe fn run_waiting(self, rounds: usize, states: &[[P; 4]], waiting: &mut Waiting, $($first: $First,)? $($rest: $Rest),*) {
                 // SAFETY: what this function asks for is what they ask for.
@@ -91,8 +98,9 @@ macro_rules! waiting {
     };
 }
 
-/// Makes a call wait for the call before it: q + 0·(first + last number of the result), in an array of its own. A processor
-/// cannot begin the arithmetic of such a call early, as it does with calls that do not depend on each other.
+/// Makes a call wait for the call before it: q + 0·(first + last number of the result), in an array
+/// of its own. A processor cannot begin the arithmetic of such a call early, as it does with calls
+/// that do not depend on each other.
 pub(super) struct Waiting {
     q: Vec<f64>,
     out: *const f64,
@@ -100,16 +108,19 @@ pub(super) struct Waiting {
 }
 
 impl Waiting {
-    /// For arrays of `length` numbers and a result of `out` numbers, at least one, that is written where `result` points.
+    /// For arrays of `length` numbers and a result of `out` numbers, at least one, that is written
+    /// where `result` points.
     pub(super) fn new(length: usize, result: *const f64, out: usize) -> Self {
         Self { q: vec![0.0; length], out: result, last: out - 1 }
     }
 
     /// # Safety
-    /// `q` points to as many numbers as were promised, and the result is as long as promised, and alive.
+    /// `q` points to as many numbers as were promised, and the result is as long as promised, and
+    /// alive.
     #[inline(always)]
     unsafe fn after(&mut self, q: P) -> P {
-        // SAFETY: both are as long as promised; volatile reads, so that no compiler knows the numbers.
+        // SAFETY: both are as long as promised; volatile reads, so that no compiler knows the
+        // numbers.
         unsafe {
             let wait = 0.0 * (self.out.read_volatile() + self.out.add(self.last).read_volatile());
             std::ptr::copy_nonoverlapping(q.cast::<f64>(), self.q.as_mut_ptr(), self.q.len());

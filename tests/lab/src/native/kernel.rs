@@ -3,7 +3,8 @@
 use super::entry::{OfState, Waiting};
 use super::{Lengths, Native, all_pointers, pointers};
 
-/// A function on arrays of doubles, with the lengths it was promised to have. Keeps its library open.
+/// A function on arrays of doubles, with the lengths it was promised to have. Keeps its library
+/// open.
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
     entry: OfState,
@@ -12,7 +13,8 @@ pub(crate) struct Kernel {
 }
 
 impl Native {
-    /// The function `name`, which takes arrays of these lengths and writes `out` numbers: the interface of [`crate::compiled`].
+    /// The function `name`, which takes arrays of these lengths and writes `out` numbers: the
+    /// interface of [`crate::compiled`].
     pub(crate) fn kernel(&self, name: &str, arguments: &[usize], out: usize) -> Option<Kernel> {
         // SAFETY: compiled functions take their arguments' arrays, and then the one of the result.
         let entry = unsafe { OfState::open(self, name, arguments.len())? };
@@ -28,7 +30,8 @@ impl Kernel {
     #[inline]
     pub(crate) fn call(&self, x: &[&[f64]], out: &mut [f64]) {
         assert!(self.fits(x, out));
-        // SAFETY: the arrays have the lengths that the library reads and writes, and it is open as long as the kernel lives.
+        // SAFETY: the arrays have the lengths that the library reads and writes, and it is open as
+        // long as the kernel lives.
         unsafe { self.entry.run(1, &[pointers(x)], out.as_mut_ptr().cast()) }
     }
 
@@ -38,7 +41,8 @@ impl Kernel {
         self.lengths.fit(x, out)
     }
 
-    /// Calls the function on all states, so many rounds: lengths are checked once, and then only called.
+    /// Calls the function on all states, so many rounds: lengths are checked once, and then only
+    /// called.
     ///
     /// # Panics
     /// If a length is not the one promised.

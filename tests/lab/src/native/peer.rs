@@ -65,7 +65,8 @@ impl Drop for Opened {
 
 /// A C string's text.
 fn text(pointer: *const c_char) -> Option<String> {
-    // SAFETY: the interface promises a string that lives as long as its library or robot, and it is copied here and now.
+    // SAFETY: the interface promises a string that lives as long as its library or robot, and it is
+    // copied here and now.
     (!pointer.is_null()).then(|| unsafe { CStr::from_ptr(pointer) }.to_string_lossy().into_owned())
 }
 
@@ -122,7 +123,8 @@ impl NativePeer {
         (0..self.number("frame_count").unwrap_or(0)).filter_map(|k| self.0.name("frame_name", k)).collect()
     }
 
-    /// Has the peer give the functions of frames for these links only, in this order; `false` if it cannot.
+    /// Has the peer give the functions of frames for these links only, in this order; `false` if it
+    /// cannot.
     pub(crate) fn choose_frames(&self, names: &[&str]) -> bool {
         type Choose = extern "C" fn(H, c_int, *const *const c_char) -> c_int;
         // SAFETY: the type of the interface.
@@ -132,7 +134,8 @@ impl NativePeer {
         c_int::try_from(pointers.len()).is_ok_and(|n| choose(self.0.handle, n, pointers.as_ptr()) != 0)
     }
 
-    /// The methods by which the peer makes steps: their names, orders, and evaluations of forward dynamics a step. None if it makes no steps or does not tell.
+    /// The methods by which the peer makes steps: their names, orders, and evaluations of forward
+    /// dynamics a step. None if it makes no steps or does not tell.
     pub(crate) fn methods(&self) -> Vec<Stepping> {
         // SAFETY: the type of the interface.
         let name: Option<extern "C" fn(c_int) -> *const c_char> = unsafe { self.0.function("method_name") };
@@ -147,7 +150,8 @@ impl NativePeer {
         (0..).map_while(one).collect()
     }
 
-    /// Has the peer make so many steps from the state (q, v), which it replaces by the last one; `None` if it cannot or if it went astray.
+    /// Has the peer make so many steps from the state (q, v), which it replaces by the last one;
+    /// `None` if it cannot or if it went astray.
     pub(crate) fn simulate(&self, method: &Stepping, q: &mut [f64], v: &mut [f64], step: f64, steps: usize) -> Option<()> {
         type Simulate =
             unsafe extern "C" fn(H, c_int, *const c_double, *const c_double, c_double, c_int, *mut c_double, *mut c_double) -> c_int;

@@ -25,7 +25,8 @@ enum Entry {
 
 impl Entry {
     /// # Safety
-    /// The robot is open, each state has as many arrays as the function takes, each as long as it reads, and `out` is as long as it writes.
+    /// The robot is open, each state has as many arrays as the function takes, each as long as it
+    /// reads, and `out` is as long as it writes.
     #[inline(always)]
     unsafe fn run(self, rounds: usize, states: &[[P; 4]], robot: H, out: O) {
         // SAFETY: what this function asks for is what they ask for.
@@ -39,7 +40,8 @@ impl Entry {
 }
 
 impl NativePeer {
-    /// The peer's function, which takes arrays of these lengths and gives `out` numbers: into an array, or, if `kept`, when asked for them.
+    /// The peer's function, which takes arrays of these lengths and gives `out` numbers: into an
+    /// array, or, if `kept`, when asked for them.
     pub(crate) fn kernel(&self, function: &str, arguments: &[usize], out: usize, kept: bool) -> Option<PeerKernel> {
         let (robot, symbol) = (&self.0, format!("peer_{function}"));
         let told = CString::new(function).ok()?;
@@ -76,15 +78,18 @@ impl PeerKernel {
     pub(crate) fn call(&self, x: &[&[f64]], out: &mut [f64]) -> bool {
         assert!(self.lengths.fit(x, out));
         let (robot, out) = (self.robot.handle, out.as_mut_ptr().cast());
-        // SAFETY: the arrays have the lengths that the peer reads and writes, and the robot is open as long as the kernel lives; it is used by one thread only.
+        // SAFETY: the arrays have the lengths that the peer reads and writes, and the robot is open
+        // as long as the kernel lives; it is used by one thread only.
         unsafe { self.entry.run(1, &[pointers(x)], robot, out) };
         let Some(name) = &self.kept else { return true };
         type Read = unsafe extern "C" fn(H, *const c_char, O) -> c_int;
-        // SAFETY: the type of the interface; it writes the result of the function, whose length was checked.
+        // SAFETY: the type of the interface; it writes the result of the function, whose length was
+        // checked.
         unsafe { self.robot.function::<Read>("read").is_some_and(|read| read(robot, name.as_ptr(), out) != 0) }
     }
 
-    /// Calls the function on all states, so many rounds: lengths are checked once, and then only called.
+    /// Calls the function on all states, so many rounds: lengths are checked once, and then only
+    /// called.
     ///
     /// # Panics
     /// If a length is not the one promised.
@@ -97,7 +102,8 @@ impl PeerKernel {
     /// The same, each call after the result of the one before.
     ///
     /// # Panics
-    /// If a length is not the one promised, or if the peer keeps its result ([`writes`](Self::writes)).
+    /// If a length is not the one promised, or if the peer keeps its result
+    /// ([`writes`](Self::writes)).
     pub(crate) fn repeat_waiting(&self, rounds: usize, states: &[Vec<&[f64]>], out: &mut [f64]) {
         assert!(states.iter().all(|x| self.lengths.fit(x, out)));
         let Entry::Writing(entry) = self.entry else { panic!("a result that is kept cannot be waited for") };

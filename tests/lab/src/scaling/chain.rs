@@ -8,8 +8,10 @@ const AXES: [&str; 4] = ["0 0 1", "0 1 0", "1 0 0", "0 -1 0"];
 /// Every joint of this number stands askew, as at a wrist.
 const ASKEW: usize = 5;
 
-/// The URDF of a serial arm of `joints` revolute joints: axes that change from joint to joint, every fifth joint askew by angles that are no multiples of π/2, and links
-/// with a centre of mass off every axis and a full inertia. The same number always gives the same arm; a shorter one is the beginning of a longer one.
+/// The URDF of a serial arm of `joints` revolute joints: axes that change from joint to joint,
+/// every fifth joint askew by angles that are no multiples of π/2, and links with a centre of mass
+/// off every axis and a full inertia. The same number always gives the same arm; a shorter one is
+/// the beginning of a longer one.
 pub fn chain(joints: usize) -> String {
     let mut out = format!("<robot name=\"chain_{joints}\">\n");
     out += "  <link name=\"link_0\"/>\n";
@@ -66,8 +68,9 @@ mod tests {
         generate(&request).unwrap()
     }
 
-    /// Operations asked for while tracing, instructions emitted, and bytes of source, for each joint added between 80 and 120, and between 120 and 200:
-    /// long enough that all of it is written in pieces.
+    /// Operations asked for while tracing, instructions emitted, and bytes of source, for each
+    /// joint added between 80 and 120, and between 120 and 200: long enough that all of it is
+    /// written in pieces.
     fn per_joint(function: &str) -> [[f64; 2]; 3] {
         let work = [80, 120, 200].map(|n| {
             let generated = generated(function, n);
@@ -89,7 +92,8 @@ mod tests {
     #[test]
     fn a_matrix_grows_with_the_square_of_the_chain_and_no_faster() {
         let work = [20, 40, 80].map(|n| generated("mass_matrix", n).ledger.functions[0].emitted().instructions() as f64);
-        // Of a n² + b n + c with positive a, the ratio of second differences is exactly 4 for these lengths when b and c are out of it.
+        // Of a n² + b n + c with positive a, the ratio of second differences is exactly 4 for these
+        // lengths when b and c are out of it.
         let second = [work[1] - 2.0 * work[0], work[2] - 2.0 * work[1]];
         assert!((second[1] / second[0] - 4.0).abs() < 0.2, "{work:?}");
     }

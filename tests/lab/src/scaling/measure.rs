@@ -15,7 +15,8 @@ use crate::error::Error;
 use crate::states::{self, State};
 use crate::table::counted;
 
-/// Random states that evaluations go through: enough that no branch is learnt by heart, few enough that those of a long chain stay in the cache.
+/// Random states that evaluations go through: enough that no branch is learnt by heart, few enough
+/// that those of a long chain stay in the cache.
 pub(super) const STATES: usize = 8;
 
 /// Generated and generic results may differ by this much of the largest.

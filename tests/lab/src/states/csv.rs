@@ -1,5 +1,5 @@
-//! A row for each state under the columns `q.<joint>`, `v.<joint>`, …, `wrenches.<link>[0]`, …; `q.<joint>[0]`, `q.<joint>[1]`, … where a joint has
-//! several numbers.
+//! A row for each state under the columns `q.<joint>`, `v.<joint>`, …, `wrenches.<link>[0]`, …;
+//! `q.<joint>[0]`, `q.<joint>[1]`, … where a joint has several numbers.
 
 use articulated_core::algorithm::Argument;
 use csv::{ReaderBuilder, StringRecord, Trim};

@@ -1,4 +1,5 @@
-//! `{"states": [{"q": [...], "v": {"joint": 0.1, ...}, "wrenches": {"link": [...]}}, ...]}`, or the list alone.
+//! `{"states": [{"q": [...], "v": {"joint": 0.1, ...}, "wrenches": {"link": [...]}}, ...]}`, or the
+//! list alone.
 
 use articulated_core::algorithm::Argument;
 use serde_json::Value;

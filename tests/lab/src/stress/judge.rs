@@ -1,14 +1,16 @@
 //! Functions on a hard robot, judged in many digits.
 //!
-//! The reference is the generic library on the constants that the judged program has, in 320 bits (it is held to the textbook's form elsewhere, which shares no
-//! formula with it). What is solved for is judged by the torques that it needs:
+//! The reference is the generic library on the constants that the judged program has, in 320 bits
+//! (it is held to the textbook's form elsewhere, which shares no formula with it). What is solved
+//! for is judged by the torques that it needs:
 //!
 //! ```text
 //! η = max_i |ID_exact(q, v, a) − τ|_i / (|M| |a| + |h| + |τ|)_i
 //! ```
 //!
-//! with τ what the motors deliver. Where joints follow others, or effects act, terms of M and h may cancel: then the sums of their magnitudes stand for |M| and |h|;
-//! so they do in every robot of a user's ([`Case::by_terms`]).
+//! with τ what the motors deliver. Where joints follow others, or effects act, terms of M and h may
+//! cancel: then the sums of their magnitudes stand for |M| and |h|; so they do in every robot of a
+//! user's ([`Case::by_terms`]).
 
 use articulated_codegen::model_pass::View;
 use articulated_core::algorithm::checked::{Factor, Singular, Solver};
@@ -26,12 +28,15 @@ use crate::table::counted;
 /// of it take minutes.
 pub(super) const DERIVATIVES: usize = 12;
 
-/// η allowed, and errors allowed of what is not solved for, in units of u times the magnitude of the terms.
+/// η allowed, and errors allowed of what is not solved for, in units of u times the magnitude of
+/// the terms.
 pub const BACKWARD: f64 = 64.0;
 
-/// Forward errors of solutions with the mass matrix allowed, ‖x − x_exact‖₂/‖x_exact‖₂: in units of uκ₂(M), and, M scaled to a diagonal of ones and x with it, of
-/// u‖M⁻¹‖₂‖T‖₂, T the sums of magnitudes of M's terms. That does not depend on units, and is much the smaller one wherever masses or lengths differ. It is κ₂ where no element of M
-/// is the rest of larger terms; where one is, M itself is off by that much before anything is solved.
+/// Forward errors of solutions with the mass matrix allowed, ‖x − x_exact‖₂/‖x_exact‖₂: in units of
+/// uκ₂(M), and, M scaled to a diagonal of ones and x with it, of u‖M⁻¹‖₂‖T‖₂, T the sums of
+/// magnitudes of M's terms. That does not depend on units, and is much the smaller one wherever
+/// masses or lengths differ. It is κ₂ where no element of M is the rest of larger terms; where one
+/// is, M itself is off by that much before anything is solved.
 pub const FORWARD: f64 = 4.0;
 
 /// A motion and torques, in double precision.
@@ -81,7 +86,8 @@ impl<'a, F: Machine> Judge<'a, F> {
         if limit.is_finite() { self.case.row(what, measured, limit, unit) } else { self.case.shown(what, measured, unit) }
     }
 
-    /// Inverse dynamics and mass matrix, and derivatives of small robots: forward errors over the sums of magnitudes of terms.
+    /// Inverse dynamics and mass matrix, and derivatives of small robots: forward errors over the
+    /// sums of magnitudes of terms.
     pub fn forward(&self, states: &[State], derivatives: bool) -> Vec<Row> {
         let mut functions = vec![FunctionId::inverse_dynamics, FunctionId::mass_matrix];
         functions.extend(derivatives.then_some(FunctionId::inverse_dynamics_derivatives));
@@ -96,7 +102,8 @@ impl<'a, F: Machine> Judge<'a, F> {
         rows
     }
 
-    /// Inverse dynamics, and forward dynamics by ABA: functions that take a time in proportion to the number of joints.
+    /// Inverse dynamics, and forward dynamics by ABA: functions that take a time in proportion to
+    /// the number of joints.
     pub fn recursions(&self, states: &[State]) -> Vec<Row> {
         let worst = |f: &dyn Fn(&State) -> f64| states.iter().map(f).fold(0.0, worse);
         let by_aba = |s: &State| self.checked(s).map_or(f64::NAN, |(a, _)| self.solution(&a, s)[0]);
@@ -123,7 +130,8 @@ impl<'a, F: Machine> Judge<'a, F> {
         exact_error(function, &self.wide, &given, &found)
     }
 
-    /// Forward dynamics: backward errors by ABA, by LᵀDL and refined, forward errors by LᵀDL, and how it ends.
+    /// Forward dynamics: backward errors by ABA, by LᵀDL and refined, forward errors by LᵀDL, and
+    /// how it ends.
     pub fn solved(&self, states: &[State], ends: Ends, limit: f64) -> Vec<Row> {
         let mut rows = Vec::new();
         let outcomes: Vec<_> = states.iter().map(|s| self.checked(s)).collect();
@@ -178,7 +186,8 @@ impl<'a, F: Machine> Judge<'a, F> {
         Some(self.row("forward_dynamics by Solver, refined, η", most, BACKWARD, "u"))
     }
 
-    /// By LᵀDL, where M is regular in this precision: η of forward dynamics; errors of M⁻¹τ over κ₂ in units of u, of M as it is and of M scaled.
+    /// By LᵀDL, where M is regular in this precision: η of forward dynamics; errors of M⁻¹τ over κ₂
+    /// in units of u, of M as it is and of M scaled.
     fn by_matrix(&self, state: &State) -> Option<[f64; 3]> {
         let [q, v, tau] = [&state.q, &state.v, &state.tau].map(|x| cast::<F>(x));
         let m = call(FunctionId::mass_matrix, &self.model, std::slice::from_ref(&q));
@@ -266,7 +275,8 @@ fn either<F: Machine>(outcomes: &[Outcome<F>]) -> String {
     }
 }
 
-/// The largest error of what was found in units of u times the magnitude of its terms; the model's constants and the arguments as the judged program has them.
+/// The largest error of what was found in units of u times the magnitude of its terms; the model's
+/// constants and the arguments as the judged program has them.
 pub fn exact_error<F: Machine>(function: FunctionId, model: &Model<f64>, given: &[Vec<f64>], found: &[F]) -> f64 {
     let slices: Vec<&[f64]> = given.iter().map(Vec::as_slice).collect();
     let Some(scale) = scale(function, model, &slices) else { return f64::NAN };

@@ -24,7 +24,8 @@ pub struct Body {
 }
 
 impl Body {
-    /// A rod along x from the link's origin, with inertia about its own axis only as far as `thickness`, m, says: m r²/2, and m l²/12 across.
+    /// A rod along x from the link's origin, with inertia about its own axis only as far as
+    /// `thickness`, m, says: m r²/2, and m l²/12 across.
     pub fn rod(mass: f64, length: f64, thickness: f64) -> Self {
         let across = mass * length * length / 12.0;
         let own = mass * thickness * thickness / 2.0;
@@ -77,7 +78,8 @@ pub fn built(description: &Description, base: Base) -> Model<f64> {
     Model::new(description, base).expect("the corpus consists of trees of known joints")
 }
 
-/// n rods in the plane x–z, joints about y; each `ratio` as long and ratio³ as heavy as the one before.
+/// n rods in the plane x–z, joints about y; each `ratio` as long and ratio³ as heavy as the one
+/// before.
 pub fn chain(n: usize, ratio: f64) -> Description {
     let mut out = Builder::new(&format!("chain_{n}"));
     let (mut length, mut before) = (1.0, 0.0);
@@ -167,7 +169,8 @@ pub fn cardan() -> Description {
         .done()
 }
 
-/// Two links with their centres of mass 1 m off their joints, and radii of gyration of k m about them.
+/// Two links with their centres of mass 1 m off their joints, and radii of gyration of k m about
+/// them.
 pub fn far_off(k: f64) -> Description {
     let small = |c: [f64; 3]| Some(Body::of_radii(1.0, c, [k, 2.0 * k, 1.5 * k]));
     let outer = small([0.6, 0.0, 0.8]);

@@ -48,7 +48,8 @@ impl Case {
         Self { chapter, name: name.into(), why, by_terms: false }
     }
 
-    /// Of a robot that may have numbers of h that cancel to the last digit, as that of a round tool about its own axis does.
+    /// Of a robot that may have numbers of h that cancel to the last digit, as that of a round tool
+    /// about its own axis does.
     pub fn by_terms(self) -> Self {
         Self { by_terms: true, ..self }
     }

@@ -1,11 +1,14 @@
 //! Inverse dynamics by virtual power: no recursion, no wrench, no Coriolis term.
 //!
-//! Every link's placement is written as a function of time along the motion (q, v, a) and differentiated twice ([`Jet`]); a joint's torque is then the power of the
-//! forces r̈ − g of all mass points for a unit of that joint's rate (d'Alembert; Lanczos, *The Variational Principles of Mechanics*, 1970, ch. IV):
+//! Every link's placement is written as a function of time along the motion (q, v, a) and
+//! differentiated twice ([`Jet`]); a joint's torque is then the power of the forces r̈ − g of all
+//! mass points for a unit of that joint's rate (d'Alembert; Lanczos, *The Variational Principles of
+//! Mechanics*, 1970, ch. IV):
 //!
 //! τ_k = Σ_i ∫ (r̈ − g)·∂ṙ/∂v_k dm = Σ_i m (c̈ − g)·∂ċ/∂v_k + tr(R̈ Σ_c (∂Ṙ/∂v_k)ᵀ),   Σ_c = ½ tr(I)·1 − I
 //!
-//! It starts from the numbers of the file and shares nothing with the crates that it judges but the scalar.
+//! It starts from the numbers of the file and shares nothing with the crates that it judges but the
+//! scalar.
 
 mod pose;
 mod scale;
@@ -23,7 +26,8 @@ pub struct Motions<'a> {
     description: &'a Description,
     base: Base,
     gravity: [f64; 3],
-    /// Joints with a coordinate or more, in the order of the vectors: file index, first index in q, first in v. `None` is the base.
+    /// Joints with a coordinate or more, in the order of the vectors: file index, first index in q,
+    /// first in v. `None` is the base.
     coordinates: Vec<(Option<usize>, usize, usize)>,
     /// Lengths of q and v.
     pub size: (usize, usize),
@@ -74,7 +78,8 @@ impl<'a> Motions<'a> {
         self.coordinates.iter().filter_map(|(j, ..)| j.map(|j| self.description.joints[j].name.as_str())).collect()
     }
 
-    /// [R | p] of every link in the world frame, in the order of the file, moving as q, v and a say.
+    /// [R | p] of every link in the world frame, in the order of the file, moving as q, v and a
+    /// say.
     fn poses<S: Scalar>(&self, q: &[S], v: &[S], a: &[S]) -> Vec<Option<Pose<S>>> {
         let mut poses = vec![None; self.description.links.len()];
         let Some(root) = self.description.root() else { return poses };
@@ -99,7 +104,8 @@ impl<'a> Motions<'a> {
         (seat.1, seat.2)
     }
 
-    /// A joint's own coordinates, rates and their derivatives. A locked joint rests; a follower's coordinate is its leader's times and plus.
+    /// A joint's own coordinates, rates and their derivatives. A locked joint rests; a follower's
+    /// coordinate is its leader's times and plus.
     fn numbers<S: Scalar>(&self, joint: usize, q: &[S], v: &[S], a: &[S]) -> [Vec<S>; 3] {
         let it = &self.description.joints[joint];
         let (nq, nv) = it.kind.sizes();

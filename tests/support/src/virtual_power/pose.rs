@@ -11,7 +11,8 @@ use crate::jet::Jet;
 /// [R | p] in motion.
 pub(super) type Pose<S> = (Matrix3<Jet<S>>, Vector3<Jet<S>>);
 
-/// The child's placement in the joint's frame, for the joint's own coordinates, rates and their derivatives.
+/// The child's placement in the joint's frame, for the joint's own coordinates, rates and their
+/// derivatives.
 pub(super) fn joint_pose<S: Scalar>(joint: &Joint, [q, v, a]: &[Vec<S>; 3]) -> Pose<S> {
     let x = |k: usize| Jet(q[k], v[k], a[k]);
     let still = (Matrix3::identity(), Vector3::zeros());
@@ -42,7 +43,8 @@ fn plane<S: Scalar>(normal: [f64; 3]) -> [Vector3<Jet<S>>; 2] {
     let x = match along {
         Some(k) if normal[k] > 0.0 || k == 0 => e[(k + 1) % 3],
         Some(_) => e[0],
-        // The coordinate axis that leans most away from the normal, the first of them, gives x = e × z.
+        // The coordinate axis that leans most away from the normal, the first of them, gives x = e
+        // × z.
         None => {
             let farthest = (0..3).fold(0, |best, k| if normal[k].abs() < normal[best].abs() { k } else { best });
             let x = e[farthest].cross(&z);
@@ -66,7 +68,8 @@ pub(super) fn place<S: Scalar>(origin: &Origin) -> Pose<S> {
     (about(2) * about(1) * about(0), Vector3::from(origin.xyz).map(Jet::from_f64))
 }
 
-/// (sin, cos); the double nearest to a right angle is a right angle: that is a convention and no matter of dynamics.
+/// (sin, cos); the double nearest to a right angle is a right angle: that is a convention and no
+/// matter of dynamics.
 fn written<S: Scalar>(angle: f64) -> (S, S) {
     let turns = (angle / FRAC_PI_2).round();
     if turns * FRAC_PI_2 != angle || turns.abs() > 4.0 {

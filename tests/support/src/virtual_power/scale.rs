@@ -8,7 +8,8 @@ use nalgebra::Vector3;
 use super::pose::Pose;
 use super::{Motions, second_moments};
 
-/// What a link's quantities are sums of, along the way from the base: the yardsticks of rounding errors.
+/// What a link's quantities are sums of, along the way from the base: the yardsticks of rounding
+/// errors.
 #[derive(Clone, Copy, Debug, Default)]
 struct Way {
     /// Length of the way through the origins of the links, m.
@@ -78,8 +79,9 @@ impl Motions<'_> {
         order
     }
 
-    /// For each torque, the sum of what it would be if nothing cancelled: forces m (|r̈| + |g|) times the way from the joint to the mass, and
-    /// ‖Σ_c‖ ‖R̈‖; for a slide, the forces alone. |r̈| and ‖R̈‖ are the largest on the way. No choice of axes changes it much.
+    /// For each torque, the sum of what it would be if nothing cancelled: forces m (|r̈| + |g|)
+    /// times the way from the joint to the mass, and ‖Σ_c‖ ‖R̈‖; for a slide, the forces alone.
+    /// |r̈| and ‖R̈‖ are the largest on the way. No choice of axes changes it much.
     pub fn torque_scale(&self, q: &[f64], v: &[f64], a: &[f64]) -> Vec<f64> {
         let poses = self.poses(q, v, a);
         let (ways, g) = (self.ways(&poses), Vector3::from(self.gravity).norm());
@@ -97,7 +99,8 @@ impl Motions<'_> {
         scale
     }
 
-    /// Adds the moment and the force, each with its share of every rate from `at` on, for everything that `top` carries.
+    /// Adds the moment and the force, each with its share of every rate from `at` on, for
+    /// everything that `top` carries.
     fn add_scale(&self, top: usize, ways: &[Way], g: f64, shares: &[Share], (at, from): (usize, f64), scale: &mut [f64]) {
         let mut waiting = vec![top];
         while let Some(link) = waiting.pop() {
@@ -112,7 +115,8 @@ impl Motions<'_> {
         }
     }
 
-    /// The joint at the end of a chain of followers, and how far it moves this one. `None` where either is locked, or does not move.
+    /// The joint at the end of a chain of followers, and how far it moves this one. `None` where
+    /// either is locked, or does not move.
     fn leader(&self, joint: usize) -> Option<(usize, f64)> {
         let it = &self.description.joints[joint];
         match &it.mimic {
@@ -122,7 +126,8 @@ impl Motions<'_> {
         }
     }
 
-    /// For each number of a placement: 1 in a rotation, in a position the length of the way from the base, both times the number of joints on it.
+    /// For each number of a placement: 1 in a rotation, in a position the length of the way from
+    /// the base, both times the number of joints on it.
     pub fn placement_scale(&self, q: &[f64]) -> Vec<f64> {
         let rest = vec![0.0; self.size.1];
         let ways = self.ways(&self.poses(q, &rest, &rest));

@@ -69,7 +69,8 @@ pub(super) fn results(function: &Function) -> Vec<Array> {
     parts.iter().map(|p| Array::new(name(p.function.name), p.function.gives, function.shape)).collect()
 }
 
-/// A text for each array, with its name in the place of `NAME`, its number of numbers in that of `LEN`, and in that of `AT` where it is for block k.
+/// A text for each array, with its name in the place of `NAME`, its number of numbers in that of
+/// `LEN`, and in that of `AT` where it is for block k.
 pub(super) fn each(arrays: &[Array], text: &str) -> String {
     let at = |a: &Array| if a.is_parameters { format!("if {}.len() == 1 {{ 0 }} else {{ k }}", a.name) } else { "k".to_owned() };
     arrays.iter().map(|a| text.replace("AT", &at(a)).replace("NAME", &a.name).replace("LEN", &a.len())).collect()

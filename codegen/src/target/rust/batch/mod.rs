@@ -1,4 +1,5 @@
-//! Functions of many states at once: one state per lane, in the widest instruction set that the processor has.
+//! Functions of many states at once: one state per lane, in the widest instruction set that the
+//! processor has.
 //!
 //! ```text
 //! pub mod batch_f64
@@ -7,7 +8,8 @@
 //!     mod avx512, avx2, …        the same body in each instruction set
 //! ```
 //!
-//! A long body has a second text for AVX2, with spill slots for sixteen registers ([`super::spills`]).
+//! A long body has a second text for AVX2, with spill slots for sixteen registers
+//! ([`super::spills`]).
 
 mod arrays;
 mod public;
@@ -200,7 +202,8 @@ impl<'a> Batch<'a> {
         *out += "        }\n    }\n    };\n}\n\n";
     }
 
-    /// What is computed for one block, in pieces where it is long; where it pays, for sixteen registers too.
+    /// What is computed for one block, in pieces where it is long; where it pays, for sixteen
+    /// registers too.
     fn blocks(&self, out: &mut String, declared: &str, names: &str) {
         let (name, States { body, few_registers }) = (self.name(), self.states);
         let mut write = |name: &str, body: &Body| {

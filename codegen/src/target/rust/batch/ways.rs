@@ -12,7 +12,8 @@ pub(super) struct Way {
     pub(super) bytes: usize,
     /// Where it is compiled.
     pub(super) cfg: &'static str,
-    /// What is asked of the processor; for one that all processors have that it is compiled for, nothing.
+    /// What is asked of the processor; for one that all processors have that it is compiled for,
+    /// nothing.
     pub(super) asked: &'static str,
 }
 

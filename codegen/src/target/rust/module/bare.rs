@@ -1,4 +1,5 @@
-//! Code for crates without `std`: what `core` lacks of floating-point numbers, by the crate `libm`, under the names that `std` gives it.
+//! Code for crates without `std`: what `core` lacks of floating-point numbers, by the crate `libm`,
+//! under the names that `std` gives it.
 
 const FLOAT: &str = "
 /// What `core` lacks of floating-point numbers, by the crate `libm`.

@@ -45,7 +45,8 @@ pub(crate) fn header(out: &mut String, module: &Module<'_>, rust: &RustOptions) 
     out.push('\n');
 }
 
-/// A line each under a heading, if there are any; of many the first, and how many more there are, before `rest`.
+/// A line each under a heading, if there are any; of many the first, and how many more there are,
+/// before `rest`.
 fn first_of(line: &mut impl FnMut(&str), heading: &str, all: &[String], rest: &str) {
     if !all.is_empty() {
         line(heading);

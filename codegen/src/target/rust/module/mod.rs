@@ -68,7 +68,8 @@ pub(crate) fn module(module: &Module, rust: &RustOptions) -> String {
     out
 }
 
-/// Stands before constants with numbers of the file, which are what they are: also 3.14, and 6.283185307179586.
+/// Stands before constants with numbers of the file, which are what they are: also 3.14, and
+/// 6.283185307179586.
 const NUMBERS: &str = "#[allow(clippy::all, clippy::pedantic)]";
 
 fn constants(out: &mut String, model: &Model<f64>) {
@@ -236,7 +237,8 @@ fn names_by_number(out: &mut String, path: &str, model: &Model<f64>) {
     let _ = writeln!(out, "        {option}::Some({path}::JointRow {{ name: JOINT_NAMES[index], kind, q, v, limit }})\n    }}");
 }
 
-/// How one function is called through slices. Of a robot without degrees of freedom there may be no numbers to give, and no rows of none.
+/// How one function is called through slices. Of a robot without degrees of freedom there may be no
+/// numbers to give, and no rows of none.
 fn arm(
     out: &mut String,
     (path, real): (&str, &str),

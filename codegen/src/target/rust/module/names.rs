@@ -11,9 +11,11 @@ use unicode_security::mixed_script::{AugmentedScriptSet, is_potential_mixed_scri
 
 use crate::{Request, is_keyword};
 
-/// The constant's name for a name of the URDF: letters in upper case, everything that cannot be in an identifier as `_`, `_` in front of a
-/// digit. `shoulder pan-joint` is `SHOULDER_PAN_JOINT`, `1st-link` is `_1ST_LINK`. Letters beyond ASCII stay where the compiler takes
-/// them without a warning: it warns of a crate, and only the root of that crate could allow it. Other names are written by code points.
+/// The constant's name for a name of the URDF: letters in upper case, everything that cannot be in
+/// an identifier as `_`, `_` in front of a digit. `shoulder pan-joint` is `SHOULDER_PAN_JOINT`,
+/// `1st-link` is `_1ST_LINK`. Letters beyond ASCII stay where the compiler takes them without a
+/// warning: it warns of a crate, and only the root of that crate could allow it. Other names are
+/// written by code points.
 pub fn identifier(name: &str) -> String {
     let upper: String = name.trim_matches('_').chars().flat_map(char::to_uppercase).collect();
     let mut ident: String = upper.chars().map(|c| if c == '_' || c.is_alphanumeric() { c } else { '_' }).collect();
@@ -24,8 +26,9 @@ pub fn identifier(name: &str) -> String {
     if ident.chars().all(|c| c == '_') || !is_identifier(&ident) || !passes_lints(&ident) { ascii(name) } else { ident }
 }
 
-/// Whether the compiler has no warning for an identifier that is alone in a crate: neither `uncommon_codepoints` nor
-/// `mixed_script_confusables`, and none of `confusable_idents` beside any in ASCII.
+/// Whether the compiler has no warning for an identifier that is alone in a crate: neither
+/// `uncommon_codepoints` nor `mixed_script_confusables`, and none of `confusable_idents` beside any
+/// in ASCII.
 fn passes_lints(ident: &str) -> bool {
     let beyond = || ident.chars().filter(|c| !c.is_ascii());
     let looks_ascii = skeleton(ident).all(|c| c.is_ascii());
@@ -109,7 +112,8 @@ impl Names {
     }
 }
 
-/// The Rust names of all, those that look like others written by code points; those that another has already are among the clashes.
+/// The Rust names of all, those that look like others written by code points; those that another
+/// has already are among the clashes.
 fn idents<'a>(
     kind: &'static str,
     names: impl Iterator<Item = &'a str>,

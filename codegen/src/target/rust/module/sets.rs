@@ -1,4 +1,5 @@
-//! Instruction sets in generated code: which modules of lanes it needs, and how it asks for the processor.
+//! Instruction sets in generated code: which modules of lanes it needs, and how it asks for the
+//! processor.
 
 use std::fmt::Write;
 
@@ -65,7 +66,8 @@ pub(crate) fn support(out: &mut String, functions: &[Function], (forbid_unsafe, 
     }
 }
 
-/// When modules are compiled: that without instructions of its own, as an attribute, and that of eight lanes, as a condition.
+/// When modules are compiled: that without instructions of its own, as an attribute, and that of
+/// eight lanes, as a condition.
 struct When {
     portable: &'static str,
     eight: &'static str,
@@ -97,7 +99,8 @@ fn lanes(out: &mut String, widths: &[usize], when: &When, (forbid_unsafe, no_std
     }
 }
 
-/// The instruction sets of limbs and sines, and what stands before the module of each; [`When`] has it of those that have none here.
+/// The instruction sets of limbs and sines, and what stands before the module of each; [`When`] has
+/// it of those that have none here.
 const SETS: [(Set, &str, &str); 5] = [
     (Set::Portable, "portable", ""),
     (Set::Sse2, "sse2", NOT_COMPILED_FOR_AVX2),
@@ -118,7 +121,8 @@ const FUSED: bool = false;
 
 ";
 
-/// A trait, so that compilers know late what `F::fma` is: where they know early, they inline each call before they optimise, and take longer.
+/// A trait, so that compilers know late what `F::fma` is: where they know early, they inline each
+/// call before they optimise, and take longer.
 const FMA: &str = "\
 /// How a·b + c is computed.
 #[allow(dead_code)]

@@ -11,10 +11,11 @@ use crate::scalar::two_to;
 /// How often [`Factor::refine`] corrects at most, as LAPACK's `xPORFS` does.
 const STEPS: usize = 5;
 
-/// M = Lᵀ D L of a symmetric matrix, with what is left of each pivot. Room for matrices of one size: made once, nothing is allocated after.
+/// M = Lᵀ D L of a symmetric matrix, with what is left of each pivot. Room for matrices of one
+/// size: made once, nothing is allocated after.
 ///
-/// Of the matrix alone: that a diagonal element is itself what rounding left of its terms can only be seen where it was made
-/// ([`super::checked_forward_dynamics`] sees it).
+/// Of the matrix alone: that a diagonal element is itself what rounding left of its terms can only
+/// be seen where it was made ([`super::checked_forward_dynamics`] sees it).
 #[derive(Clone, Debug)]
 pub struct Factor<S = f64> {
     pub(super) n: usize,
@@ -36,9 +37,11 @@ impl<S: Scalar<Mask = bool>> Factor<S> {
         Self { n, l: vec![S::zero(); n * n], pivots: zeros(), scale: zeros(), norm: S::zero(), room: [zeros(), zeros()] }
     }
 
-    /// Factors; from the last row up, so that zeros between branches stay, as Featherstone 2008, §6.5.
+    /// Factors; from the last row up, so that zeros between branches stay, as Featherstone 2008,
+    /// §6.5.
     ///
-    /// matrix: `[n · n]`, symmetric. An error is (the row whose pivot is lost, what of it is left), the last one of them.
+    /// matrix: `[n · n]`, symmetric. An error is (the row whose pivot is lost, what of it is left),
+    /// the last one of them.
     ///
     /// # Panics
     /// If the matrix has another size.
@@ -73,11 +76,15 @@ impl<S: Scalar<Mask = bool>> Factor<S> {
         row[..k].iter_mut().for_each(|x| *x = *x / pivot);
     }
 
-    /// Refines x = M⁻¹ b in place; `[n]` each. matrix: that which was factored. What is returned is the backward error max_i |b − M x|_i / (|M||x| + |b|)_i that is left.
+    /// Refines x = M⁻¹ b in place; `[n]` each. matrix: that which was factored. What is returned is
+    /// the backward error max_i |b − M x|_i / (|M||x| + |b|)_i that is left.
     ///
-    /// r = b − M x, x += M⁻¹ r, as long as that halves the error, and five times at most. Elimination leaves an r of roundings of √(M_ii M_jj)|x_j|, which is more than of
-    /// (|M||x|)_i where two coordinates hardly move each other and masses are far apart; refined it is of roundings of |M||x| + |b|, row by row, unless M is next to singular (Skeel,
-    /// *Iterative refinement implies numerical stability for Gaussian elimination*, Math. Comp. 35, 1980; Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, 12.2).
+    /// r = b − M x, x += M⁻¹ r, as long as that halves the error, and five times at most.
+    /// Elimination leaves an r of roundings of √(M_ii M_jj)|x_j|, which is more than of (|M||x|)_i
+    /// where two coordinates hardly move each other and masses are far apart; refined it is of
+    /// roundings of |M||x| + |b|, row by row, unless M is next to singular (Skeel, *Iterative
+    /// refinement implies numerical stability for Gaussian elimination*, Math. Comp. 35, 1980;
+    /// Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, 12.2).
     ///
     /// # Panics
     /// If a slice is shorter.

@@ -1,9 +1,12 @@
 //! Solutions with the mass matrix that say whether they can be trusted.
 //!
-//! A mass matrix is singular where some motion of the joints moves nothing that has mass: a joint that carries none, a straight row of thin rods turned about
-//! its own axis, two joints that do the same. In floating point it is singular before that, where a pivot D of the elimination is what rounding left of
-//! its terms. So the measure is D/(Σ|terms|), and a pivot of which less than [`least_pivot`] is left is an error that names its joint. The condition number of M
-//! says how far a solution moves for a small change of the robot; a solution may be exact to the last bit for a robot a few roundings away whatever it is.
+//! A mass matrix is singular where some motion of the joints moves nothing that has mass: a joint
+//! that carries none, a straight row of thin rods turned about its own axis, two joints that do the
+//! same. In floating point it is singular before that, where a pivot D of the elimination is what
+//! rounding left of its terms. So the measure is D/(Σ|terms|), and a pivot of which less than
+//! [`least_pivot`] is left is an error that names its joint. The condition number of M says how far
+//! a solution moves for a small change of the robot; a solution may be exact to the last bit for a
+//! robot a few roundings away whatever it is.
 //!
 //! | | cost beside the unchecked form |
 //! |---|---|
@@ -32,10 +35,12 @@ use crate::scalar::two_to;
 // Why: named in the documentation.
 use crate::model::Model;
 
-/// Why there are no accelerations to be trusted: the joint whose pivot gave way, and what is left of it.
+/// Why there are no accelerations to be trusted: the joint whose pivot gave way, and what is left
+/// of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Singular<S = f64> {
-    /// Name of the joint; empty where the robot cannot tell ([`crate::dynamics::Dynamics::joint_of`]).
+    /// Name of the joint; empty where the robot cannot tell
+    /// ([`crate::dynamics::Dynamics::joint_of`]).
     pub joint: String,
     /// Index in v of the degree of freedom.
     pub freedom: usize,
@@ -52,7 +57,8 @@ pub struct Singular<S = f64> {
 pub enum Measure {
     /// D/(Σ|terms|) of a pivot.
     Pivot,
-    /// Whether the result is finite; torques or rates near the largest number there is may overflow though the mass matrix is well.
+    /// Whether the result is finite; torques or rates near the largest number there is may overflow
+    /// though the mass matrix is well.
     Finite,
 }
 
@@ -79,7 +85,8 @@ impl<S: Scalar> fmt::Display for Singular<S> {
 
 impl<S: Scalar> core::error::Error for Singular<S> {}
 
-/// 2¹⁰u, u = 2^−[`Scalar::BITS`]: a pivot of which less is left has fewer than ten bits that are right.
+/// 2¹⁰u, u = 2^−[`Scalar::BITS`]: a pivot of which less is left has fewer than ten bits that are
+/// right.
 pub fn least_pivot<S: Scalar>() -> S {
     S::from_f64(const { two_to(10 - S::BITS as i32) })
 }

@@ -17,8 +17,9 @@ use crate::spatial::{ArticulatedInertia, SpatialInertia, Twist, Wrench};
 
 /// a = M(q)⁻¹·(τ − h(q, v)), or the joint at which M is singular to working precision.
 ///
-/// q: `[nq]`; v: `[nv]`; tau: `[nv]` N·m|N; out: `[nv]` rad/s²|m/s², of no meaning after an error. By ABA, or M = Lᵀ D L where joints follow others. What is
-/// returned is the smallest D/(Σ|terms|) of all pivots, in (0, 1]; below [`least_pivot`] it is an error. Cost: see [`super`].
+/// q: `[nq]`; v: `[nv]`; tau: `[nv]` N·m|N; out: `[nv]` rad/s²|m/s², of no meaning after an error.
+/// By ABA, or M = Lᵀ D L where joints follow others. What is returned is the smallest D/(Σ|terms|)
+/// of all pivots, in (0, 1]; below [`least_pivot`] it is an error. Cost: see [`super`].
 ///
 /// # Panics
 /// If a slice is shorter than stated. [`super::Solver`] returns an error.
@@ -102,10 +103,12 @@ impl<S: Scalar<Mask = bool>> PivotMonitor<S> {
     }
 }
 
-/// D/(Σ|terms|) of each pivot of the articulated-body sweep that the workspace was last used for, from the tips inward: `see(index in v, what is left)`.
+/// D/(Σ|terms|) of each pivot of the articulated-body sweep that the workspace was last used for,
+/// from the tips inward: `see(index in v, what is left)`.
 ///
-/// D_i = Sᵀ Iᴬ S is summed of the body's own inertia and of what its children hand on, each of these a difference; what is left of the sum of
-/// the magnitudes is the measure. For models in which no joint follows another.
+/// D_i = Sᵀ Iᴬ S is summed of the body's own inertia and of what its children hand on, each of
+/// these a difference; what is left of the sum of the magnitudes is the measure. For models in
+/// which no joint follows another.
 pub fn articulated_body_pivots<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, mut see: impl FnMut(usize, S)) {
     for (size, body) in ws.sizes.iter_mut().zip(&model.bodies) {
         *size = Size::of(&body.inertia);
@@ -124,7 +127,9 @@ pub fn articulated_body_pivots<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S
     }
 }
 
-/// The same of the elimination Lᵀ D L of M, for what [`forward_dynamics`](super::super::forward_dynamics()) left in the workspace: D⁻¹ on the diagonal of the matrix, composite inertias.
+/// The same of the elimination Lᵀ D L of M, for what
+/// [`forward_dynamics`](super::super::forward_dynamics()) left in the workspace: D⁻¹ on the
+/// diagonal of the matrix, composite inertias.
 pub fn factored_pivots<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, mut see: impl FnMut(usize, S)) {
     // A coordinate that several joints follow sums √(S_iᵀ I S_i) of each at most.
     ws.row.fill(S::zero());
@@ -160,7 +165,8 @@ impl<S: Scalar> Size<S> {
         Self { angular: S::zero(), coupling: S::zero(), linear: S::zero() }
     }
 
-    /// The second moments are turned with their body: a rounding of the largest of them is a rounding of all.
+    /// The second moments are turned with their body: a rounding of the largest of them is a
+    /// rounding of all.
     fn of(inertia: &SpatialInertia<S>) -> Self {
         let trace = diagonal(&inertia.second);
         Self { angular: trace, coupling: sum(&inertia.first), linear: inertia.mass.abs() }

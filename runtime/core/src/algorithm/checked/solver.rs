@@ -11,9 +11,11 @@ use crate::Scalar;
 use crate::algorithm::{FunctionError, Shape, check_length};
 use crate::dynamics::Dynamics;
 
-/// Room for checked forward dynamics of a robot of one size, by M = Lᵀ D L: made once, so that no call allocates.
+/// Room for checked forward dynamics of a robot of one size, by M = Lᵀ D L: made once, so that no
+/// call allocates.
 ///
-/// Works on everything that is [`Dynamics`] and has `bias_forces` and `mass_matrix`, and `motor_torques` where it has motors: that is how a generated robot is checked.
+/// Works on everything that is [`Dynamics`] and has `bias_forces` and `mass_matrix`, and
+/// `motor_torques` where it has motors: that is how a generated robot is checked.
 #[derive(Clone, Debug)]
 pub struct Solver<S = f64> {
     matrix: Vec<S>,
@@ -59,10 +61,12 @@ impl<S: Scalar<Mask = bool>> Solver<S> {
         }
     }
 
-    /// a = M(q)⁻¹·(τ − h(q, v)), τ after motors, refined ([`Factor::refine`]); what is returned is the smallest D/(Σ|terms|) of all pivots.
+    /// a = M(q)⁻¹·(τ − h(q, v)), τ after motors, refined ([`Factor::refine`]); what is returned is
+    /// the smallest D/(Σ|terms|) of all pivots.
     ///
-    /// q: `[nq]`; v, tau, out: `[nv]`. Calls the robot's `bias_forces`, `mass_matrix` and, where it has motors, `motor_torques`, then eliminates: n³/3 operations at most.
-    /// The torques that the result needs are τ up to roundings of their terms, however far masses lie apart.
+    /// q: `[nq]`; v, tau, out: `[nv]`. Calls the robot's `bias_forces`, `mass_matrix` and, where it
+    /// has motors, `motor_torques`, then eliminates: n³/3 operations at most. The torques that the
+    /// result needs are τ up to roundings of their terms, however far masses lie apart.
     ///
     /// # Errors
     /// [`Unsolved`]; `out` is of no meaning then.
@@ -76,7 +80,8 @@ impl<S: Scalar<Mask = bool>> Solver<S> {
         self.solve(robot, ws, [q, v, tau], out, |ws, out| robot.bias_forces(ws, q, v, out))
     }
 
-    /// As [`Solver::forward_dynamics`], with external wrenches on the frames: by the robot's `inverse_dynamics_with_wrenches` in place of its `bias_forces`.
+    /// As [`Solver::forward_dynamics`], with external wrenches on the frames: by the robot's
+    /// `inverse_dynamics_with_wrenches` in place of its `bias_forces`.
     ///
     /// wrenches: `[frames][6]` N·m and N, in the reference that the robot takes them in.
     ///
@@ -132,7 +137,8 @@ impl<S: Scalar<Mask = bool>> Solver<S> {
         monitor.verdict(out, |k| robot.joint_of(k).unwrap_or_default().to_string()).map_err(Unsolved::Singular)
     }
 
-    /// max_i |τ − h − M a|_i / (|M||a| + |τ − h|)_i of the last call, with M and h as they were computed: a few roundings, or M is next to singular.
+    /// max_i |τ − h − M a|_i / (|M||a| + |τ − h|)_i of the last call, with M and h as they were
+    /// computed: a few roundings, or M is next to singular.
     pub fn backward_error(&self) -> S {
         self.backward_error
     }

@@ -11,7 +11,8 @@ use crate::joint::{JointLaw, Mount};
 use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, Matrix3, Twist, Vector3, Wrench, rotate_back};
 
-/// Twists of all bodies in their own axes, into the common states; poses, origins and angular velocities are known.
+/// Twists of all bodies in their own axes, into the common states; poses, origins and angular
+/// velocities are known.
 fn body_twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, v: &[S]) {
     ws.common[0].twist = Twist::zero();
     for i in model.outward() {
@@ -31,7 +32,8 @@ fn body_twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, v: &[S]) {
     }
 }
 
-/// F −= w of every effect, and F += G V̇ + V ×* G V of added mass, for the body's motion as it is (RNEA).
+/// F −= w of every effect, and F += G V̇ + V ×* G V of added mass, for the body's motion as it is
+/// (RNEA).
 pub(in crate::algorithm) fn apply_body_wrenches<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], load: &LoadCase<S>) {
     if !any_on_bodies(model) {
         return;
@@ -68,7 +70,8 @@ pub(in crate::algorithm) fn articulate_body_effects<S: Scalar>(
     });
 }
 
-/// What makes a spatial acceleration that fluid at rest feels of a classical one with gravity subtracted: g − ω × v, in the body's axes.
+/// What makes a spatial acceleration that fluid at rest feels of a classical one with gravity
+/// subtracted: g − ω × v, in the body's axes.
 fn bias_acceleration<S: Scalar>(ws: &Workspace<S>, i: usize, gravity: Vector3<S>) -> Vector3<S> {
     let twist = &ws.common[i].twist;
     rotate_back(&ws.placements[i].rotation, gravity) - twist.angular.cross(&twist.linear)
@@ -131,7 +134,8 @@ pub(in crate::algorithm) fn add_inertia<S: Scalar>(model: &Model<S>, ws: &mut Wo
     }
 }
 
-/// The columns of body `i`'s Jacobian that are not zero, in its axes about its origin, each with its place in v.
+/// The columns of body `i`'s Jacobian that are not zero, in its axes about its origin, each with
+/// its place in v.
 fn columns<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, mut visit: impl FnMut(usize, Twist<S>)) {
     let turn = &ws.common[i].rotation;
     on_the_way(model, ws, i, Vector3::zeros(), |column, d| visit(column.at, column.axis.at(d).turned_back(turn)));

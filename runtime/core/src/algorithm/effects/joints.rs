@@ -10,7 +10,8 @@ use crate::effect::{JointEffect, Law};
 use crate::joint::Coordinates;
 use crate::model::{Body, Model};
 
-/// One effect on one degree of freedom: what it is, at which place in v, its own coordinate and rate, and its own rate over that of the coordinate that it moves with.
+/// One effect on one degree of freedom: what it is, at which place in v, its own coordinate and
+/// rate, and its own rate over that of the coordinate that it moves with.
 pub(super) struct Acting<'a, S> {
     pub(super) effect: &'a JointEffect<S>,
     pub(super) at: usize,
@@ -103,7 +104,8 @@ pub(in crate::algorithm) fn motor_torque<S: Scalar>(model: &Model<S>, v: &[S], t
     }
 }
 
-/// The torques that joints feel: what motors give, and the forces of effects on joints. The vector is the workspace's, to be given back.
+/// The torques that joints feel: what motors give, and the forces of effects on joints. The vector
+/// is the workspace's, to be given back.
 pub(in crate::algorithm) fn input_torque<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,

@@ -1,4 +1,5 @@
-//! Effects in the equations of motion: forces on joints and bodies, inertia besides that of links, motors; and their derivatives.
+//! Effects in the equations of motion: forces on joints and bodies, inertia besides that of links,
+//! motors; and their derivatives.
 
 mod bodies;
 mod joints;
@@ -85,12 +86,14 @@ fn places<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S]) 
     twists(model, ws, Axes::Base, v);
 }
 
-/// The generalised forces of all effects but gravity, inertia and motors: M a + (Coriolis, centrifugal and gravity forces) = τ + these.
+/// The generalised forces of all effects but gravity, inertia and motors: M a + (Coriolis,
+/// centrifugal and gravity forces) = τ + these.
 ///
 /// q: `[nq]`; v: `[nv]`; out: `[nv]` N·m|N.
 ///
 /// # Panics
-/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`]
+/// check and return an error.
 pub fn effect_forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
     out.fill(S::zero());
     apply_joint_forces(model, q, v, out);
@@ -116,7 +119,8 @@ pub fn effect_forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]
 
 /// The power of the effects that are not conservative, W: negative where they take energy.
 ///
-/// q: `[nq]`; v: `[nv]`; out: one number. d(T + U)/dt = vᵀτ + this, with τ what motors give and U the [`super::potential_energy`].
+/// q: `[nq]`; v: `[nv]`; out: one number. d(T + U)/dt = vᵀτ + this, with τ what motors give and U
+/// the [`super::potential_energy`].
 ///
 /// # Panics
 /// As [`effect_forces`].

@@ -1,7 +1,9 @@
-//! First derivatives of what effects do, by dual numbers: each law is evaluated once more with the derivative of its arguments.
+//! First derivatives of what effects do, by dual numbers: each law is evaluated once more with the
+//! derivative of its arguments.
 //!
-//! For a small motion of a joint k on the way from body i to the base, in axes of the body (Singh, Russell & Wensing, *IEEE Robot. Autom. Lett.* 7, 2022):
-//! ∂V/∂q_k = ψ̇_k, ∂V̇/∂q_k = ψ̈_k − V × ψ̇_k, ∂V/∂v_k = S_k, ∂V̇/∂v_k = ψ̇_k + Ṡ_k − V × S_k.
+//! For a small motion of a joint k on the way from body i to the base, in axes of the body (Singh,
+//! Russell & Wensing, *IEEE Robot. Autom. Lett.* 7, 2022): ∂V/∂q_k = ψ̇_k, ∂V̇/∂q_k = ψ̈_k − V ×
+//! ψ̇_k, ∂V/∂v_k = S_k, ∂V̇/∂v_k = ψ̇_k + Ṡ_k − V × S_k.
 
 use super::{duals, joints, on_body, station_in_base};
 use crate::Scalar;
@@ -38,7 +40,8 @@ pub(in crate::algorithm) fn on_joints<S: Scalar>(
     }
 }
 
-/// The same of effects on bodies, after all sweeps in world axes; adds their wrenches to the bodies' forces.
+/// The same of effects on bodies, after all sweeps in world axes; adds their wrenches to the
+/// bodies' forces.
 pub(in crate::algorithm) fn on_bodies<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,

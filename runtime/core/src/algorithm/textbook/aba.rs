@@ -1,4 +1,5 @@
-//! The articulated-body algorithm on one page (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, Table 7.1).
+//! The articulated-body algorithm on one page (Featherstone, *Rigid Body Dynamics Algorithms*,
+//! 2008, Table 7.1).
 //!
 //! Outward: V_i as in [`rnea`](super::rnea), and
 //!

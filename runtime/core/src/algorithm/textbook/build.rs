@@ -17,7 +17,8 @@ use crate::spatial::{Placement, Reference};
 impl<S: Scalar> Textbook<S> {
     /// From a description; gravity in the world frame, m/s². Fails where [`Model::new`] fails.
     pub fn new(description: &Description, base: Base, gravity: [f64; 3]) -> Result<Self, ModelError> {
-        // The order and the places of coordinates are the interface's, so they are taken from the model; no number is.
+        // The order and the places of coordinates are the interface's, so they are taken from the
+        // model; no number is.
         let model = Model::new(description, base)?;
         let mut body_of_link = vec![0; description.links.len()];
         let mut bodies: Vec<Link<S>> = Vec::with_capacity(description.links.len());

@@ -9,7 +9,8 @@ use crate::algorithm::{Function, FunctionError, FunctionId, Shape, check_count, 
 use crate::spatial::Reference;
 
 impl<S: Scalar> Textbook<S> {
-    /// Any function of the table by its name; `arguments` in its order. `None` for a name that is not in it.
+    /// Any function of the table by its name; `arguments` in its order. `None` for a name that is
+    /// not in it.
     pub fn call(&self, name: &str, arguments: &[&[S]]) -> Option<Result<Vec<S>, FunctionError>> {
         let function = function::<f64>(name)?;
         Some(self.check(function, arguments).map(|()| self.answer(function.id, arguments)))

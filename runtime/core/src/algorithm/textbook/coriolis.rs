@@ -11,9 +11,11 @@ use crate::Scalar;
 use crate::spatial::Reference;
 
 impl<S: Scalar> Textbook<S> {
-    /// C(q, v) = Σ Jᵀ (B J + G J̇), `[nv][nv]`: C v + g = h, and Ṁ − 2C is skew; Echeandia & Wensing, *J. Comput. Nonlinear Dyn.* 16, 2021.
+    /// C(q, v) = Σ Jᵀ (B J + G J̇), `[nv][nv]`: C v + g = h, and Ṁ − 2C is skew; Echeandia &
+    /// Wensing, *J. Comput. Nonlinear Dyn.* 16, 2021.
     ///
-    /// J̇ is the rate of the moving columns there. In link coordinates, in which J is given here, that is dJ/dt + ad(V) J.
+    /// J̇ is the rate of the moving columns there. In link coordinates, in which J is given here,
+    /// that is dJ/dt + ad(V) J.
     pub fn coriolis_matrix(&self, q: &[S], v: &[S]) -> Vec<S> {
         let n = self.nv;
         let mut c = vec![S::zero(); n * n];

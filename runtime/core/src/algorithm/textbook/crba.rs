@@ -1,4 +1,5 @@
-//! The composite rigid body algorithm on one page (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, Table 6.2).
+//! The composite rigid body algorithm on one page (Featherstone, *Rigid Body Dynamics Algorithms*,
+//! 2008, Table 6.2).
 //!
 //! I_i is the inertia of body i and of all that it carries. Inward:
 //!

@@ -37,7 +37,8 @@ impl<S: Scalar> Textbook<S> {
         rows(&self.by_configuration(q, &self.rest(), &self.rest(), wrenches))
     }
 
-    /// ∂a/∂q = −M⁻¹ ∂τ/∂q, ∂a/∂v = −M⁻¹ ∂τ/∂v, ∂a/∂τ = M⁻¹: `[3][nv][nv]`. For M a + h = τ, differentiated with τ constant.
+    /// ∂a/∂q = −M⁻¹ ∂τ/∂q, ∂a/∂v = −M⁻¹ ∂τ/∂v, ∂a/∂τ = M⁻¹: `[3][nv][nv]`. For M a + h = τ,
+    /// differentiated with τ constant.
     pub fn forward_dynamics_derivatives(&self, q: &[S], v: &[S], tau: &[S], wrenches: &[S]) -> Vec<S> {
         let factor = self.factored_mass_matrix(q);
         let a = self.forward_dynamics_with_wrenches(q, v, tau, wrenches);

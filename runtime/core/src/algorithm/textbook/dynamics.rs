@@ -18,7 +18,8 @@ impl<S: Scalar> Textbook<S> {
         rnea(&self.at(q, v), v, a, &[])
     }
 
-    /// τ = M(q)·a + h(q, v) − Σ Jᵀw, `[nv]`; wrenches `[frames][6]`: what the world gives to a body, its joint need not.
+    /// τ = M(q)·a + h(q, v) − Σ Jᵀw, `[nv]`; wrenches `[frames][6]`: what the world gives to a
+    /// body, its joint need not.
     pub fn inverse_dynamics_with_wrenches(&self, q: &[S], v: &[S], a: &[S], wrenches: &[S]) -> Vec<S> {
         let (poses, mut on_bodies) = (self.poses(q), vec![Vector6::zeros(); self.bodies.len()]);
         for (&body, w) in self.frames.iter().zip(wrenches.chunks_exact(6)) {
@@ -36,7 +37,8 @@ impl<S: Scalar> Textbook<S> {
         self.moving_links().flat_map(|i| wrenches[i].iter().copied().collect::<Vec<_>>()).collect()
     }
 
-    /// M(q), column by column: the torques of a unit acceleration of one joint, at rest and without gravity. `[nv][nv]`.
+    /// M(q), column by column: the torques of a unit acceleration of one joint, at rest and without
+    /// gravity. `[nv][nv]`.
     pub fn mass_matrix(&self, q: &[S]) -> Vec<S> {
         let n = self.nv;
         let weightless = Self { gravity: Vector3::zeros(), ..self.clone() };
@@ -90,7 +92,8 @@ impl<S: Scalar> Textbook<S> {
     }
 }
 
-/// A wrench in the axes of its frame, about the frame's origin. Power is the same in every reference.
+/// A wrench in the axes of its frame, about the frame's origin. Power is the same in every
+/// reference.
 fn body_wrench<S: Scalar>(reference: Reference, x: &Placement<S>, w: &Vector6<S>) -> Vector6<S> {
     let (moment, force) = halves(w);
     let back = x.rotation.transpose();

@@ -1,4 +1,5 @@
-//! Joints: a placement T(q), the screws S(q) that its rates move the child along, and Ṡ v. In axes of the child.
+//! Joints: a placement T(q), the screws S(q) that its rates move the child along, and Ṡ v. In axes
+//! of the child.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -95,7 +96,8 @@ impl<S: Scalar> Motion<S> {
         }
     }
 
-    /// The same coordinates with a quaternion brought to a norm of one: for those that are written in a file.
+    /// The same coordinates with a quaternion brought to a norm of one: for those that are written
+    /// in a file.
     pub(super) fn normalised(&self, x: &[S]) -> Vec<S> {
         let at = match self {
             Self::Ball => 0,

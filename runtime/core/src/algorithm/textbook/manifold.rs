@@ -1,4 +1,5 @@
-//! Steps on the manifold of configurations, by the power series of the exponential and the angle of a quaternion.
+//! Steps on the manifold of configurations, by the power series of the exponential and the angle of
+//! a quaternion.
 
 use alloc::vec::Vec;
 
@@ -57,7 +58,9 @@ impl<S: Scalar> Textbook<S> {
         self.joints.iter().flat_map(one).collect()
     }
 
-    /// From numbers uniform in [0, 1), `[nq]`: within limits, a turn or 2 m from the other where one is open, ±π and ±1 m where both are or there are none; of a rotation's four the first three count.
+    /// From numbers uniform in [0, 1), `[nq]`: within limits, a turn or 2 m from the other where
+    /// one is open, ±π and ±1 m where both are or there are none; of a rotation's four the first
+    /// three count.
     pub fn random_configuration(&self, uniform: &[S]) -> Vec<S> {
         let pi = S::zero().atan2(-S::one());
         let between = |u: S, lower: S, upper: S| lower + (upper - lower) * u;
@@ -108,7 +111,8 @@ fn follow<S: Scalar>((a, p): Pose<S>, (b, r): Pose<S>) -> Pose<S> {
     (product(a, b), p + from_quaternion(a) * r)
 }
 
-/// exp of a twist: the quaternion Σ (ω/2)ᵏ/k! and the position Σ [ω]×ᵏ v/(k+1)!, of a small part of the step, doubled up.
+/// exp of a twist: the quaternion Σ (ω/2)ᵏ/k! and the position Σ [ω]×ᵏ v/(k+1)!, of a small part of
+/// the step, doubled up.
 fn exponential<S: Scalar>(omega: Vector3<S>, v: Vector3<S>) -> Pose<S> {
     let part = S::from_f64(1.0 / f64::from(1_u32 << HALVINGS));
     let (omega, v) = (omega * part, v * part);
@@ -161,7 +165,8 @@ fn turn_between<S: Scalar>(x: [S; 4], y: [S; 4]) -> Vector3<S> {
     u * factor
 }
 
-/// A uniform rotation of three uniform numbers; Shoemake, *Graphics Gems III*, 1992, "Uniform random rotations".
+/// A uniform rotation of three uniform numbers; Shoemake, *Graphics Gems III*, 1992, "Uniform
+/// random rotations".
 fn rotation<S: Scalar>(u: &[S]) -> [S; 4] {
     let turn = S::zero().atan2(-S::one()) * S::from_f64(2.0);
     let ((s1, c1), (s2, c2)) = ((turn * u[1]).sin_cos(), (turn * u[2]).sin_cos());

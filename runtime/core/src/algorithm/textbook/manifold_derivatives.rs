@@ -1,6 +1,7 @@
 //! Derivatives of steps and differences, by power series of ad.
 //!
-//! With s the step as a twist, E = exp(−ad s) and J = ∫₀¹ exp(−t ad s) dt: (q ⊕ δ) ⊕ s = (q ⊕ s) ⊕ E δ and, to first order, q ⊕ (s + δ) = (q ⊕ s) ⊕ J δ.
+//! With s the step as a twist, E = exp(−ad s) and J = ∫₀¹ exp(−t ad s) dt: (q ⊕ δ) ⊕ s = (q ⊕ s) ⊕
+//! E δ and, to first order, q ⊕ (s + δ) = (q ⊕ s) ⊕ J δ.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -20,14 +21,16 @@ impl<S: Scalar> Textbook<S> {
         self.both(step, |twist| exponential(&-ad(&twist)), Matrix6::identity())
     }
 
-    /// ∂(target ⊖ q)/∂q and ∂(target ⊖ q)/∂target, `[2][nv][nv]`: −J(−d)⁻¹ and J(d)⁻¹ at the difference d.
+    /// ∂(target ⊖ q)/∂q and ∂(target ⊖ q)/∂target, `[2][nv][nv]`: −J(−d)⁻¹ and J(d)⁻¹ at the
+    /// difference d.
     pub fn difference_derivatives(&self, q: &[S], target: &[S]) -> Vec<S> {
         let back = |twist| inverse_of_lower(&exponential(&twist)[1]);
         let ways = |twist| [-back(ad(&twist)), back(-ad(&twist))];
         self.both(&self.difference(q, target), ways, -Matrix6::identity())
     }
 
-    /// Two matrices of a block for each joint; `first`: of the first, for joints of plain coordinates, of the second the identity.
+    /// Two matrices of a block for each joint; `first`: of the first, for joints of plain
+    /// coordinates, of the second the identity.
     fn both(&self, step: &[S], of: impl Fn(nalgebra::Vector6<S>) -> [Matrix6<S>; 2], first: Matrix6<S>) -> Vec<S> {
         let n = self.nv;
         let mut out = vec![S::zero(); 2 * n * n];

@@ -45,7 +45,8 @@ pub(super) fn blocks<S: Scalar>(a: &Matrix3<S>, b: &Matrix3<S>, c: &Matrix3<S>, 
     })
 }
 
-/// Ad(T) = [R 0; [p]×R R]: takes a twist from the axes of the frame to the axes in which T is given.
+/// Ad(T) = [R 0; [p]×R R]: takes a twist from the axes of the frame to the axes in which T is
+/// given.
 pub fn adjoint<S: Scalar>(x: &Placement<S>) -> Matrix6<S> {
     blocks(&x.rotation, &Matrix3::zeros(), &(cross_matrix(x.position) * x.rotation), &x.rotation)
 }

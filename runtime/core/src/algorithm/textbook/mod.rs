@@ -1,8 +1,11 @@
-//! The reference: every function of the table by its definition, in plain matrices, in the frames of the file.
+//! The reference: every function of the table by its definition, in plain matrices, in the frames
+//! of the file.
 //!
-//! What moves is differentiated ([`Dual`]) and not derived; what is linear is applied to unit vectors; what is a sum over links is that sum. Inverse dynamics
-//! is the plain matrix form with 6×6 Adjoint and inertia matrices and one set of screw axes a joint (Lynch & Park, *Modern Robotics*, 2017,
-//! §8.3.2). It shares no formula with the algorithms beside it, and is what they are measured against, in big floats where it matters. It is not meant to be fast.
+//! What moves is differentiated ([`Dual`]) and not derived; what is linear is applied to unit
+//! vectors; what is a sum over links is that sum. Inverse dynamics is the plain matrix form with
+//! 6×6 Adjoint and inertia matrices and one set of screw axes a joint (Lynch & Park, *Modern
+//! Robotics*, 2017, §8.3.2). It shares no formula with the algorithms beside it, and is what they
+//! are measured against, in big floats where it matters. It is not meant to be fast.
 //!
 //! The three recursions are a page each: [`rnea`], [`crba`] and [`aba`]. They read a [`Tree`], the
 //! robot at one configuration, which [`Textbook::at`] makes.
@@ -38,10 +41,11 @@ use crate::spatial::{Placement, Reference};
 use joint::Joint;
 pub use tree::{Tree, TreeBody};
 
-/// A described robot with every link a body and every joint a joint, fixed ones too. Constants are computed in the scalar `S`
-/// from the numbers of the file.
+/// A described robot with every link a body and every joint a joint, fixed ones too. Constants are
+/// computed in the scalar `S` from the numbers of the file.
 ///
-/// [`Textbook::call`] has every function by its name and checks lengths; the functions themselves take slices as long as stated, and panic at shorter ones.
+/// [`Textbook::call`] has every function by its name and checks lengths; the functions themselves
+/// take slices as long as stated, and panic at shorter ones.
 #[derive(Clone, Debug)]
 pub struct Textbook<S> {
     bodies: Vec<Link<S>>,
@@ -72,7 +76,8 @@ struct Link<S> {
 }
 
 impl<S: Scalar> Textbook<S> {
-    /// The same robot with only the named frames, in this order, or the first name that no link has.
+    /// The same robot with only the named frames, in this order, or the first name that no link
+    /// has.
     pub fn with_frames<N: AsRef<str>>(mut self, names: &[N]) -> Result<Self, String> {
         let find = |name: &N| self.links.iter().find(|(link, _)| link == name.as_ref()).map(|(_, body)| *body);
         self.frames = names.iter().map(|n| find(n).ok_or_else(|| n.as_ref().to_string())).collect::<Result<_, _>>()?;
@@ -86,7 +91,8 @@ impl<S: Scalar> Textbook<S> {
         self
     }
 
-    /// The links that move, by the bodies that are the child links of joints that move, parents first: everything fixed to one belongs to it.
+    /// The links that move, by the bodies that are the child links of joints that move, parents
+    /// first: everything fixed to one belongs to it.
     fn moving_links(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.bodies.len()).filter(|&i| self.bodies[i].joint.moves() && !self.bodies[i].intermediate)
     }

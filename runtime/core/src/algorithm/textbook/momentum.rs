@@ -10,7 +10,8 @@ use crate::Scalar;
 use crate::spatial::{Placement, Reference};
 
 impl<S: Scalar> Textbook<S> {
-    /// [k; l] of the links that move: Σ (R k_i + p × R l_i) with [k_i; l_i] = G V, then about the centre of mass. `[6]`.
+    /// [k; l] of the links that move: Σ (R k_i + p × R l_i) with [k_i; l_i] = G V, then about the
+    /// centre of mass. `[6]`.
     pub fn centroidal_momentum(&self, q: &[S], v: &[S]) -> Vec<S> {
         let (mut k, mut l) = (Vector3::zeros(), Vector3::zeros());
         let (poses, twists) = (self.poses(q), self.body_twists(Reference::Body, q, v));
@@ -21,7 +22,8 @@ impl<S: Scalar> Textbook<S> {
             k += rotation * angular + position.cross(&linear);
             l += linear;
         }
-        // k_c = k_0 − c × l; where nothing that moves has mass there is no centre, and no momentum about any point.
+        // k_c = k_0 − c × l; where nothing that moves has mass there is no centre, and no momentum
+        // about any point.
         let (heavy, centre) = (self.masses(q).0.positive(), Vector3::from_iterator(self.center_of_mass(q)));
         let centre = centre.map(|c| S::select(heavy, c, S::zero()));
         stack(k - centre.cross(&l), l).iter().copied().collect()

@@ -1,7 +1,7 @@
 //! Regressors: what a link whose only inertia is the unit of one parameter takes or has.
 //!
-//! Parameters of a link: m, h = m c, and I about the link's origin: xx, xy, xz, yy, yz, zz, in its axes. The link is what a moving joint carries, with everything
-//! fixed to it.
+//! Parameters of a link: m, h = m c, and I about the link's origin: xx, xy, xz, yy, yz, zz, in its
+//! axes. The link is what a moving joint carries, with everything fixed to it.
 
 use alloc::vec;
 use alloc::vec::Vec;

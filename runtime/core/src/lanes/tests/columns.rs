@@ -1,4 +1,5 @@
-//! M X = B for all columns, as generated code solves it, is what the run-time's loop gives, on trees of every shape.
+//! M X = B for all columns, as generated code solves it, is what the run-time's loop gives, on
+//! trees of every shape.
 
 use std::sync::LazyLock;
 
@@ -13,7 +14,8 @@ use crate::algorithm::ltdl::{path_to_root, solve_rows};
 /// Rows of numbers.
 type Table = Vec<&'static [u16]>;
 
-/// M, B and X in whole numbers and halves, too small to be rounded: every order of the sums and every instruction set gives the same.
+/// M, B and X in whole numbers and halves, too small to be rounded: every order of the sums and
+/// every instruction set gives the same.
 struct Sample {
     /// `[nv]`, next joint to the base, from 1; 0 at the base.
     parent_dof: Vec<usize>,
@@ -63,7 +65,8 @@ fn random(mut state: u64) -> impl FnMut(usize) -> usize {
     }
 }
 
-/// The text with a tree of `$nv` joints, of which each stands on one of the `$near` before it, solved for `$together` matrices at once.
+/// The text with a tree of `$nv` joints, of which each stands on one of the `$near` before it,
+/// solved for `$together` matrices at once.
 macro_rules! columns {
     ($($name:ident: $nv:literal, $near:literal, $together:expr;)+) => { $(
         #[allow(unsafe_code, unused_imports, unused_unsafe, clippy::all, clippy::pedantic)]

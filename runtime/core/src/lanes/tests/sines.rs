@@ -29,7 +29,8 @@ fn all_f32(x: &[f32]) -> Vec<(bool, Vec<[f32; 2]>)> {
     sets.into_iter().filter_map(|(fused, sines)| Some((fused, sines?))).collect()
 }
 
-/// The doubles below 10⁵ that lie nearest to a multiple of π/2, found by trying every multiple in 200-bit arithmetic.
+/// The doubles below 10⁵ that lie nearest to a multiple of π/2, found by trying every multiple in
+/// 200-bit arithmetic.
 const NEAREST: [f64; 6] = [45.553093477052, 91.106186954104, 182.212373908208, 364.424747816416, 728.849495632832, 1457.698991265664];
 
 fn angles() -> Vec<f64> {

@@ -1,6 +1,7 @@
 
-/// (sin x, cos x), x in rad: the doubles nearest to them, of any finite x; NaN of any other. Two doubles decide nearly always, whole numbers of 384 bits the rest: no double's sine
-/// comes nearer than 2⁻¹²⁰ or so to the middle between two doubles (Lefèvre & Muller).
+/// (sin x, cos x), x in rad: the doubles nearest to them, of any finite x; NaN of any other. Two
+/// doubles decide nearly always, whole numbers of 384 bits the rest: no double's sine comes nearer
+/// than 2⁻¹²⁰ or so to the middle between two doubles (Lefèvre & Muller).
 #[inline(always)]
 pub(super) fn sin_cos_correct<const FUSED: bool>(x: f64) -> (f64, f64) {
     if x.abs() < 3.725290298461914e-9 {

@@ -1,6 +1,7 @@
 
-/// hi + lo with |lo| ≤ ulp(hi)/2. Errors in units of u² = 2⁻¹⁰⁶ (Joldes, Muller & Popescu, Tight and rigorous error bounds for basic building blocks of
-/// double-word arithmetic, ACM TOMS 44, 2017).
+/// hi + lo with |lo| ≤ ulp(hi)/2. Errors in units of u² = 2⁻¹⁰⁶ (Joldes, Muller & Popescu, Tight
+/// and rigorous error bounds for basic building blocks of double-word arithmetic, ACM TOMS 44,
+/// 2017).
 pub(super) type V = (f64, f64);
 
 /// 3 u²
@@ -45,7 +46,8 @@ pub(super) fn sin_cos<const FUSED: bool>(x: V) -> (V, V) {
     sines_of_two::<FUSED>(x)
 }
 
-/// The angle of the point (x, y), rad; error at most 2⁻⁹⁸. One step of Newton's from that of doubles.
+/// The angle of the point (x, y), rad; error at most 2⁻⁹⁸. One step of Newton's from that of
+/// doubles.
 #[inline(never)]
 pub(super) fn atan2<const FUSED: bool>(y: V, x: V) -> V {
     let angle = y.0.atan2(x.0);

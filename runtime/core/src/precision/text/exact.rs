@@ -1,5 +1,6 @@
-// Sums and products without error: the nearest double and what it lost. This text and those beside it are compiled and tested in the runtime and copied into
-// generated code; they need nothing but `std`. FUSED: whether a·b + c is one instruction.
+// Sums and products without error: the nearest double and what it lost. This text and those beside
+// it are compiled and tested in the runtime and copied into generated code; they need nothing but
+// `std`. FUSED: whether a·b + c is one instruction.
 
 #[inline(always)]
 fn two_sum(a: f64, b: f64) -> (f64, f64) {

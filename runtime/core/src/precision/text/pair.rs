@@ -1,6 +1,7 @@
 
-/// A double and, to first order, what it lost: double-double arithmetic without normalisation. The sum of both is that of a computation with some 2⁻¹⁰⁶,
-/// as long as what is lost stays small (Lange & Rump, Faithfully rounded floating-point computations, ACM TOMS 46, 2020).
+/// A double and, to first order, what it lost: double-double arithmetic without normalisation. The
+/// sum of both is that of a computation with some 2⁻¹⁰⁶, as long as what is lost stays small (Lange
+/// & Rump, Faithfully rounded floating-point computations, ACM TOMS 46, 2020).
 pub(super) type V = (f64, f64);
 
 #[inline(always)]

@@ -1,5 +1,6 @@
 
-// Sines and cosines of sums of two doubles: reduction by π/2 in five parts, by 1/32 with a table, and the series.
+// Sines and cosines of sums of two doubles: reduction by π/2 in five parts, by 1/32 with a table,
+// and the series.
 
 /// Up to this |x|, rad, n times one of the first three parts of π/2 is exact.
 const NEAR: f64 = 1e6;

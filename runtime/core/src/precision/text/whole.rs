@@ -1,5 +1,6 @@
 
-// Angles to 384 bits in whole numbers (Payne & Hanek 1983): any double's quadrant and rest, and its sine and cosine where two doubles do not decide.
+// Angles to 384 bits in whole numbers (Payne & Hanek 1983): any double's quadrant and rest, and its
+// sine and cosine where two doubles do not decide.
 
 /// Fractions of one in words, the first the highest.
 type Fraction = [u64; 6];
@@ -28,7 +29,8 @@ fn turned_back(x: f64) -> Turned {
     let bits = x.to_bits();
     let exponent = ((bits >> 52) & 0x7ff) as i64 - 1075;
     let mantissa = (bits & 0xfffffffffffff) | 0x10000000000000;
-    // The bits of 2/π from weight 2 on times the mantissa, modulo 4: of what is above only multiples of 4 come.
+    // The bits of 2/π from weight 2 on times the mantissa, modulo 4: of what is above only
+    // multiples of 4 come.
     let mut product = [0_u64; 7];
     let mut carry = 0_u128;
     let mut i = 7;

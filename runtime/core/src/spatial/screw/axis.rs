@@ -5,9 +5,11 @@ use nalgebra::Vector3;
 use crate::Scalar;
 use crate::spatial::{Placement, Twist};
 
-/// A screw: a line, and the motion that goes with it: `turn` rad about the line and `slide` m along it for each unit of the coordinate.
+/// A screw: a line, and the motion that goes with it: `turn` rad about the line and `slide` m along
+/// it for each unit of the coordinate.
 ///
-/// Turn and slide stand for the pitch slide/turn as homogeneous coordinates do, so that a translation is a screw like any other. Lynch & Park 2017, §3.3.2.
+/// Turn and slide stand for the pitch slide/turn as homogeneous coordinates do, so that a
+/// translation is a screw like any other. Lynch & Park 2017, §3.3.2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Screw<S> {
     /// A point on the line, m; of no meaning for a translation.
@@ -31,15 +33,18 @@ impl<S: Scalar> Screw<S> {
         Self { point: Vector3::zeros(), direction, turn: S::zero(), slide: S::one() }
     }
 
-    /// The twist for a unit rate, in the frame that the line is given in: [ω; v] = [turn·s; slide·s + point × ω].
+    /// The twist for a unit rate, in the frame that the line is given in: [ω; v] =
+    /// [turn·s; slide·s + point × ω].
     ///
-    /// The exponential of this twist is analytic at turn = 0: a screw whose turn dies away goes over to the translation.
+    /// The exponential of this twist is analytic at turn = 0: a screw whose turn dies away goes
+    /// over to the translation.
     pub fn twist(&self) -> Twist<S> {
         let angular = self.direction * self.turn;
         Twist { angular, linear: self.direction * self.slide + self.point.cross(&angular) }
     }
 
-    /// The screw of a twist that is not zero: its point is the line's nearest to the origin, ω × v/ω², as far off as the twist is near to a translation.
+    /// The screw of a twist that is not zero: its point is the line's nearest to the origin, ω ×
+    /// v/ω², as far off as the twist is near to a translation.
     pub fn of(twist: &Twist<S>) -> Self {
         let (one, unit) = (S::one(), unit_of(twist));
         let (w, v) = (twist.angular.map(|x| x / unit), twist.linear.map(|x| x / unit));
@@ -55,21 +60,24 @@ impl<S: Scalar> Screw<S> {
     }
 }
 
-/// What a twist is measured in so that its squares are numbers that are not zero: one, unless it is very small or very large.
+/// What a twist is measured in so that its squares are numbers that are not zero: one, unless it is
+/// very small or very large.
 fn unit_of<S: Scalar>(twist: &Twist<S>) -> S {
     let size = twist.angular.iter().chain(twist.linear.iter()).fold(S::zero(), |sum, x| sum + x.abs());
     let (small, large) = ((S::from_f64(1e-15) - size).positive(), (size - S::from_f64(1e15)).positive());
     S::select(small, size, S::select(large, size, S::one()))
 }
 
-/// Product of exponentials with screws in the world frame: e^{S_1 θ_1} ⋯ e^{S_n θ_n} M, where `home` is the placement M at θ = 0.
+/// Product of exponentials with screws in the world frame: e^{S_1 θ_1} ⋯ e^{S_n θ_n} M, where
+/// `home` is the placement M at θ = 0.
 ///
 /// The twists as the robot stands at θ = 0; θ rad or m. Lynch & Park 2017, (4.14).
 pub fn product_of_exponentials_in_space<S: Scalar>(joints: &[(Twist<S>, S)], home: &Placement<S>) -> Placement<S> {
     product(Placement::identity(), joints).compose(home)
 }
 
-/// Product of exponentials with screws in the frame of the end: M e^{B_1 θ_1} ⋯ e^{B_n θ_n}, B_i = Ad(M⁻¹) S_i. Lynch & Park 2017, (4.16).
+/// Product of exponentials with screws in the frame of the end: M e^{B_1 θ_1} ⋯ e^{B_n θ_n}, B_i =
+/// Ad(M⁻¹) S_i. Lynch & Park 2017, (4.16).
 pub fn product_of_exponentials_in_body<S: Scalar>(home: &Placement<S>, joints: &[(Twist<S>, S)]) -> Placement<S> {
     product(*home, joints)
 }

@@ -1,7 +1,8 @@
 //! The functions of the angle that exponentials, logarithms and their derivatives consist of.
 //!
-//! All are analytic in x = θ², and are functions of x here: √x has no derivative at 0. With h = θ/2 and the spherical Bessel functions j_n,
-//! B_n = j_n(h)/hⁿ, for which dB_n/d(h²) = −½ B_{n+1}, most of them are products without any difference:
+//! All are analytic in x = θ², and are functions of x here: √x has no derivative at 0. With h = θ/2
+//! and the spherical Bessel functions j_n, B_n = j_n(h)/hⁿ, for which dB_n/d(h²) = −½ B_{n+1}, most
+//! of them are products without any difference:
 //!
 //! | | | at 0 |
 //! |---|---|--:|
@@ -13,7 +14,8 @@
 //! | ε = 1/θ² − cot(θ/2)/(2θ) | B_1/(4 B_0) | 1/12 |
 //! | ε' = dε/dx | by a continued fraction up to θ = π, then (B_1² − B_0 B_2)/(32 B_0²) | 1/720 |
 //!
-//! ε has a pole at θ = 2π, where the logarithm ends: there its relative error is that of 1/(2π − θ).
+//! ε has a pole at θ = 2π, where the logarithm ends: there its relative error is that of 1/(2π −
+//! θ).
 
 use super::series::{Series, beyond};
 use crate::Scalar;
@@ -117,8 +119,8 @@ impl<S: Scalar> HalfAngle<S> {
 /// Up to which y = h² ε' is taken from its continued fraction: a little beyond (π/2)².
 const FRACTION: f64 = 2.5;
 
-/// ε' from y = h²: B_1/B_0 = 1/(3 − y/(5 − y/(7 − …))) (Gauss), and its derivative, a product of sums of positive terms: nothing cancels, where the closed form loses
-/// four bits.
+/// ε' from y = h²: B_1/B_0 = 1/(3 − y/(5 − y/(7 − …))) (Gauss), and its derivative, a product of
+/// sums of positive terms: nothing cancels, where the closed form loses four bits.
 #[inline(always)]
 fn inverse_rate_by_fraction<S: Scalar>(y: S) -> S {
     let odd = |k: u32| S::from_f64(f64::from(2 * k + 1));
@@ -133,7 +135,8 @@ fn inverse_rate_by_fraction<S: Scalar>(y: S) -> S {
     S::from_f64(1.0 / 16.0) * (ratio * ratio * slope)
 }
 
-/// How many levels of the fraction leave less than 2^(−bits − 4): each is worth y/((2k + 1)(2k + 3)), and a little, of the one before.
+/// How many levels of the fraction leave less than 2^(−bits − 4): each is worth y/((2k + 1)(2k +
+/// 3)), and a little, of the one before.
 const fn levels(bits: u32) -> u32 {
     let (mut k, mut left, mut halvings) = (1, 1.0_f64, 0);
     while halvings < bits + 4 {
@@ -147,8 +150,8 @@ const fn levels(bits: u32) -> u32 {
     k
 }
 
-/// 2·atan(s/w)/s from s² and w ≥ 0, not both zero: what takes the vector of a quaternion (s times the axis, w) to the rotation vector.
-/// It does not matter whether s² + w² is one.
+/// 2·atan(s/w)/s from s² and w ≥ 0, not both zero: what takes the vector of a quaternion (s times
+/// the axis, w) to the rotation vector. It does not matter whether s² + w² is one.
 #[inline(always)]
 pub(super) fn rotation_over_vector<S: Scalar>(square: S, w: S) -> S {
     let one = S::one();

@@ -1,7 +1,7 @@
 //! SE(3): twists taken for a unit of time, and placements.
 //!
-//! Every formula is that of SO(3) with ω + ε v for ω, ε² = 0 (the principle of transference): what stands with ε is the coupling block.
-//! So with δ = ω·v and primes for derivatives in θ²
+//! Every formula is that of SO(3) with ω + ε v for ω, ε² = 0 (the principle of transference): what
+//! stands with ε is the coupling block. So with δ = ω·v and primes for derivatives in θ²
 //!
 //! ```text
 //! p of exp ξ   = J_l(ω) v
@@ -21,7 +21,8 @@ use crate::Scalar;
 use crate::spatial::{Placement, Twist, rotate_back};
 
 impl<S: Scalar> Twist<S> {
-    /// exp ξ: where a body that moves with this twist for a unit of time gets to, from the identity.
+    /// exp ξ: where a body that moves with this twist for a unit of time gets to, from the
+    /// identity.
     ///
     /// Absolute error of the rotation at most (4 + 1.5|ω|)·u, of the position (3 + |ω|)·u·|v|.
     pub fn exp(&self) -> Placement<S> {
@@ -40,7 +41,8 @@ impl<S: Scalar> Twist<S> {
         (rotation, position)
     }
 
-    /// log of a placement given as quaternion and position: ω = log q, v = J_l(ω)⁻¹ p. See [`Placement::log`].
+    /// log of a placement given as quaternion and position: ω = log q, v = J_l(ω)⁻¹ p. See
+    /// [`Placement::log`].
     #[inline(always)]
     pub fn log_of_parts(rotation: &Quaternion<S>, position: Vector3<S>) -> Self {
         let (w, p) = (rotation.log(), position);
@@ -50,7 +52,8 @@ impl<S: Scalar> Twist<S> {
         Self { angular: w, linear }
     }
 
-    /// J_l(ξ), on (angular; linear): the twist in fixed axes about the fixed origin is J_l(ξ)·ξ̇. Singular at |ω| = 2π.
+    /// J_l(ξ), on (angular; linear): the twist in fixed axes about the fixed origin is J_l(ξ)·ξ̇.
+    /// Singular at |ω| = 2π.
     pub fn left_jacobian(&self) -> Matrix6<S> {
         self.jacobian(S::one())
     }
@@ -107,8 +110,9 @@ impl<S: Scalar> Placement<S> {
         Self { rotation: self.rotation.transpose(), position: -rotate_back(&self.rotation, self.position) }
     }
 
-    /// The twist ξ with |ω| ≤ π whose exponential is this placement: absolute error some u in ω and some u·|p| in v, up to |ω| = π. Which of
-    /// the two axes it takes at π says [`super::log_rotation`].
+    /// The twist ξ with |ω| ≤ π whose exponential is this placement: absolute error some u in ω and
+    /// some u·|p| in v, up to |ω| = π. Which of the two axes it takes at π says
+    /// [`super::log_rotation`].
     pub fn log(&self) -> Twist<S> {
         Twist::log_of_parts(&Quaternion::from_rotation(&self.rotation), self.position)
     }

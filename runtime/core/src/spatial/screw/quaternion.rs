@@ -55,7 +55,8 @@ impl<S: Scalar> Quaternion<S> {
         self.vector.dot(&self.vector) + self.scalar * self.scalar
     }
 
-    /// q/|q|, for |q| whose square is a number: from 1e-150 to 1e150. Its norm is off by at most 2u.
+    /// q/|q|, for |q| whose square is a number: from 1e-150 to 1e150. Its norm is off by at most
+    /// 2u.
     #[inline(always)]
     #[must_use]
     pub fn normalised(&self) -> Self {
@@ -65,17 +66,19 @@ impl<S: Scalar> Quaternion<S> {
 
     /// The rotation about ω by |ω| rad: (sin(θ/2)/θ·ω, cos(θ/2)) with θ = |ω|.
     ///
-    /// Each number is off by at most (2 + θ)·u times its own size or, near its zeros, the norm's. Lynch & Park 2017, §B.3.
+    /// Each number is off by at most (2 + θ)·u times its own size or, near its zeros, the norm's.
+    /// Lynch & Park 2017, §B.3.
     #[inline(always)]
     pub fn exp(omega: Vector3<S>) -> Self {
         let half = HalfAngle::new(omega.dot(&omega));
         Self { vector: omega * (S::from_f64(0.5) * half.sinc()), scalar: half.cosine() }
     }
 
-    /// The rotation vector, rad, of length θ ≤ π: the one that [`Self::exp`] takes back to q or −q. The norm need not be one, only from 1e-150 to 1e150.
+    /// The rotation vector, rad, of length θ ≤ π: the one that [`Self::exp`] takes back to q or −q.
+    /// The norm need not be one, only from 1e-150 to 1e150.
     ///
-    /// θ = 2 atan2(|v|, w) with the sign of q that has w > 0: a few u from θ = 0 to π, relative to θ. At w = 0, half a turn, the first component
-    /// of the axis that is not zero is positive.
+    /// θ = 2 atan2(|v|, w) with the sign of q that has w > 0: a few u from θ = 0 to π, relative to
+    /// θ. At w = 0, half a turn, the first component of the axis that is not zero is positive.
     #[inline(always)]
     pub fn log(&self) -> Vector3<S> {
         let sign = self.sign();
@@ -93,8 +96,10 @@ impl<S: Scalar> Quaternion<S> {
         })
     }
 
-    /// Of a rotation matrix: of the four ways to read it off, the one that divides by the largest component (Shepperd 1978), which is then at least 1/2 and
-    /// not negative. Absolute error 3u of a matrix that is a rotation; one that is orthogonal only nearly gives a unit quaternion all the same.
+    /// Of a rotation matrix: of the four ways to read it off, the one that divides by the largest
+    /// component (Shepperd 1978), which is then at least 1/2 and not negative. Absolute error 3u of
+    /// a matrix that is a rotation; one that is orthogonal only nearly gives a unit quaternion all
+    /// the same.
     pub fn from_rotation(r: &Matrix3<S>) -> Self {
         let one = S::one();
         // 4 q_k q for q_k = w, x, y, z.

@@ -18,14 +18,16 @@ use super::coefficients::HalfAngle;
 use crate::Scalar;
 use crate::spatial::rate_matrix;
 
-/// The rotation about ω by |ω| rad. Absolute error of an entry at most (4 + 1.5|ω|)·u: ω counts as exact only to a relative u.
+/// The rotation about ω by |ω| rad. Absolute error of an entry at most (4 + 1.5|ω|)·u: ω counts as
+/// exact only to a relative u.
 pub fn exp_rotation<S: Scalar>(omega: Vector3<S>) -> Matrix3<S> {
     Quaternion::exp(omega).to_rotation()
 }
 
-/// The rotation vector, rad, |ω| ≤ π, through the quaternion, so that it is as good at π as anywhere: off by a few u absolutely. At
-/// exactly π the first component of the axis that is not zero is positive; next to it a perturbation of R by u may turn the axis round,
-/// which is the same rotation.
+/// The rotation vector, rad, |ω| ≤ π, through the quaternion, so that it is as good at π as
+/// anywhere: off by a few u absolutely. At exactly π the first component of the axis that is not
+/// zero is positive; next to it a perturbation of R by u may turn the axis round, which is the same
+/// rotation.
 pub fn log_rotation<S: Scalar>(r: &Matrix3<S>) -> Vector3<S> {
     Quaternion::from_rotation(r).log()
 }
@@ -41,7 +43,8 @@ pub fn right_jacobian<S: Scalar>(omega: Vector3<S>) -> Matrix3<S> {
     left_jacobian(-omega)
 }
 
-/// J_l(ω)⁻¹. Its entries grow as 1/(2π − |ω|); their relative error there is u·2π/(2π − |ω|) times a few.
+/// J_l(ω)⁻¹. Its entries grow as 1/(2π − |ω|); their relative error there is u·2π/(2π − |ω|) times
+/// a few.
 pub fn left_jacobian_inverse<S: Scalar>(omega: Vector3<S>) -> Matrix3<S> {
     let half = HalfAngle::new(omega.dot(&omega));
     one_and(omega, -S::from_f64(0.5), half.inverse())

@@ -1,7 +1,8 @@
 //! Power series that take over where a closed form cancels.
 //!
-//! Each is Σ_k c_k (−x)^k with c_k/c_{k−1} a quotient of small integers, summed by Horner's rule from the inside:
-//! c_0·(1 − r_1 x (1 − r_2 x (…))). Every coefficient is exact in any scalar, and there are as many as the scalar has bits for.
+//! Each is Σ_k c_k (−x)^k with c_k/c_{k−1} a quotient of small integers, summed by Horner's rule
+//! from the inside: c_0·(1 − r_1 x (1 − r_2 x (…))). Every coefficient is exact in any scalar, and
+//! there are as many as the scalar has bits for.
 
 use crate::Scalar;
 
@@ -27,8 +28,9 @@ pub(super) enum Series {
 impl Series {
     /// Up to which x the series is used, and from which on the closed form.
     ///
-    /// A closed form that is the difference of terms a, b, … is off by some (|a| + |b| + …)/|a − b …| roundings; each limit lies where that has fallen to
-    /// about 3. The sinc cancels nowhere, but its derivatives by dual numbers do, as 1/θ².
+    /// A closed form that is the difference of terms a, b, … is off by some (|a| + |b| + …)/|a − b
+    /// …| roundings; each limit lies where that has fallen to about 3. The sinc cancels nowhere,
+    /// but its derivatives by dual numbers do, as 1/θ².
     pub(super) const fn limit(self) -> f64 {
         match self {
             Self::Cosine => 0.25,
@@ -65,8 +67,9 @@ impl Series {
         }
     }
 
-    /// How many terms follow the first: at the limit, what is left out is below 2^(−bits − 2) of the first. All terms alternate and fall, so the rest is
-    /// less than the first that is left out.
+    /// How many terms follow the first: at the limit, what is left out is below 2^(−bits − 2) of
+    /// the first. All terms alternate and fall, so the rest is less than the first that is left
+    /// out.
     const fn terms(self, bits: u32) -> u32 {
         let (mut k, mut left, mut halvings) = (0, 1.0_f64, 0);
         while halvings < bits + 2 {
@@ -120,7 +123,8 @@ impl Series {
         sum / S::from_f64(self.divisor())
     }
 
-    /// `closed` where x is beyond the limit, else the series. The closed form is evaluated everywhere, so it has to be finite everywhere: see [`beyond`].
+    /// `closed` where x is beyond the limit, else the series. The closed form is evaluated
+    /// everywhere, so it has to be finite everywhere: see [`beyond`].
     #[inline(always)]
     pub(super) fn or<S: Scalar>(self, x: S, closed: S) -> S {
         let far = is_beyond(x, self.limit());
@@ -133,7 +137,8 @@ fn is_beyond<S: Scalar>(x: S, limit: f64) -> S::Mask {
     (x - S::from_f64(limit)).positive()
 }
 
-/// x, or `limit` below it: what a closed form can divide by where it is not used, derivatives included.
+/// x, or `limit` below it: what a closed form can divide by where it is not used, derivatives
+/// included.
 #[inline(always)]
 pub(super) fn beyond<S: Scalar>(x: S, limit: f64) -> S {
     S::select(is_beyond(x, limit), x, S::from_f64(limit))

@@ -31,7 +31,8 @@ fn coefficients<S: Scalar>(x: S) -> [S; 8] {
     [h.cosine(), h.sinc(), h.versine(), h.versine_rate(), h.excess(), h.excess_rate(), h.inverse(), h.inverse_rate()]
 }
 
-/// In units of u of the coefficient; of the largest cosine for that. Seen: 2, 2, 3.3, 3.9, 4.1, 4.2, 3.6, 4.
+/// In units of u of the coefficient; of the largest cosine for that. Seen: 2, 2, 3.3, 3.9, 4.1,
+/// 4.2, 3.6, 4.
 const COEFFICIENT: [f64; 8] = [2.5, 2.5, 4.5, 5.0, 5.0, 5.0, 4.5, 5.0];
 
 #[test]

@@ -64,7 +64,8 @@ fn jacobians_are_the_series_of_their_matrices() {
     }
 }
 
-/// Near 2π the inverse of the Jacobian of SO(3) grows as 2π/(2π − θ), that of SE(3) as its square, and so does the loss.
+/// Near 2π the inverse of the Jacobian of SO(3) grows as 2π/(2π − θ), that of SE(3) as its square,
+/// and so does the loss.
 #[test]
 fn inverse_jacobians_are_inverse() {
     let random = &mut Random::new(8);

@@ -49,7 +49,8 @@ fn logarithm_of_a_quaternion_is_good_to_a_few_ulps_from_nothing_to_half_a_turn()
     }
 }
 
-/// By dual numbers of dual numbers: what cancels in a closed form cancels more in each derivative of it.
+/// By dual numbers of dual numbers: what cancels in a closed form cancels more in each derivative
+/// of it.
 #[test]
 fn second_derivatives_of_the_logarithm_hold_at_small_angles_too() {
     let random = &mut Random::new(21);
@@ -67,7 +68,8 @@ fn second_derivatives_of_the_logarithm_hold_at_small_angles_too() {
     }
 }
 
-/// log of (v + t·along, √(1 − v²)) with its first two derivatives at t = 0; w does not move, since only directions count.
+/// log of (v + t·along, √(1 − v²)) with its first two derivatives at t = 0; w does not move, since
+/// only directions count.
 fn curved<S: Scalar>(v: Vector3<S>, along: Vector3<S>) -> Vector3<Dual<Dual<S>>> {
     let time = Dual::variable(Dual::variable(S::zero()));
     let still = |x: S| Dual::constant(Dual::constant(x));

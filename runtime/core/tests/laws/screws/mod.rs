@@ -15,7 +15,8 @@ use articulated_reference::Big;
 use articulated_test_support::measure::U;
 use articulated_test_support::random::Random;
 
-/// Angles over which every law here is tried: tiny, small, on both sides of each change from series to closed form, half a turn, and up to `most`.
+/// Angles over which every law here is tried: tiny, small, on both sides of each change from series
+/// to closed form, half a turn, and up to `most`.
 fn angles(random: &mut Random, count: usize, most: f64) -> Vec<f64> {
     let changes = [0.25, 1.0, 2.0, 6.0].map(|y: f64| 2.0 * y.sqrt()).into_iter().chain([4.0, 7.0].map(f64::sqrt));
     let special = changes.chain([PI, FRAC_PI_2, 0.5]).flat_map(|x| [x * (1.0 - 1e-12), x, x * (1.0 + 1e-12)]);

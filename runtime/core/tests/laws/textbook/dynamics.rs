@@ -132,7 +132,8 @@ fn derivatives_are_those_of_differences() {
     });
 }
 
-/// What the joints pass is what the links need: a link's wrench is the sum of its momentum's rate and of what it hands on.
+/// What the joints pass is what the links need: a link's wrench is the sum of its momentum's rate
+/// and of what it hands on.
 #[test]
 fn power_through_the_joints_is_that_of_the_torques() {
     for_each_scene(15, SMALL, |case, scene| {
@@ -141,7 +142,8 @@ fn power_through_the_joints_is_that_of_the_torques() {
         let (twists, placed) = (scene.call("twists_world", &[q, v]), scene.call("placements", &[q]));
         let mut power = Big::zero();
         for (k, body) in case.model.links().enumerate() {
-            // The twist of the child against the parent, taken in world axes about the world's origin, with the wrench brought there.
+            // The twist of the child against the parent, taken in world axes about the world's
+            // origin, with the wrench brought there.
             let joint = case.description.joint(&case.model.bodies()[body].name).map(|j| &case.description.joints[j]);
             let (parent, child) = joint.map_or((None, case.description.root().unwrap_or(0)), |j| (Some(j.parent), j.child));
             let of = |link: Option<usize>, i: usize| link.map_or(Big::zero(), |l| twists[6 * l + i]);

@@ -1,4 +1,5 @@
-//! The reference itself: what its functions must be to each other, in many digits. Each is computed by its definition alone.
+//! The reference itself: what its functions must be to each other, in many digits. Each is computed
+//! by its definition alone.
 
 mod dynamics;
 mod motion;

@@ -81,7 +81,8 @@ fn a_step_and_a_difference_undo_each_other() {
     });
 }
 
-/// What a small change δ of an argument makes of a step's end e, as the step δ' with e ⊕ δ' where it gets to; and of a difference.
+/// What a small change δ of an argument makes of a step's end e, as the step δ' with e ⊕ δ' where
+/// it gets to; and of a difference.
 #[test]
 fn derivatives_of_steps_and_differences_are_those_of_differences() {
     for_each_scene(25, SMALL, |_, scene| {

@@ -22,7 +22,8 @@ pub struct Advice<'a> {
     scene: &'a str,
     wish: f64,
     units: Units,
-    /// That of the fewest evaluations and that of the least time, which may be the same; none if nothing measured is accurate enough.
+    /// That of the fewest evaluations and that of the least time, which may be the same; none if
+    /// nothing measured is accurate enough.
     pub(super) runs: Vec<Run<'a>>,
 }
 
@@ -47,7 +48,8 @@ pub(super) fn all(m: &Motion, wish: f64) -> Advice<'_> {
     Advice { scene: &m.scene, wish, units: UNITS, runs }
 }
 
-/// The finest runs, all of which reach the error; two at least. A run that reaches it while a finer one does not has hit it by accident.
+/// The finest runs, all of which reach the error; two at least. A run that reaches it while a finer
+/// one does not has hit it by accident.
 fn lasting(samples: &[Sample], wish: f64) -> &[Sample] {
     let from = samples.iter().rposition(|s| s.error.is_nan() || s.error > wish).map_or(0, |k| k + 1);
     if samples.len() - from >= 2 { &samples[from..] } else { &[] }

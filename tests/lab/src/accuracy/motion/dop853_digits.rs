@@ -1,4 +1,5 @@
-//! The coefficients of Dormand's, Prince's and Hairer's method to thirty digits: Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 1993, §II.5.
+//! The coefficients of Dormand's, Prince's and Hairer's method to thirty digits: Hairer, Nørsett &
+//! Wanner, *Solving Ordinary Differential Equations I*, 1993, §II.5.
 
 /// Of stages 2 to 12, and the weights: the stage, from 0, and its coefficient. The others are zero.
 pub(super) const A: [&[(usize, &str)]; 12] = [

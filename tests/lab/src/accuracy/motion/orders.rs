@@ -1,8 +1,10 @@
 //! Errors fall with the evaluations as the orders say, over one and a half decades of evaluations.
 //!
-//! In doubles that is a matter of finding a motion: coarse steps have to be within the law of small steps already, fine ones above rounding. At order 8 one and a half
-//! decades are twelve of errors, and doubles do not have them: there the slope is that of the same method in 96 digits, with coefficients to thirty, and the
-//! integrator is held to that run, step count by step count, down to where doubles end.
+//! In doubles that is a matter of finding a motion: coarse steps have to be within the law of small
+//! steps already, fine ones above rounding. At order 8 one and a half decades are twelve of errors,
+//! and doubles do not have them: there the slope is that of the same method in 96 digits, with
+//! coefficients to thirty, and the integrator is held to that run, step count by step count, down
+//! to where doubles end.
 
 use articulated::simulate::{Integrator, IntegratorId, integrators};
 use articulated_core::Scalar;
@@ -25,7 +27,8 @@ struct Swing {
 /// Let go almost at the top.
 const SLOW: Swing = Swing { q: 2.8, v: 0.0, seconds: 1.0 };
 
-/// Going round. Steps of the implicit midpoint rule are solved by rounds, of which short steps need fewer; in this motion errors are large even where there are two a step.
+/// Going round. Steps of the implicit midpoint rule are solved by rounds, of which short steps need
+/// fewer; in this motion errors are large even where there are two a step.
 const FAST: Swing = Swing { q: 2.8, v: 40.0, seconds: 0.05 };
 
 impl Swing {

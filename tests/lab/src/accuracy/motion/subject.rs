@@ -92,7 +92,8 @@ fn change(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / norm.max(1e-12)
 }
 
-/// Energy and momentum of a motion on which nothing acts but gravity, from its last state: as [`End`] has them.
+/// Energy and momentum of a motion on which nothing acts but gravity, from its last state: as
+/// [`End`] has them.
 pub(super) fn drift(subject: &Subject, end: &State) -> Option<(f64, Option<f64>)> {
     let (model, mut ws) = (&subject.model, Workspace::new(&subject.model));
     let mut at = |q: &[f64], v: &[f64]| {
@@ -107,7 +108,8 @@ pub(super) fn drift(subject: &Subject, end: &State) -> Option<(f64, Option<f64>)
     Some(((b.0 + b.1 - a.0 - a.1).abs() / size, a.2.zip(b.2).map(|(a, b)| change(&a, &b))))
 }
 
-/// How far the motion goes and how fast it is at its ends: the largest number of all, at least 1 rad, m, and those a second.
+/// How far the motion goes and how fast it is at its ends: the largest number of all, at least 1
+/// rad, m, and those a second.
 pub(super) fn extent(subject: &Subject, end: &State) -> f64 {
     let way = difference(subject, &(subject.q.clone(), end.1.clone()), end);
     subject.v.iter().chain(&end.1).map(|v| v.abs()).fold(way.max(1.0), f64::max)

@@ -1,4 +1,5 @@
-//! Every integrator over steps or tolerances of many decades, against a reference that two of them agree on.
+//! Every integrator over steps or tolerances of many decades, against a reference that two of them
+//! agree on.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -55,7 +56,8 @@ pub struct Motion {
     pub(crate) references: [String; 2],
     /// How far they are from each other: nothing below 100 times this is shown.
     pub(crate) agreement: f64,
-    /// How far the motion goes and how fast it is at its ends: a run whose error is larger has lost it.
+    /// How far the motion goes and how fast it is at its ends: a run whose error is larger has lost
+    /// it.
     pub(crate) extent: f64,
     /// Where it was measured.
     pub(crate) processor: String,
@@ -197,7 +199,8 @@ pub(super) fn reference(subject: &Subject) -> Result<Reference, Error> {
     Ok((names, found[at].2.state.clone(), apart.max(1e-16)))
 }
 
-/// One integrator over its settings, against the last state of the reference and what that can tell.
+/// One integrator over its settings, against the last state of the reference and what that can
+/// tell.
 pub(super) fn curve(
     subject: &Subject,
     integrator: &'static Integrator,
@@ -224,7 +227,8 @@ impl Curve {
     }
 }
 
-/// A sample for each setting, of several the fastest, until errors are beyond what the reference can tell: twice is enough.
+/// A sample for each setting, of several the fastest, until errors are beyond what the reference
+/// can tell: twice is enough.
 pub(super) fn samples<T>(settings: &[T], repetitions: usize, take: &mut dyn FnMut(&T) -> Option<Sample>) -> Vec<Sample> {
     let mut samples: Vec<Sample> = Vec::new();
     for setting in settings {
@@ -252,7 +256,8 @@ pub(super) fn sample(subject: &Subject, (end, agreement): (&State, f64), how: Ho
     Sample { step, tolerance, evaluations, wall, error, energy, momentum, told, lost }
 }
 
-/// The logarithms of evaluations and errors of the samples that the reference can tell and that are past the first coarse ones.
+/// The logarithms of evaluations and errors of the samples that the reference can tell and that are
+/// past the first coarse ones.
 fn points(samples: &[Sample]) -> Vec<(f64, f64)> {
     let within = |s: &&Sample| s.told && s.error > 0.0 && s.error < COARSE;
     samples.iter().filter(within).map(|s| ((s.evaluations as f64).log10(), s.error.log10())).collect()
@@ -272,7 +277,8 @@ pub(super) fn slope(samples: &[Sample]) -> Option<f64> {
     if wide < 0.5 { None } else { power(&points) }
 }
 
-/// The slope, downward, of a straight line through points; of three at least that do not stand above each other.
+/// The slope, downward, of a straight line through points; of three at least that do not stand
+/// above each other.
 fn power(points: &[(f64, f64)]) -> Option<f64> {
     let n = points.len() as f64;
     let (x, y) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);

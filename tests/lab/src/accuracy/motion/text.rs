@@ -171,7 +171,8 @@ mod tests {
         assert!(csv(&m).lines().nth(1).unwrap().ends_with(",true,true"));
     }
 
-    /// Of dop853, its errors and tolerances on the pendulum: 3.2e-6 is a lucky hit, and the last two are below what the reference can tell.
+    /// Of dop853, its errors and tolerances on the pendulum: 3.2e-6 is a lucky hit, and the last
+    /// two are below what the reference can tell.
     fn lucky() -> Motion {
         let errors = [(1e-5, 1.9e-4), (3.2e-6, 1.9e-5), (1e-6, 1.3e-4), (3.2e-7, 1.6e-5), (1e-7, 3e-6), (1e-11, 8.6e-11), (3.2e-12, 3e-11)];
         let sample = |(k, (tolerance, error)): (usize, (f64, f64))| Sample {

@@ -67,7 +67,8 @@ fn unnormalised() -> Vec<Row> {
     rows
 }
 
-/// Pitch at a right angle, where roll and yaw are the same turn; exactly, nearly, and as files round it.
+/// Pitch at a right angle, where roll and yaw are the same turn; exactly, nearly, and as files
+/// round it.
 #[allow(clippy::approx_constant)]
 // Why: that is what files have.
 fn gimbal() -> Vec<Row> {

@@ -38,7 +38,8 @@ fn far_off(exponent: i32) -> Vec<Row> {
     rows
 }
 
-/// A free body whose frame is 1 m from its centre of mass: its inertia about that is the difference of two large ones.
+/// A free body whose frame is 1 m from its centre of mass: its inertia about that is the difference
+/// of two large ones.
 fn about_its_own_center() -> Vec<Row> {
     let case = Case::new(
         NAME,

@@ -98,7 +98,8 @@ fn denormal(case: &Case, model: &articulated_core::model::Model<f64>, state: &St
     vec![case.holds("inverse_dynamics is finite, f64", finite)]
 }
 
-/// Rods without any inertia about their own axis: a turn about the common axis of a straight row of them moves nothing.
+/// Rods without any inertia about their own axis: a turn about the common axis of a straight row of
+/// them moves nothing.
 fn thin_aligned() -> Vec<Row> {
     let rod = Some(Body::rod(1.0, 1.0, 0.0));
     let model = built(&rods(), Base::Fixed);
@@ -140,8 +141,9 @@ fn repeated() -> Vec<Row> {
     rows
 }
 
-/// The same with next to no mass between, on a slide: the two turn against each other a billion times as fast as anything else moves, and roundings of that reach the slide, which they
-/// do not move. Refined they do not.
+/// The same with next to no mass between, on a slide: the two turn against each other a billion
+/// times as fast as anything else moves, and roundings of that reach the slide, which they do not
+/// move. Refined they do not.
 fn nearly_repeated() -> Vec<Row> {
     let case = Case::new(
         NAME,

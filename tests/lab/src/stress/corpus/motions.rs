@@ -115,7 +115,8 @@ fn turned(robot: &Model<f64>, motion: &Recording) -> f64 {
     (0..motion.len()).map(at).map(|x| worse(part(&x, 0) / size(0), part(&x, 3) / size(3))).fold(0.0, worse)
 }
 
-/// The first frequency of a chain that hangs: j₀,₁/2·√(g/l), j₀,₁ the first zero of J₀, and with N rods a little more.
+/// The first frequency of a chain that hangs: j₀,₁/2·√(g/l), j₀,₁ the first zero of J₀, and with N
+/// rods a little more.
 fn frequency(effort: Effort) -> Vec<Row> {
     let lengths: &[usize] = if effort == Effort::Full { &[30, 60, 100, 200, 300] } else { &[30, 60] };
     let case = Case::new(
@@ -131,7 +132,8 @@ fn frequency(effort: Effort) -> Vec<Row> {
     lengths.iter().map(one).collect()
 }
 
-/// By inverse iteration: K⁻¹ M of the chain at rest, K from differences of no kind: ∂(static torque)/∂q.
+/// By inverse iteration: K⁻¹ M of the chain at rest, K from differences of no kind: ∂(static
+/// torque)/∂q.
 fn first_frequency(n: usize) -> f64 {
     let robot = built(&chain(n, 1.0), Base::Fixed).with_gravity([9.81, 0.0, 0.0]);
     let q = vec![0.0; n];

@@ -55,7 +55,8 @@ fn coefficients() -> Vec<Row> {
                 exact.error_of(found(&HalfAngle::new(x)), ulp(size))
             })
         };
-        // cos(θ/2) goes through zero at π: it is measured by ulps of 1, as the quaternion is that it is in.
+        // cos(θ/2) goes through zero at π: it is measured by ulps of 1, as the quaternion is that
+        // it is in.
         case.row("error, f64", angles().map(error).fold(0.0, worse), 4.0, "ulp")
     };
     COEFFICIENTS.into_iter().map(one).collect()

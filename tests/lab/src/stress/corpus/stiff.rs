@@ -1,4 +1,5 @@
-//! Stiff effects: implicit integrators decay as the motion does, explicit ones refuse and say which step they can take.
+//! Stiff effects: implicit integrators decay as the motion does, explicit ones refuse and say which
+//! step they can take.
 
 use articulated::simulate::{IntegratorId, NoTorque, Output, Recording, Settings, SimulateError, Simulation, integrators};
 use articulated_core::description::{JointKind, Origin};
@@ -65,8 +66,9 @@ impl Motion {
         }
     }
 
-    /// Every explicit integrator refuses these steps and says from which on it is stable; with three tenths of these, since a force that bends within a step is not its tangent, it comes to
-    /// rest in the right place.
+    /// Every explicit integrator refuses these steps and says from which on it is stable; with
+    /// three tenths of these, since a force that bends within a step is not its tangent, it comes
+    /// to rest in the right place.
     fn refused(&self, case: &Case, step: f64) -> Vec<Row> {
         explicit()
             .map(|integrator| {
@@ -134,7 +136,8 @@ fn damping() -> Vec<Row> {
         let right = motions.iter().all(|(z, motion)| refuses_beyond(integrator, *z, h, motion));
         rows.push(case.holds(format!("{integrator} refuses where it is unstable, with the step that it can take"), right));
     }
-    // Its equations are solved by iteration, which converges up to h·d/m = 2, and up to 1.6 within its rounds; up to there the midpoint rule has no change of sign.
+    // Its equations are solved by iteration, which converges up to h·d/m = 2, and up to 1.6 within
+    // its rounds; up to there the midpoint rule has no change of sign.
     let midpoint = |(z, motion): &(f64, Motion)| match motion.run(IntegratorId::lie_midpoint, Some(h)) {
         Ok(m) => flips(&m.v) == 0.0 && motion.off(&m) * z / h < 1e-3,
         Err(SimulateError::NoConvergence { .. }) => *z > 1.6,
@@ -146,7 +149,8 @@ fn damping() -> Vec<Row> {
     rows
 }
 
-/// Whether a step of h·d/m = z is refused where it is unstable and only there, with the longest that is not.
+/// Whether a step of h·d/m = z is refused where it is unstable and only there, with the longest
+/// that is not.
 fn refuses_beyond(integrator: IntegratorId, z: f64, h: f64, motion: &Motion) -> bool {
     // The largest z with |R(−z)| ≤ 1.
     let limit = match integrator {
@@ -189,7 +193,8 @@ fn friction() -> Vec<Row> {
     let mut rows = motion.decays(&case, None, 0.0);
     let speed = motion.run(IntegratorId::rodas4, None).map_or(f64::NAN, |m| m.v[m.v.len() - 1].abs());
     rows.push(case.row("rodas4: velocity at the end", speed, 1e-9, "m/s"));
-    // The step that ends the slide takes the force from before it, overshoots once into where the law is smooth, and decays.
+    // The step that ends the slide takes the force from before it, overshoots once into where the
+    // law is smooth, and decays.
     rows.extend(motion.decays(&case, Some(0.01), 1.0));
     let back = motion.run(IntegratorId::rodas4, Some(0.01)).map_or(f64::NAN, |m| -m.v.iter().copied().fold(0.0, f64::min));
     rows.push(case.row("rodas4, steps of 0.01 s: velocity backward, of that below which the law is smooth", back / 1e-3, 1.0, ""));

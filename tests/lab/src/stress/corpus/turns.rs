@@ -58,7 +58,8 @@ fn free() -> Model<f64> {
         .model()
 }
 
-/// What is stated of quaternions that are not of norm one: the matrix is off by about 2ε, and a step normalises.
+/// What is stated of quaternions that are not of norm one: the matrix is off by about 2ε, and a
+/// step normalises.
 fn unnormalised() -> Vec<Row> {
     let case = Case::new(
         NAME,

@@ -13,9 +13,10 @@ const SINGLE: f64 = f32::EPSILON as f64 / 2.0;
 /// r |x| + 64 u Σ|terms| + 3 N σ Σ‖terms‖
 /// ```
 ///
-/// u is that of the arithmetic, r that of the number that the result is rounded to at last. σ is the absolute error of a sine: a rotation by sines that are off by σ
-/// changes a vector by √2 σ of its length, and a torque's terms pass N joints on their way out and N on their way back, 2√2 N < 3 N; lengths are meant, since a
-/// sine that is nothing is off by σ too.
+/// u is that of the arithmetic, r that of the number that the result is rounded to at last. σ is
+/// the absolute error of a sine: a rotation by sines that are off by σ changes a vector by √2 σ of
+/// its length, and a torque's terms pass N joints on their way out and N on their way back, 2√2 N <
+/// 3 N; lengths are meant, since a sine that is nothing is off by σ too.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contract {
     roundoff: f64,

@@ -14,7 +14,8 @@ use crate::stress::judge::{Judge, State, call, called, scale};
 use crate::stress::machine::{cast, exact};
 use crate::stress::row::{Case, Row};
 
-/// Of sums of two doubles: what is left beyond one rounding of the result, in units of 2⁻¹⁰⁰ of the terms.
+/// Of sums of two doubles: what is left beyond one rounding of the result, in units of 2⁻¹⁰⁰ of the
+/// terms.
 const SECOND_ORDER: f64 = 1.0;
 
 /// Every function that the code has, in these states.
@@ -116,7 +117,8 @@ impl Judged<'_> {
         }))
     }
 
-    /// Of forward dynamics: how far the torques that accelerations need are from those given, over what is allowed of them.
+    /// Of forward dynamics: how far the torques that accelerations need are from those given, over
+    /// what is allowed of them.
     fn backward(&self, state: &State) -> Option<f64> {
         let State { q, v, tau, .. } = state;
         let (a, n) = (self.made.call(self.function, &self.arguments(state))?, tau.len());
@@ -141,7 +143,8 @@ impl Judged<'_> {
         }))
     }
 
-    /// What rounding did over the bound that is guaranteed of it, where one is finite; none at levels that have none.
+    /// What rounding did over the bound that is guaranteed of it, where one is finite; none at
+    /// levels that have none.
     fn of_bound(&self, states: &[State]) -> Option<f64> {
         let graph = self.graph()?;
         let mut reached = None;
@@ -159,7 +162,8 @@ impl Judged<'_> {
         reached
     }
 
-    /// Of sums of two doubles: what is left of the difference from the graph beyond a rounding of the result, in units of 2⁻¹⁰⁰ of the terms.
+    /// Of sums of two doubles: what is left of the difference from the graph beyond a rounding of
+    /// the result, in units of 2⁻¹⁰⁰ of the terms.
     fn second_order(&self, state: &State) -> Option<f64> {
         let arguments = self.arguments(state);
         let graph = self.graph()?;

@@ -1,13 +1,14 @@
 //! `dynibo` as a peer.
 //!
-//! Its gravity is 9.80665 m/s² downwards, always. The equations of motion are homogeneous in time: with c = g / 9.80665,
+//! Its gravity is 9.80665 m/s² downwards, always. The equations of motion are homogeneous in time:
+//! with c = g / 9.80665,
 //!
 //!   ID(q, v, a; g) = c ID(q, v / √c, a / c; g / c)    and    FD(q, v, τ; g) = c FD(q, v / √c, τ / c; g / c),
 //!
 //! so another g costs three multiplications a joint, inside the timed calls.
 //!
-//! Its free base moves by (angular; linear) in world axes, where the linear acceleration is that of the point, ours by (linear; angular) in body
-//! axes: a' = R (a + ω × v).
+//! Its free base moves by (angular; linear) in world axes, where the linear acceleration is that of
+//! the point, ours by (linear; angular) in body axes: a' = R (a + ω × v).
 
 use std::path::Path;
 
@@ -139,7 +140,8 @@ impl Engine for Dynibo {
     }
 }
 
-/// The matrix with its first rows and columns, (angular; linear) in world axes, as (linear; angular) in body axes.
+/// The matrix with its first rows and columns, (angular; linear) in world axes, as (linear;
+/// angular) in body axes.
 fn turned(from: &[f64], to: &mut [f64], n: usize, back: UnitQuaternion<f64>) {
     let back = back.to_rotation_matrix();
     for (row, out) in from.chunks_exact(n).zip(to.chunks_exact_mut(n)) {

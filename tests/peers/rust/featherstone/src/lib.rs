@@ -1,8 +1,11 @@
-//! `featherstone` as a peer, which computes in single precision; numbers are converted inside the timed calls.
+//! `featherstone` as a peer, which computes in single precision; numbers are converted inside the
+//! timed calls.
 //!
-//! Its placements are those of the parent in the child: a transform (E, t) takes a motion from the parent to the child, E = Rᵀ and t = Rᵀ p where
-//! (R, p) is the child in the parent. Its own reader of URDFs gives it (R, p), and its joints turn by E = exp(q â), so that is mended here: the
-//! bodies are those that its reader makes (one a link, fixed ones too), their placements inverted, and revolute joints get −q.
+//! Its placements are those of the parent in the child: a transform (E, t) takes a motion from the
+//! parent to the child, E = Rᵀ and t = Rᵀ p where (R, p) is the child in the parent. Its own reader
+//! of URDFs gives it (R, p), and its joints turn by E = exp(q â), so that is mended here: the
+//! bodies are those that its reader makes (one a link, fixed ones too), their placements inverted,
+//! and revolute joints get −q.
 
 use std::collections::HashMap;
 use std::path::Path;

@@ -1,4 +1,5 @@
-//! The C interface of a peer (`tests/peers/README.md`) around an engine in Rust: [`export!`] writes it out for a type.
+//! The C interface of a peer (`tests/peers/README.md`) around an engine in Rust: [`export!`] writes
+//! it out for a type.
 
 use std::ffi::{CStr, CString, c_char, c_int};
 use std::path::Path;

@@ -85,9 +85,11 @@ macro_rules! solve {
     };
 }
 
-/// −M⁻¹ B in the place of both B, and M⁻¹ in that of the factors of M = Lᵀ D L: the third matrix has L below the diagonal and D⁻¹ on it.
+/// −M⁻¹ B in the place of both B, and M⁻¹ in that of the factors of M = Lᵀ D L: the third matrix
+/// has L below the diagonal and D⁻¹ on it.
 pub(super) fn columns(b: &mut [Matrix; 3]) {
-    // Processors with AVX-512 whose clock does not slow down for it: Ice Lake and Zen 4, and what came after.
+    // Processors with AVX-512 whose clock does not slow down for it: Ice Lake and Zen 4, and what
+    // came after.
     #[cfg(all(target_arch = "x86_64", target_feature = "avx512dq", target_feature = "avx512vl", target_feature = "avx512vbmi2"))]
     {
         use super::avx512_f64x8::*;

@@ -1,7 +1,9 @@
 
-// Arithmetic that takes and gives vectors in registers. By its own convention the compiler hands them over in memory, unless it inlines a call before anything is optimised, which it
-// does where both functions have the same features; to take three places in memory for each operation away again was up to two fifths of the time to compile. Hence "C", and hence fewer
-// features than the callers have: each of these becomes an instruction first, and is inlined then.
+// Arithmetic that takes and gives vectors in registers. By its own convention the compiler hands
+// them over in memory, unless it inlines a call before anything is optimised, which it does where
+// both functions have the same features; to take three places in memory for each operation away
+// again was up to two fifths of the time to compile. Hence "C", and hence fewer features than the
+// callers have: each of these becomes an instruction first, and is inlined then.
 register_functions! {
     pub(super) extern "C" fn k(x: f64) -> V {
         instruction::k(x as Real)

@@ -8,7 +8,8 @@ const REDUCTION: [f64; 2] = [1.5707963267341256, 6.077100506506192e-11];
 lane_functions! {
     // Sines and cosines of angles within the limit, where a·b + c has two roundings.
     fn split(x: V) -> (V, V) {
-        // x = n·π/2 + hi + lo, |hi| ≤ π/4 and a little, by way of f64; n in the low bits of `quadrant`.
+        // x = n·π/2 + hi + lo, |hi| ≤ π/4 and a little, by way of f64; n in the low bits of
+        // `quadrant`.
         let (quadrant, hi, lo) = reduce(x);
         let z = mul(hi, hi);
         let half = mul(k(0.5), z);

@@ -5,7 +5,8 @@ const LIMIT: f64 = 1e5;
 /// 1.5·2⁵²: adding it rounds to an integer and leaves that integer in the low bits.
 const ROUND: f64 = 6755399441055744.0;
 
-// Minimax polynomials on [−π/4, π/4]; coefficients of fdlibm's k_sin.c and k_cos.c (Sun Microsystems, 1993).
+// Minimax polynomials on [−π/4, π/4]; coefficients of fdlibm's k_sin.c and k_cos.c (Sun
+// Microsystems, 1993).
 const S: [f64; 6] = [
     -1.66666666666666324348e-01,
     8.33333333332248946124e-03,

@@ -3,8 +3,8 @@
 const COARSE: [f64; 2] = [1.5707963267341256, 6.077100506506192e-11];
 
 lane_functions! {
-    // Sines and cosines of angles within the limit, |error| ≤ 10⁻⁷: minimax polynomials on [−π/4, π/4] by Remez' exchange,
-    // sin of degree 7 (1.8e-9) and cos of degree 6 (3.3e-8).
+    // Sines and cosines of angles within the limit, |error| ≤ 10⁻⁷: minimax polynomials on
+    // [−π/4, π/4] by Remez' exchange, sin of degree 7 (1.8e-9) and cos of degree 6 (3.3e-8).
     fn fused(x: V) -> (V, V) {
         let rounded = fmadd(x, k(::core::f64::consts::FRAC_2_PI), k(ROUND));
         let n = sub(rounded, k(ROUND));

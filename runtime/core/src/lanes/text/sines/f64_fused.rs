@@ -1,11 +1,13 @@
 
-/// π/2 in parts of 53, 36 and 53 bits: n times the second is exact for |n| < 2¹⁷, and 2⁻¹⁴⁵ is left over.
+/// π/2 in parts of 53, 36 and 53 bits: n times the second is exact for |n| < 2¹⁷, and 2⁻¹⁴⁵ is left
+/// over.
 const HALF_PI: [f64; 3] = [1.5707963267948966, 6.123233995707727e-17, 2.9038559739793605e-28];
 
 lane_functions! {
     // Sines and cosines of angles within the limit, where a·b + c has one rounding.
     fn fused(x: V) -> (V, V) {
-        // x = n·π/2 + hi + lo, |hi| ≤ π/4 and a little, |lo| ≤ ulp(hi)/2. r is exact, and so is what hi lost.
+        // x = n·π/2 + hi + lo, |hi| ≤ π/4 and a little, |lo| ≤ ulp(hi)/2. r is exact, and so is
+        // what hi lost.
         let rounded = fmadd(x, k(::core::f64::consts::FRAC_2_PI), k(ROUND));
         let n = sub(rounded, k(ROUND));
         let r = fnmadd(n, k(HALF_PI[0]), x);

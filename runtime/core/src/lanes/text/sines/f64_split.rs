@@ -1,11 +1,13 @@
 
-/// π/2 in parts of 33, 33 and 53 bits: n times one of the first two is exact for |n| < 2²⁰, and 2⁻¹²² is left over.
+/// π/2 in parts of 33, 33 and 53 bits: n times one of the first two is exact for |n| < 2²⁰, and
+/// 2⁻¹²² is left over.
 const SPLIT: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21];
 
 lane_functions! {
     // Sines and cosines of angles within the limit, where a·b + c has two roundings.
     fn split(x: V) -> (V, V) {
-        // x = n·π/2 + hi + lo, |hi| ≤ π/4 and a little. r is exact, and so is what hi lost before the last step.
+        // x = n·π/2 + hi + lo, |hi| ≤ π/4 and a little. r is exact, and so is what hi lost before
+        // the last step.
         let rounded = fmadd(x, k(::core::f64::consts::FRAC_2_PI), k(ROUND));
         let n = sub(rounded, k(ROUND));
         let r = fnmadd(n, k(SPLIT[0]), x);
