@@ -15,7 +15,7 @@ pub struct Creep {
     /// The link of the contact, or the joint.
     pub on: String,
     /// Length of the path that it crept, m or rad.
-    pub way: f64,
+    pub distance: f64,
     /// Time spent creeping, s.
     pub time: f64,
 }
@@ -35,7 +35,7 @@ impl Session {
     fn creep_of_joints(&self, recording: &Recording) -> Option<Creep> {
         let creep = |at: Freedom<'_>| {
             let speed = at.effect(EffectId::friction)?.parameters.get(1)? / at.multiplier.abs();
-            let mut creep = Creep { effect: EffectId::friction, on: self.name_of(&at), way: 0.0, time: 0.0 };
+            let mut creep = Creep { effect: EffectId::friction, on: self.name_of(&at), distance: 0.0, time: 0.0 };
             for k in 1..recording.len() {
                 let time = recording.t[k] - recording.t[k - 1];
                 let [a, b] = [k - 1, k].map(|k| recording.v_at(k)[at.v].abs());
@@ -73,17 +73,17 @@ impl Session {
 }
 
 impl Creep {
-    /// One more interval, s, with this way, if that is no sliding.
-    fn add(&mut self, way: f64, time: f64, speed: f64) {
-        if time > 0.0 && way <= SLIDING * speed * time {
-            (self.way, self.time) = (self.way + way, self.time + time);
+    /// One more interval, s, with this distance, if that is no sliding.
+    fn add(&mut self, distance: f64, time: f64, speed: f64) {
+        if time > 0.0 && distance <= SLIDING * speed * time {
+            (self.distance, self.time) = (self.distance + distance, self.time + time);
         }
     }
 }
 
 /// The one with the longest path; `None` if nothing crept.
 fn furthest(all: impl Iterator<Item = Creep>) -> Option<Creep> {
-    all.filter(|creep| creep.time > 0.0).max_by(|a, b| a.way.total_cmp(&b.way))
+    all.filter(|creep| creep.time > 0.0).max_by(|a, b| a.distance.total_cmp(&b.distance))
 }
 
 /// A contact, for creep detection.
@@ -106,12 +106,12 @@ impl Contact {
             normal: unit(field(applied, "normal").try_into().ok()?)?,
             reach: one("height")? + one("radius")?,
             speed: one("speed")?,
-            creep: Creep { effect: EffectId::contact, on: applied.on.clone(), way: 0.0, time: 0.0 },
+            creep: Creep { effect: EffectId::contact, on: applied.on.clone(), distance: 0.0, time: 0.0 },
         })
     }
 
     /// The centre of the sphere in the world frame, m, where it presses. A sphere that rolls
-    /// without slipping moves its centre: that counts as a way here.
+    /// without slipping moves its centre: that counts as a distance here.
     fn pressed_at(&self, places: &[f64]) -> Option<[f64; 3]> {
         let x = places.get(12 * self.frame..12 * (self.frame + 1))?;
         let centre = [0, 1, 2].map(|k| x[9 + k] + (0..3).map(|c| x[3 * k + c] * self.point[c]).sum::<f64>());

@@ -47,24 +47,24 @@ pub(super) struct Parameter {
     pub(super) name: &'static str,
     /// kg, kg·m or kg·m².
     pub(super) value: f64,
-    pub(super) felt: Felt,
+    pub(super) identifiable: Identifiable,
 }
 
 impl Parameter {
     fn of(found: &BaseParameter) -> Self {
-        let felt = match found.identifiability {
-            Identifiability::Alone => Felt::Alone,
-            Identifiability::WithOthers => Felt::WithOthers,
-            Identifiability::Never => Felt::Never,
+        let identifiable = match found.identifiability {
+            Identifiability::Alone => Identifiable::Alone,
+            Identifiability::WithOthers => Identifiable::WithOthers,
+            Identifiability::Never => Identifiable::Never,
         };
-        Self { name: found.name, value: found.value, felt }
+        Self { name: found.name, value: found.value, identifiable }
     }
 }
 
 /// What torques tell of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum Felt {
+pub(super) enum Identifiable {
     Alone,
     /// Only a combination with parameters that come before it.
     WithOthers,
@@ -84,7 +84,7 @@ impl Base {
         let joints: Vec<BaseRow> = base_parameters(&passed).iter().map(|of| row(of, read, &passed, round(of.body))).collect();
         let (links, stages) = (read.links().count(), read.links().count() < joints.len());
         let all = || joints.iter().flat_map(|joint| &joint.parameters);
-        let alone = || all().filter(|parameter| parameter.felt == Felt::Alone).count();
+        let alone = || all().filter(|parameter| parameter.identifiable == Identifiable::Alone).count();
         let identifiable = if stages { identifiable_parameters(read) } else { alone() };
         Some(Self { parameters: 10 * links, stages, regrouped: all().count(), identifiable, merged_joints: 0, joints })
     }
@@ -127,7 +127,7 @@ mod tests {
         let panda = base("panda_like");
         assert_eq!([panda.parameters, panda.regrouped, panda.identifiable], [70, 49, 43]);
         let first = panda.joints.last().unwrap();
-        let alone: Vec<&str> = first.parameters.iter().filter(|p| p.felt == Felt::Alone).map(|p| p.name).collect();
+        let alone: Vec<&str> = first.parameters.iter().filter(|p| p.identifiable == Identifiable::Alone).map(|p| p.name).collect();
         assert_eq!((first.joint.as_str(), alone.as_slice()), ("joint_1", ["I_zz"].as_slice()));
         assert!(panda.joints.iter().any(|j| j.slid != [0.0; 3]));
     }

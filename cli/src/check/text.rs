@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::base::{Base, BaseRow, Felt};
+use super::base::{Base, BaseRow, Identifiable};
 use super::report::{JointRow, LinkRow, Report};
 use crate::excerpt::Excerpts;
 use crate::robot::named;
@@ -155,7 +155,7 @@ fn base_parameters(base: &Base) -> String {
     );
     let mut table = Table::new([("joint", ""), ("frame slid by", "m"), ("parameters", "")]).left(3);
     for row in joints {
-        table.row([row.joint.clone(), moved(row), felt(row)]);
+        table.row([row.joint.clone(), moved(row), listed(row)]);
     }
     format!("{head}\n\n{}", table.text())
 }
@@ -171,11 +171,11 @@ fn moved(row: &BaseRow) -> String {
     if row.turned == 0.0 { slid } else { format!("{slid}, turned {} rad", number(row.turned)) }
 }
 
-fn felt(row: &BaseRow) -> String {
-    let one = |p: &super::base::Parameter| match p.felt {
-        Felt::Never => None,
-        Felt::Alone => Some(format!("{} {}", p.name, number(p.value))),
-        Felt::WithOthers => Some(format!("({} {})", p.name, number(p.value))),
+fn listed(row: &BaseRow) -> String {
+    let one = |p: &super::base::Parameter| match p.identifiable {
+        Identifiable::Never => None,
+        Identifiable::Alone => Some(format!("{} {}", p.name, number(p.value))),
+        Identifiable::WithOthers => Some(format!("({} {})", p.name, number(p.value))),
     };
     let all: Vec<String> = row.parameters.iter().filter_map(one).collect();
     let all = if all.is_empty() { "–".into() } else { all.join("  ") };

@@ -27,7 +27,7 @@ pub(super) struct Summary {
     /// The time that was reached.
     pub(super) end_s: f64,
     /// The requested end time.
-    pub(super) asked_end_s: f64,
+    pub(super) requested_end_s: f64,
     /// The time of the last record: what energies and momentum are of at the end.
     pub(super) last_record_s: f64,
     pub(super) ended: String,
@@ -131,8 +131,8 @@ pub(super) struct Crept {
     pub(super) effect: &'static str,
     /// The link or the joint.
     pub(super) on: String,
-    pub(super) way: f64,
-    /// Of the way: `m`, or `rad` of a joint that rotates.
+    pub(super) distance: f64,
+    /// Of the distance: `m`, or `rad` of a joint that rotates.
     pub(super) unit: &'static str,
     /// How long it crept.
     pub(super) time_s: f64,
@@ -149,7 +149,7 @@ impl Crept {
             (_, Some(JointKind::Planar | JointKind::Floating)) => "rad, m",
             _ => "rad",
         };
-        Self { effect: creep.effect.row().name, on: creep.on.clone(), way: creep.way, unit, time_s: creep.time }
+        Self { effect: creep.effect.row().name, on: creep.on.clone(), distance: creep.distance, unit, time_s: creep.time }
     }
 }
 
@@ -185,7 +185,7 @@ impl Summary {
             integrator: Method { name: row.name, order: row.order, step_s: settings.step, rtol: settings.rtol, atol: settings.atol },
             start_s: settings.start,
             end_s: motion.reached,
-            asked_end_s: settings.end,
+            requested_end_s: settings.end,
             last_record_s: last_record,
             ended: motion.ending.to_string(),
             status: if motion.error.is_some() { "error" } else { "ok" },

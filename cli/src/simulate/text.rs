@@ -47,10 +47,10 @@ fn method(s: &Summary) -> String {
 
 /// From when to when, and the last record where that is another time.
 fn span(s: &Summary) -> String {
-    let time = |t: f64| time(t, s.asked_end_s - s.start_s);
-    let [start, asked, recorded] = [s.start_s, s.asked_end_s, s.last_record_s].map(time);
+    let time = |t: f64| time(t, s.requested_end_s - s.start_s);
+    let [start, asked, recorded] = [s.start_s, s.requested_end_s, s.last_record_s].map(time);
     let recorded = if s.end_s == s.last_record_s { String::new() } else { format!("; last record at {recorded} s") };
-    let of = if s.end_s == s.asked_end_s { String::new() } else { format!(" of {asked} s") };
+    let of = if s.end_s == s.requested_end_s { String::new() } else { format!(" of {asked} s") };
     format!("from {start} s to {} s{of}, ended {}{recorded}", time(s.end_s), s.ended)
 }
 
@@ -88,7 +88,7 @@ fn table(s: &Summary) -> Table {
     row("linear momentum", length(&p.start[3..]), length(&p.end[3..]), "kg·m/s");
     row("  largest change", none(), number(p.largest_change_linear), "kg·m/s");
     for crept in &s.creep {
-        row(&format!("creep of {} at {}", crept.effect, plain(&crept.on)), none(), number(crept.way), crept.unit);
+        row(&format!("creep of {} at {}", crept.effect, plain(&crept.on)), none(), number(crept.distance), crept.unit);
         row("  while it should be held", none(), number(crept.time_s), "s");
     }
     if last != "end" {

@@ -140,6 +140,6 @@ fn what_friction_holds_is_told_with_its_creep() {
     let (creep, x) = (&summary["creep"][0], 9.81 * 0.5 / 6.0_f64);
     assert_eq!((&creep["effect"], &creep["on"]), (&"friction".into(), &"s".into()));
     let expected = 10.0 * 1e-5 * x / (1.0 - x * x).sqrt();
-    assert!((creep["way"].as_f64().unwrap() / expected - 1.0).abs() < 2e-3, "{creep} {expected}");
+    assert!((creep["distance"].as_f64().unwrap() / expected - 1.0).abs() < 2e-3, "{creep} {expected}");
     assert_eq!(summary["integrator"]["name"], "rodas4");
 }

@@ -399,7 +399,7 @@ fn a_step_that_is_not_stable_is_refused_and_what_was_up_to_then_is_there() {
     assert!(folder.path().join("recording.csv").is_file(), "{}", ended.out);
     assert!(ended.out.contains("from 0 s to 0 s of 1 s, ended by an error\n"), "{}", ended.out);
     let told = run(&["simulate", file.name(), "--format", "json"]).json();
-    assert!(told["asked_end_s"] == 1.0 && told["last_record_s"] == 0.0 && told["end_s"] == 0.0, "{told}");
+    assert!(told["requested_end_s"] == 1.0 && told["last_record_s"] == 0.0 && told["end_s"] == 0.0, "{told}");
     assert!(told["error"].as_str().unwrap().contains("at t = "), "{told}");
 }
 
@@ -409,7 +409,7 @@ fn what_is_told_of_the_end_is_told_with_its_time() {
     let scene = |output: &str| format!("robot = \"simple_pendulum\"\n[initial]\nv = [1.0]\n[simulation]\nend = 2\noutput = {output}\n");
     let file = File::new("early.toml", scene("[0.3]").as_bytes());
     let told = run(&["simulate", file.name(), "--format", "json"]).json();
-    assert_eq!((&told["end_s"], &told["asked_end_s"], &told["last_record_s"]), (&2.0.into(), &2.0.into(), &0.3.into()));
+    assert_eq!((&told["end_s"], &told["requested_end_s"], &told["last_record_s"]), (&2.0.into(), &2.0.into(), &0.3.into()));
     let out = run(&["simulate", file.name()]).out;
     assert!(out.contains("from 0 s to 2 s, ended at its end; last record at 0.3 s") && out.contains("last record     unit"), "{out}");
     let at = |part: &str| out.find(part).unwrap();

@@ -30,7 +30,7 @@ fn a_joint_that_friction_holds_creeps_at_its_closed_form_and_never_slides() {
     assert!((q / (10.0 * expected) - 1.0).abs() < 1e-3 && (v / expected - 1.0).abs() < 1e-3, "{q} {v} {expected}");
     let [creep] = &outcome.creep[..] else { panic!("{:?}", outcome.creep) };
     assert_eq!((creep.effect, creep.on.as_str()), (EffectId::friction, "s"));
-    assert!((creep.way / q - 1.0).abs() < 1e-3 && (creep.time - 10.0).abs() < 0.011, "{creep:?}");
+    assert!((creep.distance / q - 1.0).abs() < 1e-3 && (creep.time - 10.0).abs() < 0.011, "{creep:?}");
 }
 
 /// 7 N·m instead: 0.7007 rad/s² at first, and it slides.
@@ -65,7 +65,7 @@ fn a_contact_creeps_at_its_closed_form() {
     let [creep] = &outcome.creep[..] else { panic!("{:?}", outcome.creep) };
     assert_eq!((creep.effect, creep.on.as_str()), (EffectId::contact, "puck"));
     let expected = creeping(1e-5, 0.5);
-    assert!((creep.way / creep.time / expected - 1.0).abs() < 1e-2 && creep.time > 1.9, "{creep:?} {expected}");
+    assert!((creep.distance / creep.time / expected - 1.0).abs() < 1e-2 && creep.time > 1.9, "{creep:?} {expected}");
 }
 
 #[test]

@@ -141,8 +141,8 @@ fn timed(runners: &mut [Box<dyn Runner + '_>], target: usize, found: &Found, set
         let Some((effort, error)) = found[target] else { continue };
         runner.run(effort);
         let (steps, evaluations) = runner.spent();
-        let (name, order, own) = (runner.name(), runner.order(), runner.is_ours());
-        reached.push(Reached { name, order, own, effort, error, steps, evaluations, ..Reached::default() });
+        let (name, order, ours) = (runner.name(), runner.order(), runner.is_ours());
+        reached.push(Reached { name, order, ours, effort, error, steps, evaluations, ..Reached::default() });
         runs.push(Run::new(1, move |rounds| {
             let clock = Instant::now();
             (0..rounds).for_each(|_| {

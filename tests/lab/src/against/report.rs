@@ -34,7 +34,7 @@ pub(super) struct Target {
 pub(super) struct Reached {
     pub(super) name: String,
     pub(super) order: u32,
-    pub(super) own: bool,
+    pub(super) ours: bool,
     pub(super) effort: Effort,
     pub(super) error: f64,
     pub(super) steps: u64,
@@ -48,9 +48,9 @@ pub(super) struct Reached {
 impl Target {
     pub(super) fn new(error: f64, reached: Vec<Reached>) -> Self {
         let fastest = |who: &dyn Fn(&Reached) -> bool| reached.iter().filter(|r| who(r)).map(|r| r.wall_ms).min_by(f64::total_cmp);
-        let peer = fastest(&|r| !r.own);
+        let peer = fastest(&|r| !r.ours);
         let over = |own: Option<f64>| Some(peer? / own?);
-        let (all, fourth) = (over(fastest(&|r| r.own)), over(fastest(&|r| r.own && r.order == 4)));
+        let (all, fourth) = (over(fastest(&|r| r.ours)), over(fastest(&|r| r.ours && r.order == 4)));
         Self { error, times_faster: all, times_faster_at_order_4: fourth, reached }
     }
 }
@@ -61,7 +61,7 @@ mod tests {
 
     #[test]
     fn the_fastest_of_each_side_are_compared() {
-        let reached = |name: &str, own, order, wall_ms| Reached { name: name.into(), own, order, wall_ms, ..Reached::default() };
+        let reached = |name: &str, ours, order, wall_ms| Reached { name: name.into(), ours, order, wall_ms, ..Reached::default() };
         let all = vec![reached("a", false, 4, 30.0), reached("b", false, 4, 20.0), reached("c", true, 4, 4.0), reached("d", true, 8, 1.0)];
         let target = Target::new(1e-6, all);
         assert_eq!((target.times_faster, target.times_faster_at_order_4), (Some(20.0), Some(5.0)));

@@ -83,7 +83,7 @@ fn errors_fall_with_evaluations_as_the_order_says() {
         let (slope, order) = (slope(&curve.samples).unwrap_or_default(), f64::from(integrator.order));
         println!("{} {slope:.2} {:?}", integrator.name, seen(&curve.samples));
         assert!((slope - order).abs() <= 0.2, "{}: {slope} {:?}", integrator.name, seen(&curve.samples));
-        assert!(curve.samples.iter().all(|s| s.told), "{}: {:?}", integrator.name, seen(&curve.samples));
+        assert!(curve.samples.iter().all(|s| s.resolved), "{}: {:?}", integrator.name, seen(&curve.samples));
         assert!(decades(&curve.samples) >= 1.5, "{}: {:?}", integrator.name, seen(&curve.samples));
     }
 }
@@ -171,8 +171,12 @@ fn the_method_of_order_8_has_it_over_twelve_decades_of_errors_and_the_integrator
         let exact = by_series(SLOW);
         let drift = (energy(exact) - energy(SLOW.start())).to_f64().abs();
         assert!(drift < 1e-40, "{drift:e}");
-        let digits =
-            |n: u32| Sample { evaluations: 12 * u64::from(n), error: apart(in_digits(SLOW, n), exact), told: true, ..Sample::default() };
+        let digits = |n: u32| Sample {
+            evaluations: 12 * u64::from(n),
+            error: apart(in_digits(SLOW, n), exact),
+            resolved: true,
+            ..Sample::default()
+        };
         let fine: Vec<Sample> = counts(40).map(digits).collect();
         let slope = slope(&fine).unwrap_or_default();
         println!("dop853 {slope:.2} {:?}", seen(&fine));
@@ -230,7 +234,7 @@ fn a_controller_costs_no_order() {
         let slope = slope(&curve.samples).unwrap_or_default();
         println!("{what} {slope} {:?} {agreement:e}", seen(&curve.samples));
         assert!((slope - 4.0).abs() <= 0.2 && decades(&curve.samples) >= 1.5, "{what}: {slope} {:?}", seen(&curve.samples));
-        assert!(curve.samples.iter().all(|s| s.told), "{what}: {agreement:e} {:?}", seen(&curve.samples));
+        assert!(curve.samples.iter().all(|s| s.resolved), "{what}: {agreement:e} {:?}", seen(&curve.samples));
     }
 }
 

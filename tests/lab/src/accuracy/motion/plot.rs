@@ -11,7 +11,7 @@ type What = fn(&Sample) -> Option<f64>;
 
 /// Of the error over evaluations and over time, and of the energy over evaluations.
 pub(super) fn diagrams(m: &Motion) -> Vec<(String, Drawing)> {
-    let error: What = |s| (s.told && s.error > 0.0).then_some(s.error);
+    let error: What = |s| (s.resolved && s.error > 0.0).then_some(s.error);
     let evaluations: What = |s| Some(s.evaluations as f64);
     let wall: What = |s| Some(s.wall * 1e3);
     let energy: What = |s| s.energy.filter(|e| *e > 0.0);

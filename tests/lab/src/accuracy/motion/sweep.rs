@@ -110,7 +110,7 @@ pub(crate) struct Sample {
     /// The change of the momentum, relative to it, where nothing acts from outside.
     pub momentum: Option<f64>,
     /// Whether the reference is accurate enough to determine this error.
-    pub told: bool,
+    pub resolved: bool,
     /// Whether the error is larger than the motion itself, as that of steps that are not stable is.
     pub lost: bool,
 }
@@ -232,7 +232,7 @@ impl Curve {
 pub(super) fn samples<T>(settings: &[T], repetitions: usize, take: &mut dyn FnMut(&T) -> Option<Sample>) -> Vec<Sample> {
     let mut samples: Vec<Sample> = Vec::new();
     for setting in settings {
-        if samples.iter().filter(|s| !s.told).count() >= 2 {
+        if samples.iter().filter(|s| !s.resolved).count() >= 2 {
             break;
         }
         let Some(mut best) = take(setting) else { continue };
@@ -252,14 +252,14 @@ pub(super) fn sample(subject: &Subject, (end, agreement): (&State, f64), how: Ho
         How::Tolerance(t) => (None, Some(t)),
     };
     let End { evaluations, wall, energy, momentum, .. } = *run;
-    let (told, lost) = (error >= 100.0 * agreement, error > extent(subject, end));
-    Sample { step, tolerance, evaluations, wall, error, energy, momentum, told, lost }
+    let (resolved, lost) = (error >= 100.0 * agreement, error > extent(subject, end));
+    Sample { step, tolerance, evaluations, wall, error, energy, momentum, resolved, lost }
 }
 
 /// The logarithms of evaluations and errors of the samples that the reference can tell and that are
 /// past the first coarse ones.
 fn points(samples: &[Sample]) -> Vec<(f64, f64)> {
-    let within = |s: &&Sample| s.told && s.error > 0.0 && s.error < COARSE;
+    let within = |s: &&Sample| s.resolved && s.error > 0.0 && s.error < COARSE;
     samples.iter().filter(within).map(|s| ((s.evaluations as f64).log10(), s.error.log10())).collect()
 }
 
@@ -307,7 +307,7 @@ mod tests {
     use super::*;
 
     fn samples(error: impl Fn(f64) -> f64, counts: &[u64]) -> Vec<Sample> {
-        let sample = |n: &u64| Sample { evaluations: *n, error: error(*n as f64), told: true, ..Sample::default() };
+        let sample = |n: &u64| Sample { evaluations: *n, error: error(*n as f64), resolved: true, ..Sample::default() };
         counts.iter().map(sample).collect()
     }
 
@@ -335,7 +335,7 @@ mod tests {
     #[test]
     fn what_the_reference_cannot_tell_does_not_count_for_the_order() {
         let mut samples = samples(|n| n.powi(-2), &[10, 30, 100, 300, 1000]);
-        samples.extend([3000, 10_000].map(|evaluations| Sample { evaluations, error: 1e-6, told: false, ..Sample::default() }));
+        samples.extend([3000, 10_000].map(|evaluations| Sample { evaluations, error: 1e-6, resolved: false, ..Sample::default() }));
         let curve = Curve::new("midpoint".into(), false, 2, samples);
         assert!((curve.slope.unwrap() - 2.0).abs() < 1e-12 && curve.slope_rows == 3, "{curve:?}");
     }

@@ -79,7 +79,7 @@ fn row(s: &Sample) -> Vec<String> {
 fn error(s: &Sample) -> String {
     match s {
         Sample { lost: true, .. } => format!("lost {}", number(s.error)),
-        Sample { told: true, .. } => number(s.error),
+        Sample { resolved: true, .. } => number(s.error),
         _ => format!("< {}", number(s.error)),
     }
 }
@@ -95,7 +95,7 @@ pub(super) fn csv(m: &Motion) -> String {
             let _ = writeln!(
                 out,
                 "{},{},{},{step},{tolerance},{},{:e},{:e},{energy},{momentum},{},{}",
-                m.scene, c.integrator, c.order, s.evaluations, s.wall, s.error, s.told, s.lost
+                m.scene, c.integrator, c.order, s.evaluations, s.wall, s.error, s.resolved, s.lost
             );
         }
     }
@@ -131,7 +131,7 @@ mod tests {
             error,
             energy: Some(error / 2.0),
             momentum: None,
-            told: error > 1e-11,
+            resolved: error > 1e-11,
             lost: false,
         };
         let samples = vec![sample(10, 1e-3), sample(100, 1e-7), sample(1000, 1e-12)];
@@ -158,7 +158,7 @@ mod tests {
         let before = drawn(&m);
         m.curves[0]
             .samples
-            .insert(0, Sample { evaluations: 8, error: 1e98, energy: Some(1.0), told: true, lost: true, ..Sample::default() });
+            .insert(0, Sample { evaluations: 8, error: 1e98, energy: Some(1.0), resolved: true, lost: true, ..Sample::default() });
         let line = "1 run not drawn: off by more than the motion itself (3 rad, m, and those a second)";
         for (with, without) in drawn(&m).iter().zip(&before) {
             assert!(with.contains(line) && !with.contains("1e98") && !without.contains("not drawn"));
@@ -180,7 +180,7 @@ mod tests {
             evaluations: 500 + 100 * k as u64,
             wall: 1e-4 * (k + 1) as f64,
             error,
-            told: error > 1e-10,
+            resolved: error > 1e-10,
             ..Sample::default()
         };
         let samples = errors.into_iter().enumerate().map(sample).collect();
@@ -210,7 +210,7 @@ mod tests {
         let m = motion();
         assert!(text(&m).contains("rk4, order 4; too few rows to measure it\n"));
         let shown = |order: u32, power: i32| {
-            let sample = |n: u64| Sample { evaluations: n, error: (n as f64).powi(power), told: true, ..Sample::default() };
+            let sample = |n: u64| Sample { evaluations: n, error: (n as f64).powi(power), resolved: true, ..Sample::default() };
             let samples = [10, 30, 100, 300, 1000].map(sample).to_vec();
             text(&Motion { curves: vec![Curve::new("a".into(), false, order, samples)], ..motion() })
         };
