@@ -27,6 +27,7 @@ TARGET = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
 PLACE = TARGET / "browser"
 SIZE = (1280, 800)
 SCENES = [("arm", 0.5), ("golf_swing", None), ("humanoid_float", 0.2), ("quadruped_drop", 0.3)]
+STARTED = time.monotonic()
 FIRST = b"\x1aE\xdf\xa3"  # of a WebM file
 
 
@@ -193,7 +194,7 @@ def opened(path, *, webgl=True):
 def finish(browser, name):
     """No complaint of the browser."""
     assert browser.complaints() == [], f"{name}: {browser.complaints()}"
-    print(f"{name}: ok", flush=True)
+    print(f"{name}: ok, {time.monotonic() - STARTED:.0f} s", flush=True)
 
 
 def check(browser, articulated, folder):
@@ -205,8 +206,9 @@ def check(browser, articulated, folder):
         assert "http" not in page.read_text()
         browser.open(page)
         plays(browser, lambda name, image: image.save(folder / f"{scene}_{name}.png"))
-        turns(browser)
-        follows(browser)
+        if scene in ["arm", "quadruped_drop"]:
+            turns(browser)
+            follows(browser)
         if scene == "golf_swing":
             toggles(browser, "names")
             toggles(browser, "boxes")
@@ -246,7 +248,7 @@ def check_without_webgl(path, folder):
             plays(browser, lambda part, image: image.save(folder / f"{name}_{part}_plain.png"))
             # That the browser has no WebGL it says itself.
             assert [c for c in browser.complaints() if "WebGL" not in c] == [], browser.complaints()
-            print(f"{name} without WebGL: ok", flush=True)
+            print(f"{name} without WebGL: ok, {time.monotonic() - STARTED:.0f} s", flush=True)
 
 
 def main():

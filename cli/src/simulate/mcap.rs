@@ -142,7 +142,7 @@ fn transform<'a>(timestamp: Time, parent: &'a str, child: &'a str, place: &Place
     Transform { timestamp, parent_frame_id: parent, child_frame_id: child, translation: Vector { x, y, z }, rotation }
 }
 
-fn object(title: &str, properties: Value) -> Value {
+fn object(title: &str, properties: &Value) -> Value {
     json!({ "title": title, "type": "object", "properties": properties })
 }
 
@@ -159,7 +159,7 @@ fn time() -> Value {
 fn transforms_schema() -> Value {
     let transform = object(
         "foxglove.FrameTransform",
-        json!({
+        &json!({
             "timestamp": time(),
             "parent_frame_id": { "type": "string" },
             "child_frame_id": { "type": "string" },
@@ -167,15 +167,15 @@ fn transforms_schema() -> Value {
             "rotation": numbers(&["x", "y", "z", "w"]),
         }),
     );
-    object(TRANSFORMS.1, json!({ "transforms": { "type": "array", "items": transform } }))
+    object(TRANSFORMS.1, &json!({ "transforms": { "type": "array", "items": transform } }))
 }
 
 fn joints_schema() -> Value {
     let list = |of: &str| json!({ "type": "array", "items": { "type": of } });
     object(
         JOINTS.1,
-        json!({
-            "header": object("std_msgs/msg/Header", json!({ "stamp": time(), "frame_id": { "type": "string" } })),
+        &json!({
+            "header": object("std_msgs/msg/Header", &json!({ "stamp": time(), "frame_id": { "type": "string" } })),
             "name": list("string"),
             "position": list("number"),
             "velocity": list("number"),
