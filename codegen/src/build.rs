@@ -15,7 +15,14 @@ use crate::{Appended, Base, Generated, Origin, Payload, Real, Reference, Request
 ///
 /// ```no_run
 /// // build.rs
-/// articulated_codegen::Build::new("robots/arm.urdf").functions(["inverse_dynamics"]).write("arm");
+/// use articulated_codegen::{Build, Payload};
+///
+/// Build::new("robots/arm.urdf") // from the crate's folder
+///     .functions(["inverse_dynamics", "hold = inverse_dynamics(v = 0, a = 0)"])
+///     .payload(Payload { link: "tool".into(), mass: 0.5, ..Payload::default() }) // kg
+///     .lock("elbow", [0.5]) // rad
+///     .batch(["f64"])
+///     .write("arm"); // $OUT_DIR/arm.rs
 /// ```
 /// and in the crate: `#[allow(dead_code)] mod arm { include!(concat!(env!("OUT_DIR"), "/arm.rs")); }`.
 #[derive(Clone, Debug)]

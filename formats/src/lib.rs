@@ -1,5 +1,8 @@
 //! Readers of robot files: the bytes of a file become a [`Description`], or every mistake of the file at once.
 //!
+//! [`read_file`] reads the bytes of a file, [`read`] returns a [`Reading`] with the description, and
+//! [`urdf::write`] writes a description as a URDF:
+//!
 //! ```
 //! use articulated_formats::{Options, read};
 //!
@@ -11,9 +14,24 @@
 //! </robot>"#;
 //! let reading = read(bytes, &Options::default()).unwrap();
 //! assert_eq!(reading.description.joints[0].axis, [0.0, 0.0, 1.0]);
+//! let text = articulated_formats::urdf::write(&reading.description);
+//! assert_eq!(read(text.as_bytes(), &Options::default()).unwrap().description, reading.description);
 //!
 //! let diagnostics = read(b"<robot name='nothing'/>", &Options::default()).unwrap_err();
 //! assert!(diagnostics.to_string().contains("link"));
+//! ```
+//!
+//! A file of at most [`MOST_BYTES`], with its name in all messages:
+//!
+//! ```no_run
+//! use articulated_formats::{MOST_BYTES, Options, read, read_file};
+//!
+//! let bytes = read_file("arm.urdf".as_ref(), MOST_BYTES)?;
+//! match read(&bytes, &Options { file: "arm.urdf".into(), ..Options::default() }) {
+//!     Ok(reading) => reading.warnings.iter().for_each(|warning| eprintln!("warning: {warning}")),
+//!     Err(diagnostics) => eprintln!("{diagnostics}"),
+//! }
+//! # Ok::<(), std::io::Error>(())
 //! ```
 //!
 //! Invariants:

@@ -1,8 +1,16 @@
-//! The bundled robots: eleven URDF files, written for this project from published figures, and the bundled scenes. Their sources, and what each
-//! of them exercises, stand in the crate's README.
+//! The bundled robots: eleven URDF files, written for this project from published figures, and the
+//! bundled scenes. The crate's README names their sources and their purpose.
 //!
-//! Two of them are here as generated code too, one in each of the two ways: [`quadruped`] by the macro, [`panda_like`] by the build
-//! script. Any of them can be had by a user's own crate in the same few lines.
+//! Two robots are also generated code: [`quadruped`] by the macro, [`panda_like`] by the build
+//! script. A user's crate generates any of them in the same few lines.
+//!
+//! ```
+//! use articulated_core::description::Base;
+//!
+//! let arm = articulated_models::robot("ur5_like").expect("it is bundled");
+//! assert!(arm.base == Base::Fixed && arm.urdf.contains("<robot name=\"ur5_like\""));
+//! assert_eq!(articulated_models::ROBOTS.len(), 11);
+//! ```
 
 use articulated_core::description::Base;
 

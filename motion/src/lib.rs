@@ -1,6 +1,8 @@
 //! A scene's motion in a program: its start, its control, its events, moved by any robot.
 //!
-//! A [`Session`] is a scene with its robot. It moves on anything that has dynamics: the generic model, and generated robots.
+//! A [`Session`] is a scene with its robot. [`Session::open`] reads it, [`Session::run`] moves it,
+//! and [`Session::run_with`] moves it with another control. The robot is anything that has dynamics:
+//! the generic model, or a generated robot.
 //!
 //! ```
 //! use articulated_motion::{Ending, Session};

@@ -1,8 +1,28 @@
-//! Robot dynamics, spelled out.
+//! Robot dynamics as straight-line code, and the same algorithms as a library.
 //!
-//! `articulated` reads one robot's URDF when your crate is built and writes that robot's dynamics out as straight-line Rust
-//! ([`robot!`], or a build script with the crate `articulated-codegen`). The same algorithms run here generically, on any robot loaded at run time
-//! ([`load`], or [`describe`] to lock its joints, load it or append others first). Both sides implement the trait [`Dynamics`].
+//! Start with one of these three:
+//!
+//! | you have | call | you get |
+//! |---|---|---|
+//! | a robot that is known when the crate is built | [`robot!`] | a module with one function for each name in `functions` |
+//! | a robot that is loaded at run time | [`load`], or [`describe`] to edit it first | a [`Model`] with all functions of [`Dynamics`] |
+//! | either of them, and a motion | [`simulate::Simulation`] | a recording of q, v and energies |
+//!
+//! The macro. A build script with the crate `articulated-codegen` generates the same code:
+//!
+//! ```
+//! articulated::robot! {
+//!     pub mod arm {
+//!         urdf = "tests/simulate/urdf/chain.urdf", // from the folder of Cargo.toml
+//!         functions = [inverse_dynamics],
+//!     }
+//! }
+//!
+//! let tau: [f64; arm::NV] = arm::inverse_dynamics(&[0.1; arm::NQ], &[0.0; arm::NV], &[0.0; arm::NV]); // N·m
+//! assert!(tau.iter().all(|tau| tau.is_finite()));
+//! ```
+//!
+//! The library. A workspace is made once, and results are written into a slice:
 //!
 //! ```
 //! use articulated::{Base, Dynamics};
@@ -17,9 +37,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Conventions: SI units and radians. Vectors of six are (angular; linear). Joints are ordered depth-first in the URDF's order; names are in [`Model::joints`]. A floating base comes
-//! first: of q its position and quaternion (x, y, z, w); of v, a and τ its [ω; v], the rates of these, and [m; f], all in its own axes. Matrices are given row by row. Gravity is
-//! (0, 0, −9.81) m/s² in the world frame unless [`Model::with_gravity`] says otherwise.
+//! The module [`simulate`] begins with an example of a simulation. Generated robots and models
+//! implement the trait [`Dynamics`], so a function over that trait accepts both.
+//!
+//! Conventions: SI units and radians. Vectors of six are (angular; linear). Joints are ordered
+//! depth-first in the URDF's order; names are in [`Model::joints`]. A floating base comes first: of
+//! q its position and quaternion (x, y, z, w); of v, a and τ its [ω; v], their rates, and [m; f],
+//! all in its own axes. Matrices are written row by row. Gravity is (0, 0, −9.81) m/s² in the world
+//! frame unless [`Model::with_gravity`] changes it.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 pub use articulated_core::algorithm::checked::{Factor, Singular, Solver, Unsolved, checked_forward_dynamics};

@@ -1,5 +1,8 @@
 //! Scenes: a robot, its base, its gravity, the effects that matter, and a motion, read from TOML.
 //!
+//! [`Scene::read`] reads a scene's text, [`open`] reads the files that it names too, and
+//! [`Opened::build`] returns the robot with the scene's edits and effects:
+//!
 //! ```
 //! use articulated_scene::Scene;
 //!
@@ -8,6 +11,21 @@
 //!
 //! let errors = Scene::read("arm.toml", "robot = \"panda_like\"\n[effects.dampign]\n\"*\" = 0.1\n").unwrap_err();
 //! assert!(errors.to_string().starts_with("arm.toml:2: effects.dampign: found a key that is not known"));
+//! ```
+//!
+//! [`open`] reads a scene's file and all files that it names. With documents in memory:
+//!
+//! ```
+//! use articulated_core::description::Base;
+//! use articulated_scene::{Opened, Scene};
+//!
+//! let urdf = r#"<robot name="door"><link name="frame"/>
+//!   <link name="leaf"><inertial><mass value="8"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="0.2"/></inertial></link>
+//!   <joint name="hinge" type="continuous"><parent link="frame"/><child link="leaf"/><axis xyz="0 0 1"/></joint></robot>"#;
+//! let scene = Scene::read("door.toml", "effects = { damping = { hinge = 0.1 } }")?;
+//! let door = Opened::new(scene, "door.urdf", urdf.into(), Base::Fixed, vec![]).build()?;
+//! assert_eq!((door.model.nv(), door.effects.len()), (1, 1)); // the model has the damping, N·m·s/rad
+//! # Ok::<(), articulated_core::diagnostic::Diagnostics>(())
 //! ```
 //!
 //! The way of a scene: text → tree (tables and numbers with their lines) → [`Scene`] (checked, by tables of keys) → against a robot:

@@ -20,9 +20,22 @@ macro_rules! methods {
 
         /// A robot's dynamics. Code written over this trait runs on generated robots and on a [`Model`] alike.
         ///
-        /// Every function of the table is a method, with what it takes and gives; more on each is at the function of the same name in
+        /// Every function of the table is a method. Its documentation has arguments and results; more is at the function of the same name in
         /// [`crate::algorithm`]. Results are written row by row. A slice of the wrong length is an error, and so is a function that
-        /// a robot was generated without; nothing panics, as long as nobody has changed the fields of a [`Model`] into what is none.
+        /// a robot was generated without. Nothing panics.
+        ///
+        /// ```
+        /// use articulated_core::algorithm::FunctionError;
+        /// use articulated_core::dynamics::Dynamics;
+        ///
+        /// /// Torques that hold any robot at q, N·m or N.
+        /// fn holding<R: Dynamics>(robot: &R, q: &[f64]) -> Result<Vec<f64>, FunctionError> {
+        ///     let mut ws = robot.workspace(); // once, outside of loops
+        ///     let mut tau = vec![0.0; robot.shape().nv];
+        ///     robot.gravity_torque(&mut ws, q, &mut tau)?;
+        ///     Ok(tau)
+        /// }
+        /// ```
         pub trait Dynamics<S: Scalar = f64> {
             /// What an evaluation needs room for; `()` for generated robots.
             type Workspace;

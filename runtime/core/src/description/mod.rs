@@ -32,6 +32,20 @@ pub use origin::{Origin, Rotation};
 pub use shaft::Shaft;
 
 /// A tree of links and joints. Indices into `links`, `joints` and `frames` follow the order of the file.
+///
+/// It can be edited before [`Model::new`](crate::model::Model::new) makes a model of it:
+///
+/// ```
+/// use articulated_core::description::{Description, EditError, Joint, JointKind, Link, Payload};
+///
+/// let link = |name: &str| Link { name: name.into(), ..Link::default() };
+/// let slide = Joint { name: "slide".into(), kind: JointKind::Prismatic, parent: 0, child: 1, axis: [0.0, 0.0, 1.0], ..Joint::default() };
+/// let mut lift = Description { name: "lift".into(), links: vec![link("mast"), link("fork")], joints: vec![slide], frames: vec![] };
+/// lift.attach(&Payload { link: "fork".into(), mass: 100.0, ..Payload::default() })?;
+/// lift.lock("slide", &[0.3])?; // m
+/// assert_eq!(lift.joints[lift.joint("slide").unwrap()].locked, Some(vec![0.3]));
+/// # Ok::<(), EditError>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Description {
     /// The robot's name.

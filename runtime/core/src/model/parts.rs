@@ -52,7 +52,15 @@ impl<S: Scalar> Model<S> {
         Ok(Self { name, gravity, wrench_reference, bodies, frames, joints, nq, nv })
     }
 
-    /// The same model with its parts changed.
+    /// The same model with its parts changed, here with bodies that weigh twice as much:
+    ///
+    /// ```
+    /// use articulated_core::model::Model;
+    ///
+    /// fn twice_as_heavy(model: Model<f64>) -> Model<f64> {
+    ///     model.changed(|parts| parts.bodies.iter_mut().for_each(|body| body.inertia = body.inertia.map(|x| 2.0 * x)))
+    /// }
+    /// ```
     ///
     /// # Panics
     /// If `change` breaks a rule of [`Self::from_parts`].

@@ -1,4 +1,4 @@
-//! The measurements for people.
+//! The measurements as text.
 
 mod peers;
 
@@ -14,8 +14,9 @@ use crate::ledger::Stage;
 use crate::robot::named;
 use crate::table::{Table, counted, freedom, plain, wrapped};
 
+/// The summary, then what was measured, then the tables.
 pub(super) fn text(report: &Report) -> String {
-    let mut out = head(report);
+    let mut out = wrapped(&summary(report)) + "\n" + &head(report);
     let stages = stages_of(report);
     for (title, table, legend) in [
         ("Time of a call: median, and quartiles' distance (IQR)".to_owned(), times(report), TIMES),
@@ -61,7 +62,7 @@ pub(super) fn text(report: &Report) -> String {
             let _ = write!(out, "\n{}{}{legend}", wrapped(&(title + "\n")), indent(&table.text()));
         }
     }
-    out + "\n" + &wrapped(&newcomer(report))
+    out
 }
 
 const TIMES: &str = "generated: for this processor; any processor: the same source for any of its kind, where that is other code; generic: the library, for any robot";
@@ -244,16 +245,16 @@ fn errors(report: &Report) -> Table {
     table
 }
 
-/// Two sentences that say what was seen.
-fn newcomer(report: &Report) -> String {
+/// Two sentences: how much faster generated code is, and how exact.
+fn summary(report: &Report) -> String {
     let ratio = |f: &FunctionReport| f.generic_over_generated.median;
     let Some(best) = report.functions.iter().max_by(|a, b| ratio(a).total_cmp(&ratio(b))) else { return String::new() };
     let least = times_of(report.functions.iter().map(ratio).fold(f64::INFINITY, f64::min));
     let most = times_of(ratio(best));
     let gain = if least == most { format!("{most} times") } else { format!("{least} times to {most} times ({})", best.function) };
     format!(
-        "The generator wrote this one robot's equations out with everything known beforehand folded in, and the library's generic code, which serves \
-         any robot and computes the same numbers, takes {gain} as long for a call on this machine.\n{}",
+        "On this machine, the library's generic code, which serves any robot, takes {gain} as long for a call as the code that is generated for \
+         this robot.\n{}",
         accuracy(report)
     )
 }
@@ -261,16 +262,14 @@ fn newcomer(report: &Report) -> String {
 fn accuracy(report: &Report) -> String {
     let errors: Vec<f64> = report.functions.iter().filter_map(|f| f.errors).map(|e| e.generated).collect();
     let worst = errors.iter().copied().fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a });
-    let verdict = if errors.is_empty() {
-        return "For none of these functions is there a reference yet by which the accuracy of either could be judged.\n".into();
-    } else if worst <= report.bound {
-        "so the time is not saved at the cost of accuracy"
-    } else {
-        "which is more than rounding explains"
-    };
+    if errors.is_empty() {
+        return "None of these functions has a reference yet, so the accuracy of neither code is known.\n".into();
+    }
+    let verdict = if worst <= report.bound { "within the bound of" } else { "which is more than rounding explains: the bound is" };
     format!(
-        "Both round their results: the generated code was off by at most {worst:.1} times the rounding of one operation (2⁻⁵³, some 1.1e-16), measured against \
-         the size of the terms that were added up, {verdict}.\n"
+        "The largest error of generated code is {worst:.1} roundings of one operation (2⁻⁵³, about 1.1e-16), relative to the sum of the magnitudes \
+         of the terms, {verdict} {}.\n",
+        report.bound
     )
 }
 
