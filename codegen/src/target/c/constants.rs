@@ -70,14 +70,15 @@ struct Table {
 }
 
 fn tables(model: &Model<f64>) -> Vec<Table> {
+    type Count = fn(&JointInfo) -> usize;
     // As many as the joint has of each, in q or in v.
-    let each = |count: fn(&JointInfo) -> usize, of: fn(&Limit) -> f64, none: f64| -> Vec<f64> {
+    let each = |count: Count, of: fn(&Limit) -> f64, none: f64| -> Vec<f64> {
         model.joints().iter().flat_map(|j| vec![j.limit.as_ref().map_or(none, of); count(j)]).collect()
     };
     let mut rest = vec![0.0; model.nq()];
     neutral(model, &mut rest);
     let table = |name, length, says, values| Table { name, length, says, values };
-    let (q, v): (fn(&JointInfo) -> usize, fn(&JointInfo) -> usize) = (|j| j.q.1, |j| j.v.1);
+    let (q, v): (Count, Count) = (|j| j.q.1, |j| j.v.1);
     vec![
         table("neutral", "NQ", "The neutral configuration: zeros, and quaternions of the identity", rest),
         table("q_lower", "NQ", "Lower bounds of the coordinates, rad or m", each(q, |l| l.lower, f64::NEG_INFINITY)),
