@@ -37,6 +37,11 @@ arm() { # where there is an emulator, which only an administrator can install, a
     fi
 }
 
+python_package() { # of a workspace of its own, so that nothing else compiles PyO3
+    cargo fmt --manifest-path python/Cargo.toml --check
+    CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target} python/check.sh
+}
+
 ensure fmt rustfmt
 ensure clippy clippy
 
@@ -51,5 +56,6 @@ step python3 tests/peers/tables.py --check
 step python3 tests/peers/chart.py --check
 step python3 tests/oracles/make.py --check
 step python3 tests/shipped/shipped.py --sample
+step python_package
 step readme_command
 printf '\nall checks passed in %d s\n' $SECONDS
