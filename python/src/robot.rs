@@ -32,6 +32,9 @@ pub(crate) struct Robot {
     lacks: OnceLock<Lacks>,
 }
 
+/// The first index and the end.
+type Ends = (usize, usize);
+
 /// What the robot does not have and some functions need.
 struct Lacks {
     massless: Vec<String>,
@@ -259,7 +262,7 @@ impl Robot {
 
     /// Name, kind, range in q and range in v of each joint.
     #[getter]
-    fn _joints(&self) -> Vec<(&str, &'static str, (usize, usize), (usize, usize))> {
+    fn _joints(&self) -> Vec<(&str, &'static str, Ends, Ends)> {
         let ends = |(first, n): (usize, usize)| (first, first + n);
         self.model.joints().iter().map(|joint| (joint.name.as_str(), joint.kind.name(), ends(joint.q), ends(joint.v))).collect()
     }
