@@ -23,4 +23,3 @@ python=$work/test/bin/python sources=$PWD
 cd "$work"
 "$python" "$sources/tests/stubs.py" --check
 "$python" -m pytest --quiet -p no:cacheprovider -rs "$sources/tests"
-"$python" -m doctest "$sources/README.md"

@@ -41,6 +41,11 @@ browser() { # where there is Chromium, which only an administrator can install
     python3 tests/browser/pages.py --install
 }
 
+python_package() { # of a workspace of its own, so that nothing else compiles PyO3
+    cargo fmt --manifest-path python/Cargo.toml --check
+    CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target} python/check.sh
+}
+
 ensure fmt rustfmt
 ensure clippy clippy
 
@@ -56,6 +61,7 @@ step python3 tests/peers/chart.py --check
 step python3 tests/oracles/make.py --check
 step python3 tests/oracles/external.py
 step python3 tests/shipped/shipped.py --sample
+step python_package
 step readme_command
 step browser
 printf '\nall checks passed in %d s\n' $SECONDS

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex, TryLockError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use articulated::algorithm::Function;
 use articulated::{FunctionError, Model, Workspace};
@@ -26,10 +26,7 @@ impl Workspaces {
     /// Runs with a workspace of the model: one that is free, or a new one. Never waits, so that a
     /// process that was forked in the middle of another thread's call does not wait for ever.
     fn with<T>(&self, model: &Model<f64>, run: impl FnOnce(&mut Workspace<f64>) -> T) -> T {
-        let free = match self.0.try_lock() {
-            Ok(mut free) => free.pop(),
-            Err(TryLockError::Poisoned(_) | TryLockError::WouldBlock) => None,
-        };
+        let free = self.0.try_lock().ok().and_then(|mut free| free.pop());
         let mut ws = free.unwrap_or_else(|| Workspace::new(model));
         let out = run(&mut ws);
         if let Ok(mut free) = self.0.try_lock() {
@@ -64,8 +61,8 @@ impl Call<'_> {
         })
     }
 
-    /// Computes all states of `out`.
-    pub(crate) fn run(&self, py: Python<'_>, out: &mut [f64], pool: Option<&ThreadPool>) -> PyResult<()> {
+    /// Computes all states of `out`, in so many threads.
+    pub(crate) fn run(&self, py: Python<'_>, out: &mut [f64], threads: usize) -> PyResult<()> {
         if out.is_empty() {
             return Ok(());
         }
@@ -73,9 +70,10 @@ impl Call<'_> {
         if out.len() == self.len {
             return told(catch_unwind(AssertUnwindSafe(|| self.states(0, out))));
         }
+        let pool = pool(threads)?;
         for (block, out) in out.chunks_mut(BLOCK * self.len).enumerate() {
             let first = block * BLOCK;
-            told(py.detach(|| catch_unwind(AssertUnwindSafe(|| self.block(first, out, pool)))))?;
+            told(py.detach(|| catch_unwind(AssertUnwindSafe(|| self.block(first, out, pool.as_deref())))))?;
             py.check_signals()?;
         }
         Ok(())
@@ -98,33 +96,39 @@ fn told(outcome: std::thread::Result<Result<(), FunctionError>>) -> PyResult<()>
     }
 }
 
+/// The number of threads that `threads=` means.
+pub(crate) fn threads(given: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
+    let Some(given) = given else { return Ok(1) };
+    let expected = format!("expected None or 1 for one thread, 0 for all, or a number to {MOST_THREADS}");
+    let wrong = |found: String| PyTypeError::new_err(format!("threads: found {found}, {expected}"));
+    if given.is_instance_of::<PyBool>() {
+        return Err(wrong("a bool".into()));
+    }
+    let index = given.call_method0("__index__").map_err(|_| wrong(given.get_type().to_string()))?;
+    match index.extract::<usize>() {
+        Ok(0) => Ok(std::thread::available_parallelism().map_or(1, usize::from).min(MOST_THREADS)),
+        Ok(count @ ..=MOST_THREADS) => Ok(count),
+        _ => Err(PyValueError::new_err(format!("threads: found {index}, {expected}"))),
+    }
+}
+
 /// Pools by the process and the number of their threads: a forked process has none of its parent's threads.
 type Pools = HashMap<(u32, usize), Arc<ThreadPool>>;
 
-/// The pool of `threads=`: none for one thread.
-pub(crate) fn pool(threads: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Arc<ThreadPool>>> {
+/// The pool of so many threads; none for one.
+fn pool(threads: usize) -> PyResult<Option<Arc<ThreadPool>>> {
     static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
-    let Some(threads) = threads else { return Ok(None) };
-    let expected = format!("expected None or 1 for one thread, 0 for all, or a number to {MOST_THREADS}");
-    let wrong = |found: String| PyTypeError::new_err(format!("threads: found {found}, {expected}"));
-    if threads.is_instance_of::<PyBool>() {
-        return Err(wrong("a bool".into()));
-    }
-    let index = threads.call_method0("__index__").map_err(|_| wrong(threads.get_type().to_string()))?;
-    let count = index.extract::<usize>().ok().filter(|count| *count <= MOST_THREADS);
-    let count = count.ok_or_else(|| PyValueError::new_err(format!("threads: found {index}, {expected}")))?;
-    let count = if count == 0 { std::thread::available_parallelism().map_or(1, usize::from).min(MOST_THREADS) } else { count };
-    if count == 1 {
+    if threads == 1 {
         return Ok(None);
     }
-    let mut pools = POOLS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let pools = pools.get_or_insert_default();
-    let key = (std::process::id(), count);
+    let key = (std::process::id(), threads);
     if let Some(pool) = pools.get(&key) {
         return Ok(Some(Arc::clone(pool)));
     }
-    let failed = |error: rayon::ThreadPoolBuildError| PyRuntimeError::new_err(format!("threads: found no {count} threads: {error}"));
-    let pool = Arc::new(ThreadPoolBuilder::new().num_threads(count).build().map_err(failed)?);
+    let failed = |error: rayon::ThreadPoolBuildError| PyRuntimeError::new_err(format!("threads: found no {threads} threads: {error}"));
+    let pool = Arc::new(ThreadPoolBuilder::new().num_threads(threads).build().map_err(failed)?);
     pools.insert(key, Arc::clone(&pool));
     Ok(Some(pool))
 }

@@ -7,7 +7,7 @@ use articulated::algorithm::{Dim, Function, Needs, functions};
 use articulated::description::{Description, Limit};
 use articulated::formats::{Disk, NoFiles, Options, Sources, read_with};
 use articulated::model::FLOATING_BASE;
-use articulated::{Base, Model};
+use articulated::{Base, Model, Shape};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -22,6 +22,8 @@ use crate::errors;
 #[pyclass(frozen, subclass, module = "articulated._native")]
 pub(crate) struct Robot {
     model: Model<f64>,
+    /// The model's sizes; counting its links takes time.
+    shape: Shape,
     /// Names of the links that [`Model::links`] lists.
     links: Vec<String>,
     warnings: Vec<Diagnostic>,
@@ -29,6 +31,9 @@ pub(crate) struct Robot {
     workspaces: Workspaces,
     lacks: OnceLock<Lacks>,
 }
+
+/// The first index and the end.
+type Ends = (usize, usize);
 
 /// What the robot does not have and some functions need.
 struct Lacks {
@@ -61,7 +66,8 @@ fn links(description: &Description, model: &Model<f64>) -> Vec<String> {
 impl Robot {
     fn with(&self, model: Model<f64>) -> Self {
         let (links, warnings, unused) = (self.links.clone(), self.warnings.clone(), self.unused.clone());
-        Self { model, links, warnings, unused, workspaces: Workspaces::default(), lacks: OnceLock::new() }
+        let shape = model.shape();
+        Self { model, shape, links, warnings, unused, workspaces: Workspaces::default(), lacks: OnceLock::new() }
     }
 
     fn lacks(&self) -> &Lacks {
@@ -105,7 +111,7 @@ impl Robot {
     }
 
     fn lengths(&self, dims: &[Dim]) -> Vec<usize> {
-        dims.iter().map(|dim| dim.len(self.model.shape())).collect()
+        dims.iter().map(|dim| dim.len(self.shape)).collect()
     }
 
     fn for_each_joint(
@@ -149,6 +155,7 @@ impl Robot {
             errors::refused(py, &all)
         })?;
         Ok(Self {
+            shape: model.shape(),
             links: links(&reading.description, &model),
             model: model.with_gravity(gravity),
             warnings: reading.warnings,
@@ -199,7 +206,7 @@ impl Robot {
             arguments.push(arrays::argument(argument.name(), &value, &self.lengths(argument.dims()))?);
         }
         let states = arrays::states(&names, &arguments)?;
-        let pool = batch::pool(threads)?;
+        let threads = batch::threads(threads)?;
 
         let mut shape = self.lengths(function.gives);
         let len = shape.iter().product();
@@ -213,12 +220,12 @@ impl Robot {
         let call = Call { function, model: &self.model, workspaces: &self.workspaces, arguments: slices, len };
         if shape.is_empty() {
             let mut number = [0.0];
-            call.run(py, &mut number, None)?;
+            call.run(py, &mut number, threads)?;
             return Ok(number[0].into_pyobject(py)?.into_any());
         }
         let out = arrays::output(py, &shape)?;
         let mut numbers = out.try_readwrite().map_err(|error| PyValueError::new_err(error.to_string()))?;
-        call.run(py, numbers.as_slice_mut().map_err(|error| PyValueError::new_err(error.to_string()))?, pool.as_deref())?;
+        call.run(py, numbers.as_slice_mut().map_err(|error| PyValueError::new_err(error.to_string()))?, threads)?;
         drop(numbers);
         Ok(out.into_any())
     }
@@ -255,7 +262,7 @@ impl Robot {
 
     /// Name, kind, range in q and range in v of each joint.
     #[getter]
-    fn _joints(&self) -> Vec<(&str, &'static str, (usize, usize), (usize, usize))> {
+    fn _joints(&self) -> Vec<(&str, &'static str, Ends, Ends)> {
         let ends = |(first, n): (usize, usize)| (first, first + n);
         self.model.joints().iter().map(|joint| (joint.name.as_str(), joint.kind.name(), ends(joint.q), ends(joint.v))).collect()
     }

@@ -163,3 +163,14 @@ def test_bad_names():
             articulated.load(bad)
         with pytest.raises(TypeError):
             articulated.loads(bad)
+
+
+def test_examples_of_the_documentation():
+    import doctest
+    from pathlib import Path
+
+    assert doctest.testmod(articulated).failed == 0
+    text = (Path(__file__).resolve().parent.parent / "README.md").read_text(encoding="utf-8")
+    scope = {}
+    exec(text.split("```python\n")[1].split("```")[0], scope)
+    assert scope["taus"].shape == (4096, 7) and scope["mass"].shape == (7, 7)
