@@ -3,10 +3,8 @@
 //! A build script calls [`Build::new`], then [`Build::functions`], then [`Build::write`]:
 //!
 //! ```no_run
-//! // build.rs
-//! fn main() {
-//!     articulated_codegen::Build::new("robots/arm.urdf").functions(["inverse_dynamics"]).write("arm"); // $OUT_DIR/arm.rs
-//! }
+//! // build.rs, in `main`
+//! articulated_codegen::Build::new("robots/arm.urdf").functions(["inverse_dynamics"]).write("arm"); // $OUT_DIR/arm.rs
 //! ```
 //!
 //! A program that has the file in memory fills a [`Request`] and calls [`generate`]. It gets the
