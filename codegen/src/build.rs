@@ -24,7 +24,8 @@ use crate::{Appended, Base, Generated, Origin, Payload, Real, Reference, Request
 ///     .batch(["f64"])
 ///     .write("arm"); // $OUT_DIR/arm.rs
 /// ```
-/// and in the crate: `#[allow(dead_code)] mod arm { include!(concat!(env!("OUT_DIR"), "/arm.rs")); }`.
+/// and in the crate:
+/// `#[allow(dead_code)] mod arm { include!(concat!(env!("OUT_DIR"), "/arm.rs")); }`.
 #[derive(Clone, Debug)]
 pub struct Build {
     /// The request, without its documents.
@@ -67,7 +68,8 @@ pub struct Written {
     pub path: PathBuf,
     /// What looks wrong in the document and was used as written: a line for each sort of warning.
     pub warnings: Vec<String>,
-    /// Whether it was generated now; otherwise it stands from the last run, which had the same request.
+    /// Whether it was generated now; otherwise it stands from the last run, which had the same
+    /// request.
     pub generated: bool,
 }
 
@@ -80,8 +82,8 @@ impl Build {
     }
 
     /// For the scene at `path`, relative to the crate's folder. Later calls replace what the scene
-    /// says; locks, loads and robots to append are added to the scene's. Effects act on the robot as
-    /// it is generated.
+    /// says; locks, loads and robots to append are added to the scene's. Effects act on the robot
+    /// as it is generated.
     ///
     /// ```no_run
     /// // build.rs
@@ -128,7 +130,8 @@ impl Build {
         self
     }
 
-    /// Angles of the URDF that are this near to a multiple of π/2, rad, above 0, at most [`MOST_SNAPPED`](crate::MOST_SNAPPED), are that: some exporters write 1.5708.
+    /// Angles of the URDF that are this near to a multiple of π/2, rad, above 0, at most
+    /// [`MOST_SNAPPED`](crate::MOST_SNAPPED), are that: some exporters write 1.5708.
     #[must_use]
     pub fn snap_angles(mut self, tolerance: f64) -> Self {
         self.request.options.robot.snap_angles = Some(tolerance);
@@ -156,14 +159,16 @@ impl Build {
         self
     }
 
-    /// The functions wanted: names, groups, `name = first + second(a = 0)`; beside a scene `motion`, for all that its motion calls.
+    /// The functions wanted: names, groups, `name = first + second(a = 0)`; beside a scene
+    /// `motion`, for all that its motion calls.
     #[must_use]
     pub fn functions<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
         self.request.options.functions = names.into_iter().map(|name| name.into().into()).collect();
         self
     }
 
-    /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`, `gravity`, and numbers of an effect that is on, as `damping(joint)`, `contact(link)`.
+    /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`,
+    /// `gravity`, and numbers of an effect that is on, as `damping(joint)`, `contact(link)`.
     #[must_use]
     pub fn parameters<N: Into<String>>(mut self, entries: impl IntoIterator<Item = N>) -> Self {
         self.request.options.parameters = entries.into_iter().map(|entry| entry.into().into()).collect();
@@ -184,7 +189,8 @@ impl Build {
         self
     }
 
-    /// Locks a joint at these coordinates, as many as it has: rad or m, a quaternion as x, y, z, w. Joints that follow it stop with it.
+    /// Locks a joint at these coordinates, as many as it has: rad or m, a quaternion as x, y, z, w.
+    /// Joints that follow it stop with it.
     #[must_use]
     pub fn lock(mut self, joint: impl Into<String>, at: impl Into<Vec<f64>>) -> Self {
         self.request.options.robot.lock.push((joint.into(), at.into()).into());
@@ -198,7 +204,8 @@ impl Build {
         self
     }
 
-    /// Appends the robot of the URDF at `path`, relative to the crate's folder: its root at `origin` in the frame of the link `at`, `prefix` before its names.
+    /// Appends the robot of the URDF at `path`, relative to the crate's folder: its root at
+    /// `origin` in the frame of the link `at`, `prefix` before its names.
     #[must_use]
     pub fn append(mut self, path: impl AsRef<Path>, at: impl Into<String>, prefix: impl Into<String>, origin: Origin) -> Self {
         let file = Spanned::from(path.as_ref().display().to_string());
@@ -207,15 +214,17 @@ impl Build {
         self
     }
 
-    /// Code that depends on nothing but `core` and `std`: no implementation of the trait `Dynamics`.
+    /// Code that depends on nothing but `core` and `std`: no implementation of the trait
+    /// `Dynamics`.
     #[must_use]
     pub fn standalone(mut self) -> Self {
         self.request.options.rust_mut().runtime = None;
         self
     }
 
-    /// Functions of many states at once too, in numbers of these types, as `["f64", "f32"]` or [`Real`]s: the modules `batch_f64` and `batch_f32`.
-    /// A name that is none of a type is an error of the generation.
+    /// Functions of many states at once too, in numbers of these types, as `["f64", "f32"]` or
+    /// [`Real`]s: the modules `batch_f64` and `batch_f32`. A name that is none of a type is an
+    /// error of the generation.
     #[must_use]
     pub fn batch<R: Into<BatchType>>(mut self, reals: impl IntoIterator<Item = R>) -> Self {
         self.findings.errors.retain(|error| error.code != Code::Batch);
@@ -239,7 +248,8 @@ impl Build {
         self
     }
 
-    /// Whether branches that are alike may be computed at once, one per lane of a vector, where that is cheaper: so it is unless this says `false`.
+    /// Whether branches that are alike may be computed at once, one per lane of a vector, where
+    /// that is cheaper: so it is unless this says `false`.
     #[must_use]
     pub fn limbs(mut self, at_once: bool) -> Self {
         self.request.options.limbs = at_once;
@@ -254,15 +264,17 @@ impl Build {
         self
     }
 
-    /// For crates without `std`, which have to depend on the crate `libm`: it is called for square roots, arctangents, and sines of angles beyond what the level promises.
-    /// Without `unsafe`, multiply-adds and an implementation of the trait `Dynamics`, whatever was chosen.
+    /// For crates without `std`, which have to depend on the crate `libm`: it is called for square
+    /// roots, arctangents, and sines of angles beyond what the level promises. Without `unsafe`,
+    /// multiply-adds and an implementation of the trait `Dynamics`, whatever was chosen.
     #[must_use]
     pub fn no_std(mut self) -> Self {
         self.request.options.rust_mut().no_std = true;
         self
     }
 
-    /// How many megabytes (10⁶ bytes) of Rust all functions together may become, instead of [`MAX_CODE_SIZE`](crate::MAX_CODE_SIZE). More is an error.
+    /// How many megabytes (10⁶ bytes) of Rust all functions together may become, instead of
+    /// [`MAX_CODE_SIZE`](crate::MAX_CODE_SIZE). More is an error.
     #[must_use]
     pub fn max_code_size(mut self, megabytes: u64) -> Self {
         self.request.options.max_code_size = megabytes;
@@ -281,9 +293,11 @@ impl Build {
         generate(&self.request()?)
     }
 
-    /// Generates and writes `$OUT_DIR/<name>.rs`, and tells cargo what the result depends on. For build scripts.
+    /// Generates and writes `$OUT_DIR/<name>.rs`, and tells cargo what the result depends on. For
+    /// build scripts.
     ///
-    /// If the last run wrote the file for the same request, and the build script is the same program, nothing is generated and nothing written: the file keeps its date. An error where
+    /// If the last run wrote the file for the same request, and the build script is the same
+    /// program, nothing is generated and nothing written: the file keeps its date. An error where
     /// this run has written a file of this name already, which would be lost.
     pub fn try_write(&self, name: &str) -> Result<Written, Diagnostics> {
         let appended = self.request.options.robot.append.iter().map(|other| &other.file.value);
@@ -343,7 +357,8 @@ impl Build {
         log.result(request)
     }
 
-    /// As [`Build::try_write`]; on an error prints it for cargo and ends the build script with status 1.
+    /// As [`Build::try_write`]; on an error prints it for cargo and ends the build script with
+    /// status 1.
     pub fn write(&self, name: &str) {
         if let Err(error) = self.try_write(name) {
             print!("{}", for_cargo(&error));

@@ -32,8 +32,8 @@ mod tree;
 /// * constants: sizes (`NQ`, `NV`, …), names, limits, and `NEUTRAL`, the neutral configuration;
 /// * modules of indices: `joint`, `q_index`, `v_index`, `frame`;
 /// * `Robot`, a value that implements `articulated::Dynamics`;
-/// * `WARNINGS` about the URDF. The compiler shows them too, as uses of a deprecated constant, because a
-///   macro has no other way. `#[allow(deprecated)]` on the module silences them.
+/// * `WARNINGS` about the URDF. The compiler shows them too, as uses of a deprecated constant,
+///   because a macro has no other way. `#[allow(deprecated)]` on the module silences them.
 ///
 /// # Keys
 ///

@@ -58,7 +58,8 @@ pub fn robot(name: &str) -> Option<&'static Bundled> {
     ROBOTS.iter().find(|r| r.name == name)
 }
 
-/// A scene that comes with the crate: TOML, as the crate `articulated-scene` reads it. The robot that it names is among [`ROBOTS`].
+/// A scene that comes with the crate: TOML, as the crate `articulated-scene` reads it. The robot
+/// that it names is among [`ROBOTS`].
 #[derive(Clone, Copy, Debug)]
 pub struct BundledScene {
     /// Its name on the command line; the file is `<name>.toml`.
@@ -141,7 +142,8 @@ mod tests {
         assert!(robot("Humanoid").is_none());
     }
 
-    /// Written once for generated and generic robots: torque that holds the robot where it is, by a function that knows only the trait.
+    /// Written once for generated and generic robots: torque that holds the robot where it is, by a
+    /// function that knows only the trait.
     fn holding<R: Dynamics>(robot: &R, q: &[f64]) -> Vec<f64> {
         let (mut ws, n) = (robot.workspace(), robot.shape().nv);
         let (mut tau, zero) = (vec![0.0; n], vec![0.0; n]);

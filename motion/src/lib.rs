@@ -1,8 +1,8 @@
 //! A scene's motion in a program: its start, its control, its events, moved by any robot.
 //!
 //! A [`Session`] is a scene with its robot. [`Session::open`] reads it, [`Session::run`] moves it,
-//! and [`Session::run_with`] moves it with another control. The robot is anything that has dynamics:
-//! the generic model, or a generated robot.
+//! and [`Session::run_with`] moves it with another control. The robot is anything that has
+//! dynamics: the generic model, or a generated robot.
 //!
 //! ```
 //! use articulated_motion::{Ending, Session};
@@ -87,7 +87,8 @@
 //! # Ok(()) }
 //! ```
 //!
-//! Conventions are those of [`articulated`]: SI units and radians; q and v in the order of the robot.
+//! Conventions are those of [`articulated`]: SI units and radians; q and v in the order of the
+//! robot.
 
 mod compatibility;
 mod creep;

@@ -112,7 +112,8 @@ pub(crate) fn threads(given: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
     }
 }
 
-/// Pools by the process and the number of their threads: a forked process has none of its parent's threads.
+/// Pools by the process and the number of their threads: a forked process has none of its parent's
+/// threads.
 type Pools = HashMap<(u32, usize), Arc<ThreadPool>>;
 
 /// The pool of so many threads; none for one.

@@ -28,9 +28,11 @@
 //! # Ok::<(), articulated_core::diagnostic::Diagnostics>(())
 //! ```
 //!
-//! The way of a scene: text → tree (tables and numbers with their lines) → [`Scene`] (checked, by tables of keys) → against a robot:
-//! [`Scene::resolve`] (effects with all their numbers), [`Scene::start`] and [`Scene::controller`] (vectors). [`open`] reads the files that a scene names, and [`Opened::build`] edits the
-//! robot and returns its model and effects. No input makes the reader panic or hang. The keys are listed in `docs/scenes.md`.
+//! The way of a scene: text → tree (tables and numbers with their lines) → [`Scene`] (checked, by
+//! tables of keys) → against a robot: [`Scene::resolve`] (effects with all their numbers),
+//! [`Scene::start`] and [`Scene::controller`] (vectors). [`open`] reads the files that a scene
+//! names, and [`Opened::build`] edits the robot and returns its model and effects. No input makes
+//! the reader panic or hang. The keys are listed in `docs/scenes.md`.
 
 mod calls;
 mod control;

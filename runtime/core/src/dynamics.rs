@@ -18,11 +18,13 @@ macro_rules! methods {
             $(($name) => { $(gives!($general))? $(concat!("`", dims!($($dim $(($n))?),*), "` ", $unit))? };)*
         }
 
-        /// A robot's dynamics. Code written over this trait runs on generated robots and on a [`Model`] alike.
+        /// A robot's dynamics. Code written over this trait runs on generated robots and on a
+        /// [`Model`] alike.
         ///
-        /// Every function of the table is a method. Its documentation has arguments and results; more is at the function of the same name in
-        /// [`crate::algorithm`]. Results are written row by row. A slice of the wrong length is an error, and so is a function that
-        /// a robot was generated without. Nothing panics.
+        /// Every function of the table is a method. Its documentation has arguments and results;
+        /// more is at the function of the same name in [`crate::algorithm`]. Results are written
+        /// row by row. A slice of the wrong length is an error, and so is a function that a robot
+        /// was generated without. Nothing panics.
         ///
         /// ```
         /// use articulated_core::algorithm::FunctionError;
@@ -49,7 +51,8 @@ macro_rules! methods {
             /// The robot's name.
             fn name(&self) -> &str;
 
-            /// The joints in the order of their coordinates, a floating base's own first; `None` beyond the last, and where the robot cannot tell.
+            /// The joints in the order of their coordinates, a floating base's own first; `None`
+            /// beyond the last, and where the robot cannot tell.
             fn joint(&self, index: usize) -> Option<JointRow<'_>> {
                 let _ = index;
                 None
@@ -61,7 +64,8 @@ macro_rules! methods {
                 None
             }
 
-            /// Whether motors stand between the torques that forward dynamics is given and the joints: then `motor_torques` says what they make of them.
+            /// Whether motors stand between the torques that forward dynamics is given and the
+            /// joints: then `motor_torques` says what they make of them.
             fn has_motors(&self) -> bool {
                 false
             }

@@ -45,7 +45,8 @@
 //! units and radians. Gravity defaults to (0, 0, −9.81) m/s² in the world frame, which is the root
 //! link's frame (fixed base) or the frame in which it floats.
 //!
-//! The crate is `no_std`. Models and algorithms need the feature `alloc`; `std` uses the platform's mathematics.
+//! The crate is `no_std`. Models and algorithms need the feature `alloc`; `std` uses the platform's
+//! mathematics.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 #[cfg(feature = "alloc")]

@@ -1,4 +1,5 @@
-//! A robot as its file describes it: plain numbers in the file's own frames, before any computation.
+//! A robot as its file describes it: plain numbers in the file's own frames, before any
+//! computation.
 //!
 //! A reader returns a [`Description`], and [`crate::model::Model`] is built from it.
 //!
@@ -31,7 +32,8 @@ pub use moments::PrincipalMoments;
 pub use origin::{Origin, Rotation};
 pub use shaft::Shaft;
 
-/// A tree of links and joints. Indices into `links`, `joints` and `frames` follow the order of the file.
+/// A tree of links and joints. Indices into `links`, `joints` and `frames` follow the order of the
+/// file.
 ///
 /// It can be edited before [`Model::new`](crate::model::Model::new) makes a model of it:
 ///
@@ -82,7 +84,8 @@ pub struct Inertial {
     pub origin: Origin,
     /// Mass, kg.
     pub mass: f64,
-    /// Rotational inertia about the centre of mass in axes of the inertial frame: xx, xy, xz, yy, yz, zz, kg·m².
+    /// Rotational inertia about the centre of mass in axes of the inertial frame: xx, xy, xz, yy,
+    /// yz, zz, kg·m².
     pub inertia: [f64; 6],
 }
 
@@ -97,7 +100,8 @@ pub struct Frame {
     pub origin: Origin,
 }
 
-/// From one row for each kind of joint of a file, with its name in a URDF, the kinds and their list.
+/// From one row for each kind of joint of a file, with its name in a URDF, the kinds and their
+/// list.
 macro_rules! joint_kinds {
     ($($(#[$attribute:meta])+ $kind:ident $name:literal,)+) => {
         /// What a joint of the file lets move.
@@ -132,15 +136,19 @@ joint_kinds! {
     Fixed "fixed",
     /// Six degrees of freedom.
     Floating "floating",
-    /// Two translations in the plane normal to the axis and a turn about it: (x, y, θ), rates along the axes of the joint frame. For the axis z
-    /// the plane has the frame's x and y, for x its y and z, for y its z and x; for any other, the first two columns of
+    /// Two translations in the plane normal to the axis and a turn about it: (x, y, θ), rates along
+    /// the axes of the joint frame. For the axis z the plane has the frame's x and y, for x its y
+    /// and z, for y its z and x; for any other, the first two columns of
     /// [`crate::spatial::to_z_axis`].
     Planar "planar",
-    /// Any rotation about the joint's origin: a unit quaternion (x, y, z, w) and the angular velocity in axes of the child.
+    /// Any rotation about the joint's origin: a unit quaternion (x, y, z, w) and the angular
+    /// velocity in axes of the child.
     Spherical "spherical",
-    /// A rotation about the axis, within limits, that slides along it: `pitch` metres per revolution. The coordinate is the angle.
+    /// A rotation about the axis, within limits, that slides along it: `pitch` metres per
+    /// revolution. The coordinate is the angle.
     Helical "helical",
-    /// A rotation about `axis`, then one about `second_axis`, which the first has turned: Cardan's joint.
+    /// A rotation about `axis`, then one about `second_axis`, which the first has turned: Cardan's
+    /// joint.
     Universal "universal",
 }
 
@@ -151,7 +159,8 @@ pub enum Quantity {
     Angle,
     /// A way, m.
     Length,
-    /// One of the four numbers of a unit quaternion (x, y, z, w), which stand together. No rate is of this kind.
+    /// One of the four numbers of a unit quaternion (x, y, z, w), which stand together. No rate is
+    /// of this kind.
     Quaternion,
 }
 
@@ -170,7 +179,8 @@ impl JointKind {
         }
     }
 
-    /// What its rates are of, in order: those of a joint without a quaternion are the rates of its coordinates.
+    /// What its rates are of, in order: those of a joint without a quaternion are the rates of its
+    /// coordinates.
     pub fn rates(self) -> &'static [Quantity] {
         use Quantity::{Angle, Length};
         match self {
@@ -187,7 +197,8 @@ impl JointKind {
         (self.coordinates().len(), self.rates().len())
     }
 
-    /// Which of its coordinates is the first of a unit quaternion (x, y, z, w); `None`: its coordinates are plain numbers, one for each degree of freedom.
+    /// Which of its coordinates is the first of a unit quaternion (x, y, z, w); `None`: its
+    /// coordinates are plain numbers, one for each degree of freedom.
     pub fn quaternion(self) -> Option<usize> {
         self.coordinates().iter().position(|of| *of == Quantity::Quaternion)
     }
@@ -236,9 +247,11 @@ pub struct Joint {
     pub child: usize,
     /// The joint's frame in the parent link's frame.
     pub origin: Origin,
-    /// The axis in the joint's frame, as written: not necessarily of unit length, never zero for a joint that has one.
+    /// The axis in the joint's frame, as written: not necessarily of unit length, never zero for a
+    /// joint that has one.
     pub axis: [f64; 3],
-    /// The second axis of a universal joint, in the joint's frame at zero, not along the first; not used otherwise.
+    /// The second axis of a universal joint, in the joint's frame at zero, not along the first; not
+    /// used otherwise.
     pub second_axis: [f64; 3],
     /// How far a helical joint slides in one turn, m; not used otherwise.
     pub pitch: f64,
