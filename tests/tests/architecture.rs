@@ -1,5 +1,5 @@
-//! How the code is laid out: arrows between crates point downward, and files import each other in
-//! no more circles than are known.
+//! How the code is laid out: arrows between crates point downward, files import each other in no
+//! more circles than are known, and comments wrap at 100 columns.
 //!
 //! `cargo test -p articulated-tests --test architecture -- --nocapture` prints the graph of crates
 //! and all circles.
@@ -207,4 +207,39 @@ fn a_circle_is_found_and_a_tree_is_none() {
     assert!(circles(folder.path()).is_empty());
     write("b.rs", "//! B.\nuse super::a::A;\n\n#[cfg(test)]\nmod tests {}\n");
     assert_eq!(circles(folder.path()), [BTreeSet::from(["a".to_owned(), "b".to_owned()])]);
+}
+
+/// Comments of a line of their own that are longer than 100 columns: code of examples and formulas.
+/// The number only falls.
+const LONG_COMMENTS: usize = 80;
+
+/// All files of Rust in a folder and the folders below it, but for what builds write.
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()) {
+        let name = entry.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        if entry.is_dir() && name != "target" && !name.starts_with('.') {
+            sources(&entry, found);
+        } else if name.ends_with(".rs") {
+            found.push(entry);
+        }
+    }
+}
+
+#[test]
+fn comments_wrap_at_100_columns() {
+    let mut files = Vec::new();
+    sources(&root(), &mut files);
+    let mut long = Vec::new();
+    for file in files.iter().filter(|file| !file.starts_with(root().join("tests/golden"))) {
+        let text = fs::read_to_string(file).expect("a source");
+        for (k, line) in text.lines().enumerate() {
+            let words = line.trim_start();
+            // Rows of tables are as long as they are.
+            let is_row = words.trim_start_matches(['/', '!']).trim_start().starts_with('|');
+            if words.starts_with("//") && !is_row && line.chars().count() > 100 {
+                long.push(format!("{}:{}: {line}", file.display(), k + 1));
+            }
+        }
+    }
+    assert!(long.len() <= LONG_COMMENTS, "{} comments are longer than 100 columns:\n{}", long.len(), long.join("\n"));
 }
