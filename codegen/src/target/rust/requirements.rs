@@ -36,7 +36,7 @@ impl Requirements {
                 Stmt::Let(_, Expr::Broadcast(_)) => self.add(["lane"]),
                 Stmt::SinCos { angles, .. } => self.add([several::name(angles.len())]),
                 Stmt::Thirds { .. } => self.add(["every_third"]),
-                Stmt::SumLanes(_, operands) => self.add([if operands.len() == 2 { "across_of_two" } else { "across_of_four" }]),
+                Stmt::SumLanes(_, operands) => self.add([if operands.len() == 2 { "reduce_add_of_two" } else { "reduce_add_of_four" }]),
                 Stmt::Store(Store::One(..)) => self.add(["put_one", "lane"]),
                 Stmt::Store(Store::Two(..)) => self.add(["put_two", "store", "lanes", "lane"]),
                 Stmt::Store(Store::Whole(..)) => self.add(["put"]),

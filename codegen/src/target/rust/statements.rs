@@ -93,7 +93,7 @@ impl Printer<'_> {
             }
             Stmt::SumLanes(dst, operands) => {
                 let mut list: Vec<String> = operands.iter().map(|o| self.operand(o)).collect();
-                let function = if list.len() == 2 { "across_of_two" } else { "across_of_four" };
+                let function = if list.len() == 2 { "reduce_add_of_two" } else { "reduce_add_of_four" };
                 if list.len() == 3 {
                     list.push(list[2].clone());
                 }
@@ -395,7 +395,7 @@ pub(crate) fn function(op: Op) -> &'static str {
         Op::MulSub => "fmsub",
         Op::NegMulAdd => "fnmadd",
         Op::NegMulSub => "fnmsub",
-        Op::ReduceAdd => "across",
+        Op::ReduceAdd => "reduce_add",
         Op::Constant | Op::Input | Op::LaneConstant | Op::LaneInput | Op::Broadcast | Op::Sin | Op::Cos => "",
     }
 }

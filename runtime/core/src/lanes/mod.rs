@@ -10,7 +10,7 @@
 //!   `lane::<K>(V) -> Real`;
 //! * `add`, `sub`, `mul`, `div`, `neg`, `sqrt`; `fmadd` = ab + c, `fmsub` = ab − c, `fnmadd` = c −
 //!   ab, `fnmsub` = −ab − c with one rounding, or two where the set has no such instruction;
-//! * `positive(x) -> M`, x > 0; `select(m, a, b)`, a where m; `across(x)`, the sum of the lanes in
+//! * `positive(x) -> M`, x > 0; `select(m, a, b)`, a where m; `reduce_add(x)`, the sum of the lanes in
 //!   every lane (f64 of 2 and 4);
 //! * `sin_cos(x) -> (V, V)`, x in rad, any, and `atan2(y, x)`, lane by lane by the standard
 //!   library.
@@ -19,8 +19,8 @@
 //! on: `put_one`, `put_two`, and `put(x, to, at)`. Of four, `put_fours(a, b, c, d, to, [at; 4])`
 //! writes a, b, c, d of each lane at a place of its own, `put_twos` two of them, and
 //! `put_in_turn(a, b, c, to, at)` those of all lanes one behind the other, as
-//! `every_third(&[f64; 12]) -> [V; 3]` reads them. `across_of_four(a, b, c, d)` has the sums of the
-//! lanes of each in its lanes, `across_of_two(a, b)` those of two, twice.
+//! `every_third(&[f64; 12]) -> [V; 3]` reads them. `reduce_add_of_four(a, b, c, d)` has the sums of the
+//! lanes of each in its lanes, `reduce_add_of_two(a, b)` those of two, twice.
 //!
 //! What [`tiles`] adds turns states that stand one after the other, `[[Real; N]; LANES]`, into
 //! vectors with one state per lane: `TILE` numbers of each at a time,

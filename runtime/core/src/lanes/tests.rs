@@ -126,7 +126,7 @@ macro_rules! sum {
             fn sums() {
                 let x: [f64; set::LANES] = core::array::from_fn(|i| 0.1 + 1e15 * i as f64);
                 let want = x.chunks(2).map(|x| x[0] + x[1]).sum::<f64>();
-                assert_eq!(set::array(set::across(set::lanes(x))), [want; set::LANES]);
+                assert_eq!(set::array(set::reduce_add(set::lanes(x))), [want; set::LANES]);
             }
             if available(Set::$set) {
                 // SAFETY: the processor has the features, as the line above found.

@@ -49,9 +49,9 @@ macro_rules! rows {
                 // Of numbers that are no whole ones, whose sums depend on the order.
                 let [a, b, c, d] = [a, b, c, d].map(|x| x.map(|x| 1.0 / x));
                 let [va, vb, vc, vd] = [set::lanes(a), set::lanes(b), set::lanes(c), set::lanes(d)];
-                let [x, y, z, w] = [va, vb, vc, vd].map(|x| set::array(set::across(x))[0]);
-                assert_eq!(set::array(set::across_of_four(va, vb, vc, vd)), [x, y, z, w]);
-                assert_eq!(set::array(set::across_of_two(va, vb)), [x, y, x, y]);
+                let [x, y, z, w] = [va, vb, vc, vd].map(|x| set::array(set::reduce_add(x))[0]);
+                assert_eq!(set::array(set::reduce_add_of_four(va, vb, vc, vd)), [x, y, z, w]);
+                assert_eq!(set::array(set::reduce_add_of_two(va, vb)), [x, y, x, y]);
             }
             if available(Set::$set) {
                 // SAFETY: the processor has the features, as the line above found.

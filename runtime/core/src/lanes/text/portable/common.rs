@@ -66,7 +66,7 @@ lane_functions! {
         each_lane!(i => if m[i] { a[i] } else { b[i] })
     }
 
-    pub(super) fn across(x: V) -> V {
+    pub(super) fn reduce_add(x: V) -> V {
         let (mut sum, mut step) = (x, 1);
         while step < LANES {
             sum = each_lane!(i => sum[i] + sum[i ^ step]);

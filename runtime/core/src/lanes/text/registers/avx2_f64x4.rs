@@ -30,7 +30,7 @@ use ::core::arch::x86_64::{
 };
 
 lane_functions! {
-    pub(super) fn across(x: V) -> V {
+    pub(super) fn reduce_add(x: V) -> V {
         let pairs = add(x, ::core::arch::x86_64::_mm256_permute_pd::<0b0101>(x));
         add(pairs, ::core::arch::x86_64::_mm256_permute2f128_pd::<1>(pairs, pairs))
     }

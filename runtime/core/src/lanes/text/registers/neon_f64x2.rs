@@ -18,7 +18,7 @@ use ::core::arch::aarch64::{
 };
 
 lane_functions! {
-    pub(super) fn across(x: V) -> V {
+    pub(super) fn reduce_add(x: V) -> V {
         ::core::arch::aarch64::vpaddq_f64(x, x)
     }
 

@@ -87,9 +87,9 @@ four_functions! {
         ((s, t), (c, d))
     }
 
-    pub(super) fn across(x: V) -> V {
+    pub(super) fn reduce_add(x: V) -> V {
         // (x₀ + x₁) + (x₂ + x₃), as in one register.
-        let sum = half::add(half::across(x.0), half::across(x.1));
+        let sum = half::add(half::reduce_add(x.0), half::reduce_add(x.1));
         (sum, sum)
     }
 }

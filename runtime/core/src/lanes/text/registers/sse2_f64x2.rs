@@ -24,7 +24,7 @@ use ::core::arch::x86_64::{
 };
 
 lane_functions! {
-    pub(super) fn across(x: V) -> V {
+    pub(super) fn reduce_add(x: V) -> V {
         add(x, ::core::arch::x86_64::_mm_shuffle_pd::<0b01>(x, x))
     }
 

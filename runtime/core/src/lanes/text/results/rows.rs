@@ -27,14 +27,14 @@ four_functions! {
         [lanes([x[0], x[3], x[6], x[9]]), lanes([x[1], x[4], x[7], x[10]]), lanes([x[2], x[5], x[8], x[11]])]
     }
 
-    // The sums of the lanes of each, added up as by `across`.
-    pub(super) fn across_of_four(a: V, b: V, c: V, d: V) -> V {
+    // The sums of the lanes of each, added up as by `reduce_add`.
+    pub(super) fn reduce_add_of_four(a: V, b: V, c: V, d: V) -> V {
         let sum = |[a, b, c, d]: [Real; LANES]| (a + b) + (c + d);
         lanes([sum(array(a)), sum(array(b)), sum(array(c)), sum(array(d))])
     }
 
     // Those of two, twice.
-    pub(super) fn across_of_two(a: V, b: V) -> V {
-        across_of_four(a, b, a, b)
+    pub(super) fn reduce_add_of_two(a: V, b: V) -> V {
+        reduce_add_of_four(a, b, a, b)
     }
 }

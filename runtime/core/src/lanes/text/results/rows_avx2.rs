@@ -39,8 +39,8 @@ lane_functions! {
         [pairs::<0b1010>(ab, ac), pairs::<0b0101>(ab, bc), pairs::<0b1010>(ac, bc)]
     }
 
-    // The sums of the lanes of each, added up as by `across`.
-    pub(super) fn across_of_four(a: V, b: V, c: V, d: V) -> V {
+    // The sums of the lanes of each, added up as by `reduce_add`.
+    pub(super) fn reduce_add_of_four(a: V, b: V, c: V, d: V) -> V {
         use ::core::arch::x86_64::{
             _mm256_blend_pd as either, _mm256_permute2f128_pd as halves, _mm256_unpackhi_pd as odd, _mm256_unpacklo_pd as even,
         };
@@ -49,7 +49,7 @@ lane_functions! {
     }
 
     // Those of two, twice.
-    pub(super) fn across_of_two(a: V, b: V) -> V {
+    pub(super) fn reduce_add_of_two(a: V, b: V) -> V {
         use ::core::arch::x86_64::{_mm256_permute2f128_pd as halves, _mm256_unpackhi_pd as odd, _mm256_unpacklo_pd as even};
         let ab = add(even(a, b), odd(a, b));
         add(ab, halves::<1>(ab, ab))
