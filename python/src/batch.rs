@@ -92,8 +92,13 @@ impl Call<'_> {
 fn told(outcome: std::thread::Result<Result<(), FunctionError>>) -> PyResult<()> {
     match outcome {
         Ok(result) => result.map_err(|error| PyValueError::new_err(error.to_string())),
-        Err(_) => Err(PyRuntimeError::new_err("found a mistake of articulated itself; please report it with the message above")),
+        Err(_) => Err(mistake()),
     }
+}
+
+/// The error for a panic.
+pub(crate) fn mistake() -> PyErr {
+    PyRuntimeError::new_err("found a mistake of articulated itself; please report it with the message above")
 }
 
 /// The number of threads that `threads=` means.
