@@ -8,10 +8,11 @@
 (100, 7)
 """
 
+from ._compiled import CompiledRobot
 from ._errors import RobotError, RobotWarning
 from ._robot import Function, Joint, Robot, bundled, bundled_names, functions, load, loads
 
-__all__ = ["Function", "Joint", "Robot", "RobotError", "RobotWarning", "bundled", "bundled_names", "functions", "load", "loads"]
+__all__ = ["CompiledRobot", "Function", "Joint", "Robot", "RobotError", "RobotWarning", "bundled", "bundled_names", "functions", "load", "loads"]
 __version__ = "0.1.0"
-for _class in (RobotError, RobotWarning, Robot, Joint, Function):
+for _class in (RobotError, RobotWarning, Robot, CompiledRobot, Joint, Function):
     _class.__module__ = __name__

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from . import _native
+from ._compiled import CompiledRobot
 from ._errors import RobotWarning
 
 GRAVITY = (0.0, 0.0, -9.81)
@@ -204,6 +205,33 @@ class Robot:
         if index is None:
             raise _unknown("name", name, _INDEX, "a function of articulated.functions()")
         return self._call(index, arguments, threads)
+
+    def compile(self, functions, *, flags=()):
+        """Some of the functions as straight-line C for this robot, compiled by the system's C compiler.
+
+        Compiled robots are kept in the user's cache, or in the folder that the environment variable
+        ARTICULATED_CACHE names. CC names another compiler than cc.
+
+        Args:
+            functions: Names of functions, such as ["inverse_dynamics"].
+            flags: More options of the compiler, such as ["-march=native"].
+
+        Returns:
+            CompiledRobot, with the functions as methods.
+
+        Raises:
+            RuntimeError: There is no C compiler, or it refuses the code.
+        """
+        chosen = list(dict.fromkeys(_names("functions", functions)))
+        for name in chosen:
+            if name not in _INDEX:
+                raise _unknown("functions", name, _INDEX, "functions of articulated.functions()")
+        if not chosen:
+            raise ValueError("functions: found none, expected at least one")
+        if self.nv == 0:
+            raise ValueError("compile: found a robot without degrees of freedom, expected one that moves")
+        rows = [(_INDEX[name], _TABLE[_INDEX[name]]) for name in chosen]
+        return CompiledRobot(self, rows, tuple(_names("flags", flags)), _documentation)
 
     def placements_matrices(self, q, *, threads=None):
         """Placements of all frames in the world frame as homogeneous matrices.

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Times per state of Pinocchio in a loop, of articulated in a loop, and of articulated in one call for all states.
 
-    python side_by_side.py [--seconds 0.3]
+    python side_by_side.py [--seconds 0.3] [--compiled]
 
 Prints a table in Markdown. Each time is the shortest of several runs. Needs this package; Pinocchio
 (`pip install pin`) is left out where it is not installed.
@@ -67,9 +67,10 @@ def pinocchio_run(robot, urdf, name, states):
     return run
 
 
-def rows(robot_name, seconds, rng):
+def rows(robot_name, seconds, rng, with_compiled):
     robot = articulated.bundled(robot_name)
     urdf = next(urdf for name, urdf, *_ in articulated._native.bundled_robots() if name == robot_name)
+    compiled = robot.compile([name for name, *_ in FUNCTIONS], flags=["-march=native"]) if with_compiled else None
     for name, extra, peer in FUNCTIONS:
         method = getattr(robot, name)
         for count in COUNTS:
@@ -84,19 +85,24 @@ def rows(robot_name, seconds, rng):
             if pin:
                 # Any state takes as long as any other, whatever the order of its joints.
                 runs.insert(0, pinocchio_run(robot, urdf, peer, states))
+            if compiled:
+                fast = getattr(compiled, name)
+                runs.append(lambda: fast(*arguments))
             yield robot_name, name, count, [best(run, seconds) / count * 1e6 for run in runs]
 
 
 def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--seconds", type=float, default=0.3, help="for each time")
-    seconds = options.parse_args().seconds
+    options.add_argument("--compiled", action="store_true", help="measure compiled functions too; this needs a C compiler")
+    options = options.parse_args()
     peers = [f"Pinocchio {pin.__version__}, loop"] if pin else []
     print(f"Microseconds per state; {processor()}; Python {platform.python_version()}, NumPy {np.__version__}.\n")
     heads = ["robot", "function", "N", *peers, "here, loop", "here, one call", "here, one call, all threads"]
+    heads += ["compiled, one call"] if options.compiled else []
     print("| " + " | ".join(heads) + " |\n|---|---|--:|" + "--:|" * (len(heads) - 3))
     for robot in ROBOTS:
-        for name, function, count, times in rows(robot, seconds, np.random.default_rng(0)):
+        for name, function, count, times in rows(robot, options.seconds, np.random.default_rng(0), options.compiled):
             print(f"| `{name}` | `{function}` | {count} | " + " | ".join(f"{one:.2f}" for one in times) + " |")
             sys.stdout.flush()
 

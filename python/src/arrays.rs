@@ -14,7 +14,12 @@ pub(crate) struct Argument<'py> {
     pub(crate) len: usize,
 }
 
-impl Argument<'_> {
+impl<'py> Argument<'py> {
+    /// The array itself.
+    pub(crate) fn array(&self) -> Bound<'py, PyArrayDyn<f64>> {
+        (*self.array).clone()
+    }
+
     /// All numbers, state by state.
     pub(crate) fn numbers(&self) -> PyResult<&[f64]> {
         self.array.as_slice().map_err(|error| PyValueError::new_err(error.to_string()))

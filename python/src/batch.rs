@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use articulated::algorithm::Function;
 use articulated::{FunctionError, Model, Workspace};
@@ -92,12 +92,18 @@ impl Call<'_> {
 fn told(outcome: std::thread::Result<Result<(), FunctionError>>) -> PyResult<()> {
     match outcome {
         Ok(result) => result.map_err(|error| PyValueError::new_err(error.to_string())),
-        Err(_) => Err(PyRuntimeError::new_err("found a mistake of articulated itself; please report it with the message above")),
+        Err(_) => Err(mistake()),
     }
+}
+
+/// The error for a panic.
+pub(crate) fn mistake() -> PyErr {
+    PyRuntimeError::new_err("found a mistake of articulated itself; please report it with the message above")
 }
 
 /// The number of threads that `threads=` means.
 pub(crate) fn threads(given: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
+    static ALL: OnceLock<usize> = OnceLock::new();
     let Some(given) = given else { return Ok(1) };
     let expected = format!("expected None or 1 for one thread, 0 for all, or a number to {MOST_THREADS}");
     let wrong = |found: String| PyTypeError::new_err(format!("threads: found {found}, {expected}"));
@@ -106,7 +112,8 @@ pub(crate) fn threads(given: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
     }
     let index = given.call_method0("__index__").map_err(|_| wrong(given.get_type().to_string()))?;
     match index.extract::<usize>() {
-        Ok(0) => Ok(std::thread::available_parallelism().map_or(1, usize::from).min(MOST_THREADS)),
+        // Asked once: the system takes as long to answer as some ten states take.
+        Ok(0) => Ok(*ALL.get_or_init(|| std::thread::available_parallelism().map_or(1, usize::from).min(MOST_THREADS))),
         Ok(count @ ..=MOST_THREADS) => Ok(count),
         _ => Err(PyValueError::new_err(format!("threads: found {index}, {expected}"))),
     }

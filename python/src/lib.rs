@@ -9,10 +9,12 @@ mod batch;
 mod errors;
 mod robot;
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
 use articulated::algorithm::{Dim, Function, functions};
 use articulated::formats::{MOST_BYTES, read_file};
+use articulated_codegen::{COptions, Request, Target, generate};
 use articulated_core::diagnostic::{Code, Diagnostic, Place};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
@@ -76,10 +78,44 @@ fn nearest(wrong: &str, names: Vec<String>) -> Option<String> {
     articulated_core::suggest::nearest(wrong, names.iter().map(String::as_str))
 }
 
+/// C99 of a robot's functions: its files, each with a name and a text. All names begin with `prefix`.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)] // Why: what makes a robot, one by one.
+fn generate_c(
+    py: Python<'_>,
+    file: &str,
+    document: &[u8],
+    base: &str,
+    gravity: [f64; 3],
+    frames: Option<Vec<String>>,
+    functions: Vec<String>,
+    prefix: String,
+) -> PyResult<Vec<(String, String)>> {
+    let mut request = Request::new(file, document);
+    request.options.robot.base = robot::base_of(base)?;
+    request.options.robot.gravity = gravity;
+    request.options.functions = functions.into_iter().map(Into::into).collect();
+    request.options.target = Target::C(COptions { prefix: Some(prefix) });
+    request.options.stages = false;
+    if let Some(frames) = frames {
+        request.set_frames(&frames);
+    }
+    let generated = py.detach(|| catch_unwind(AssertUnwindSafe(|| generate(&request)))).map_err(|_| batch::mistake())?;
+    let generated = generated.map_err(|findings| errors::refused(py, &findings))?;
+    Ok(generated.files.into_iter().map(|file| (file.name, file.text)).collect())
+}
+
+/// The number of threads that `threads=` means.
+#[pyfunction]
+#[pyo3(signature = (given=None))]
+fn threads(given: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
+    batch::threads(given)
+}
+
 #[pymodule(gil_used = true)]
 mod _native {
     #[pymodule_export]
     use super::robot::Robot;
     #[pymodule_export]
-    use super::{bundled_robots, nearest, read, table};
+    use super::{bundled_robots, generate_c, nearest, read, table, threads};
 }

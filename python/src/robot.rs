@@ -9,12 +9,12 @@ use articulated::formats::{Disk, NoFiles, Options, Sources, read_with};
 use articulated::model::FLOATING_BASE;
 use articulated::{Base, Model, Shape};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place};
-use numpy::{PyArray1, PyArrayMethods};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
 
-use crate::arrays;
+use crate::arrays::{self, Argument};
 use crate::batch::{self, Call, Workspaces};
 use crate::errors;
 
@@ -31,6 +31,9 @@ pub(crate) struct Robot {
     workspaces: Workspaces,
     lacks: OnceLock<Lacks>,
 }
+
+/// Arguments that may be read as they are.
+type Arrays<'py> = Vec<Bound<'py, PyArrayDyn<f64>>>;
 
 /// The first index and the end.
 type Ends = (usize, usize);
@@ -50,7 +53,7 @@ pub(crate) fn name_of(base: Base) -> &'static str {
     }
 }
 
-fn base_of(name: &str) -> PyResult<Base> {
+pub(crate) fn base_of(name: &str) -> PyResult<Base> {
     let named = [Base::Fixed, Base::Floating].into_iter().find(|base| name_of(*base) == name);
     named.ok_or_else(|| PyValueError::new_err(format!("base: found {name:?}, expected \"fixed\" or \"floating\"")))
 }
@@ -61,6 +64,11 @@ fn links(description: &Description, model: &Model<f64>) -> Vec<String> {
     let child = |name: &str| link(description.joints.iter().find(|joint| joint.name == name).map(|joint| joint.child));
     let name = |body: &str| if body == FLOATING_BASE { link(description.root()) } else { child(body) };
     model.links().map(|i| model.bodies()[i].name.as_str()).map(|body| name(body).unwrap_or_else(|| body.to_owned())).collect()
+}
+
+/// A row of the table.
+fn row(index: usize) -> PyResult<&'static Function<f64>> {
+    functions::<f64>().get(index).ok_or_else(|| PyValueError::new_err("found no such function"))
 }
 
 impl Robot {
@@ -108,6 +116,20 @@ impl Robot {
             return refuse(Code::BoundFrames, found, expected);
         }
         Ok(())
+    }
+
+    /// The number of states, if it has a dimension of its own, and the arguments.
+    fn checked<'py>(&self, function: &Function<f64>, given: &Bound<'py, PyTuple>) -> PyResult<(Option<usize>, Vec<Argument<'py>>)> {
+        let names: Vec<&str> = function.takes.iter().map(|argument| argument.name()).collect();
+        if given.len() != names.len() {
+            let (name, found, expected) = (function.name, given.len(), names.len());
+            return Err(PyTypeError::new_err(format!("{name}: found {found} arguments, expected {expected}: {}", names.join(", "))));
+        }
+        let mut arguments = Vec::with_capacity(names.len());
+        for (argument, value) in function.takes.iter().zip(given.iter()) {
+            arguments.push(arrays::argument(argument.name(), &value, &self.lengths(argument.dims()))?);
+        }
+        Ok((arrays::states(&names, &arguments)?, arguments))
     }
 
     fn lengths(&self, dims: &[Dim]) -> Vec<usize> {
@@ -194,18 +216,9 @@ impl Robot {
         given: &Bound<'py, PyTuple>,
         threads: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let function = functions::<f64>().get(index).ok_or_else(|| PyValueError::new_err("found no such function"))?;
-        let names: Vec<&str> = function.takes.iter().map(|argument| argument.name()).collect();
-        if given.len() != names.len() {
-            let (name, found, expected) = (function.name, given.len(), names.len());
-            return Err(PyTypeError::new_err(format!("{name}: found {found} arguments, expected {expected}: {}", names.join(", "))));
-        }
+        let function = row(index)?;
         self.check_defined(py, function)?;
-        let mut arguments = Vec::with_capacity(names.len());
-        for (argument, value) in function.takes.iter().zip(given.iter()) {
-            arguments.push(arrays::argument(argument.name(), &value, &self.lengths(argument.dims()))?);
-        }
-        let states = arrays::states(&names, &arguments)?;
+        let (states, arguments) = self.checked(function, given)?;
         let threads = batch::threads(threads)?;
 
         let mut shape = self.lengths(function.gives);
@@ -228,6 +241,14 @@ impl Robot {
         call.run(py, numbers.as_slice_mut().map_err(|error| PyValueError::new_err(error.to_string()))?, threads)?;
         drop(numbers);
         Ok(out.into_any())
+    }
+
+    /// The arguments of row `index`, checked: the number of states, the arrays, and the shape of the result.
+    fn _arguments<'py>(&self, index: usize, given: &Bound<'py, PyTuple>) -> PyResult<(Option<usize>, Arrays<'py>, Vec<usize>)> {
+        let function = row(index)?;
+        let (states, arguments) = self.checked(function, given)?;
+        let shape = states.into_iter().chain(self.lengths(function.gives)).collect();
+        Ok((states, arguments.iter().map(|argument| argument.array()).collect(), shape))
     }
 
     /// The robot's name.

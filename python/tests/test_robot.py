@@ -172,5 +172,6 @@ def test_examples_of_the_documentation():
     assert doctest.testmod(articulated).failed == 0
     text = (Path(__file__).resolve().parent.parent / "README.md").read_text(encoding="utf-8")
     scope = {}
-    exec(text.split("```python\n")[1].split("```")[0], scope)
+    first, *_ = text.split("```python\n")[1:]
+    exec(first.split("```")[0], scope)
     assert scope["taus"].shape == (4096, 7) and scope["mass"].shape == (7, 7)

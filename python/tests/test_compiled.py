@@ -1,0 +1,84 @@
+"""Functions of one robot, generated as C and compiled by the system's compiler."""
+
+import os
+import shutil
+
+import articulated
+import numpy as np
+import pytest
+from test_functions import FUNCTIONS, draw, size
+
+CHOSEN = ["inverse_dynamics", "mass_matrix", "forward_dynamics", "placements", "kinetic_energy", "integrate", "static_torque"]
+needs_compiler = pytest.mark.skipif(shutil.which(os.environ.get("CC", "cc").split()[0]) is None, reason="no C compiler on this system")
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path_factory, monkeypatch):
+    monkeypatch.setenv("ARTICULATED_CACHE", str(tmp_path_factory.getbasetemp() / "cache"))
+
+
+@needs_compiler
+@pytest.mark.parametrize("name", ["panda_like", "quadruped"])
+def test_compiled_functions_are_the_library_s(name):
+    robot = articulated.bundled(name, gravity=(0.5, -1, -9))
+    compiled = robot.compile(CHOSEN)
+    assert compiled.functions == tuple(CHOSEN) and name in repr(compiled)
+    for function in (f for f in FUNCTIONS if f.name in CHOSEN):
+        arguments = draw(robot, function, np.random.default_rng(3), 37)
+        expected, method = getattr(robot, function.name)(*arguments), getattr(compiled, function.name)
+        near = 1e-10 * max(1.0, np.abs(expected).max())
+        found = method(*arguments)
+        assert found.shape == (37, *(size(robot, dim) for dim in function.gives))
+        np.testing.assert_allclose(found, expected, rtol=0, atol=near)
+        for threads in (0, 2, 5, 64):
+            np.testing.assert_array_equal(method(*arguments, threads=threads), found)
+        one = method(*(argument[3] for argument in arguments))
+        assert isinstance(one, float) if function.gives == () else one.shape == found.shape[1:]
+        np.testing.assert_array_equal(one, found[3])
+        if len(arguments) > 1:
+            mixed = [arguments[0], *(argument[5] for argument in arguments[1:])]
+            np.testing.assert_array_equal(method(*mixed)[5], found[5])
+        assert method(*(argument[:0] for argument in arguments), threads=2).shape == (0, *found.shape[1:])
+    with pytest.raises(ValueError, match="q: found shape"):
+        compiled.mass_matrix(np.zeros(3))
+    with pytest.raises(TypeError, match="missing 1 required"):
+        compiled.mass_matrix()
+    with pytest.raises(ValueError, match="threads: found -1"):
+        compiled.mass_matrix(robot.neutral, threads=-1)
+    assert "q: (nq,)" in compiled.mass_matrix.__doc__
+
+
+@needs_compiler
+def test_compiled_robots_are_kept(monkeypatch):
+    robot = articulated.bundled("simple_pendulum")
+    first = robot.compile(["gravity_torque"])
+    changed = first.path.stat().st_mtime_ns
+    assert robot.compile(["gravity_torque"]).path == first.path and first.path.stat().st_mtime_ns == changed
+    assert robot.with_gravity((0, 0, -1)).compile(["gravity_torque"]).path != first.path
+    assert robot.compile(["gravity_torque"], flags=["-O1"]).path != first.path
+
+
+@needs_compiler
+def test_what_a_compiler_refuses():
+    with pytest.raises(RuntimeError, match="compile: the C compiler refused"):
+        articulated.bundled("simple_pendulum").compile(["gravity_torque"], flags=["-no-such-option"])
+
+
+def test_no_compiler_and_bad_names(monkeypatch):
+    robot = articulated.bundled("panda_like")
+    for bad, error, message in (("mass_matrix", TypeError, "functions: found 'mass_matrix', expected a list"),
+                                (["mas_matrix"], ValueError, "did you mean 'mass_matrix'"), ([], ValueError, "functions: found none"),
+                                ([1], TypeError, "functions: found int"), (None, TypeError, "functions: found NoneType")):
+        with pytest.raises(error) as found:
+            robot.compile(bad)
+        assert message in str(found.value)
+    monkeypatch.setenv("CC", "no-such-compiler")
+    with pytest.raises(RuntimeError, match="compile: found no C compiler 'no-such-compiler', expected one on the path"):
+        robot.compile(["mass_matrix"])
+
+
+@needs_compiler
+def test_functions_that_the_robot_does_not_have():
+    with pytest.raises(articulated.RobotError) as error:
+        articulated.bundled("panda_like").compile(["operational_space_inertia"])
+    assert error.value.diagnostics[0]["code"] == "bound_frames"
