@@ -123,6 +123,9 @@ pub(crate) struct GenerateArguments {
     /// The prefix of all names in C [default: the robot's name]
     #[arg(long, value_name = "PREFIX")]
     pub(crate) prefix: Option<String>,
+    /// C that does not need math.h: with sines, square roots and arctangents of its own
+    #[arg(long)]
+    pub(crate) no_libm: bool,
     /// Another interface to add to C. casadi: what casadi.external loads, with sparsity, and with
     /// jac_F where F and F_derivatives are generated
     #[arg(long, value_enum, value_name = "INTERFACE")]

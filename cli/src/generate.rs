@@ -80,7 +80,11 @@ fn target(arguments: &GenerateArguments, options: &mut Options) -> Result<(), Fa
         rust.forbid_unsafe |= arguments.forbid_unsafe;
         rust.no_std = arguments.no_std;
         rust.runtime = arguments.runtime.clone().filter(|_| !arguments.standalone);
-        let of_c = [arguments.prefix.as_ref().map(|prefix| format!("prefix {prefix}")), arguments.abi.map(|_| "abi casadi".to_owned())];
+        let of_c = [
+            arguments.prefix.as_ref().map(|prefix| format!("prefix {prefix}")),
+            arguments.abi.map(|_| "abi casadi".to_owned()),
+            arguments.no_libm.then(|| "no-libm".to_owned()),
+        ];
         let refuse = |given| Err(Failure::usage(format!("--{given}: expected --language c beside it, or no --{given}")));
         return of_c.into_iter().flatten().next().map_or(Ok(()), refuse);
     }
@@ -97,7 +101,7 @@ fn target(arguments: &GenerateArguments, options: &mut Options) -> Result<(), Fa
     }
     let casadi = arguments.abi == Some(Abi::Casadi);
     let header_only = arguments.output.as_deref().map_or(!casadi, is_header);
-    options.target = Target::C(COptions { prefix: arguments.prefix.clone(), header_only, casadi });
+    options.target = Target::C(COptions { prefix: arguments.prefix.clone(), header_only, casadi, no_libm: arguments.no_libm });
     Ok(())
 }
 

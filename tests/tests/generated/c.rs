@@ -22,7 +22,12 @@ static ROBOTS: LazyLock<Vec<Robot>> = LazyLock::new(|| robots(false));
 
 fn robots(header_only: bool) -> Vec<Robot> {
     let robot = |name: &str, urdf: &str, base: Base, level: &str, wanted: &dyn Fn(&str) -> bool| {
-        let target = Target::C(COptions { prefix: Some(name.to_owned()), header_only, casadi: false });
+        let target = Target::C(COptions {
+            prefix: Some(name.to_owned()),
+            header_only,
+            casadi: false,
+            no_libm: header_only || name.contains("own_math"),
+        });
         let options = Options { target, level: level.parse().expect("a level"), ..Options::default() };
         with(name.into(), urdf, base, false, options, wanted)
     };
@@ -38,6 +43,8 @@ fn robots(header_only: bool) -> Vec<Robot> {
         robot("gripper_arm", bundled("gripper_arm"), Base::Fixed, "f64", &all),
         robot("quadruped", bundled("quadruped"), Base::Floating, "f64", &|name| !name.contains("derivatives")),
         robot("humanoid", bundled("humanoid"), Base::Floating, "f64", &|name| LONG.contains(&name)),
+        robot("tree_own_math", &tree, Base::Floating, "f64", &all),
+        robot("arm_single_own_math", bundled("ur5_like"), Base::Fixed, "f32", &|name| !name.contains("derivatives")),
         robot("stone", stone, Base::Fixed, "f64", &all),
     ]
 }
@@ -156,7 +163,7 @@ fn what_c_does_not_have_is_refused_with_what_it_has() {
     request.options.target = Target::C(COptions { prefix: Some("2nd".into()), ..COptions::default() });
     request.options.level = "double_double".parse().expect("a level");
     let told = generate(&request).unwrap_err().to_string();
-    request.options.target = Target::C(COptions { header_only: true, casadi: true, prefix: Some("2nd".into()) });
+    request.options.target = Target::C(COptions { header_only: true, casadi: true, prefix: Some("2nd".into()), ..COptions::default() });
     let with_casadi = generate(&request).unwrap_err().to_string();
     for part in ["abi: found double_double, expected level f64", "abi: found one header, expected a header and a source"] {
         assert!(with_casadi.contains(part), "{with_casadi}");

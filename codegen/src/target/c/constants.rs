@@ -89,7 +89,7 @@ fn tables(model: &Model<f64>) -> Vec<Table> {
 }
 
 /// Writes the macros, the enumerations and the tables: declared, or with their numbers.
-pub(super) fn declare(out: &mut String, module: &Module, prefix: &str, with_numbers: bool) {
+pub(super) fn declare(out: &mut String, module: &Module, prefix: &str, infinity: &str, with_numbers: bool) {
     let (model, up) = (module.model, upper(prefix));
     for (name, what, n) in [
         ("NQ", "Number of coordinates: the length of q.", model.nq()),
@@ -120,7 +120,7 @@ pub(super) fn declare(out: &mut String, module: &Module, prefix: &str, with_numb
         let unbounded = if values.iter().any(|x| x.is_infinite()) { "; infinite where there is none" } else { "" };
         let _ = writeln!(out, "/** {says}{unbounded}. */");
         let _ = if with_numbers {
-            writeln!(out, "static const double {prefix}_{name}[{up}_{length}] = {};\n", numbers(values))
+            writeln!(out, "static const double {prefix}_{name}[{up}_{length}] = {};\n", numbers(values, infinity))
         } else {
             writeln!(out, "extern const double {prefix}_{name}[{up}_{length}];")
         };
@@ -129,18 +129,18 @@ pub(super) fn declare(out: &mut String, module: &Module, prefix: &str, with_numb
 }
 
 /// Writes the numbers of the tables.
-pub(super) fn define(out: &mut String, module: &Module, prefix: &str) {
+pub(super) fn define(out: &mut String, module: &Module, prefix: &str, infinity: &str) {
     let up = upper(prefix);
     for Table { name, length, values, .. } in tables(module.model).iter().filter(|table| !table.values.is_empty()) {
-        let _ = writeln!(out, "const double {prefix}_{name}[{up}_{length}] = {};\n", numbers(values));
+        let _ = writeln!(out, "const double {prefix}_{name}[{up}_{length}] = {};\n", numbers(values, infinity));
     }
 }
 
 /// The numbers of a table in braces.
-fn numbers(values: &[f64]) -> String {
+fn numbers(values: &[f64], infinity: &str) -> String {
     let literal = |x: &f64| match *x {
-        f64::INFINITY => "INFINITY".to_owned(),
-        f64::NEG_INFINITY => "-INFINITY".to_owned(),
+        f64::INFINITY => infinity.to_owned(),
+        f64::NEG_INFINITY => format!("-{infinity}"),
         x => format!("{x:?}"),
     };
     let rows: Vec<String> = values.chunks(6).map(|row| row.iter().map(literal).collect::<Vec<_>>().join(", ")).collect();

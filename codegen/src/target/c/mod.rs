@@ -5,6 +5,7 @@
 
 mod casadi;
 mod constants;
+mod math;
 mod statements;
 
 use std::fmt::Write;
@@ -18,7 +19,7 @@ use crate::lir::function::{Argument, Ending, Function};
 use crate::target::{File, Module};
 use crate::{Arithmetic, Options, Precision, TrigAccuracy};
 pub(in crate::target) use constants::check_names;
-use statements::{Printer, Reals};
+use statements::{Printer, Reals, infinity};
 
 /// Choices for C.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,6 +30,8 @@ pub struct COptions {
     pub header_only: bool,
     /// The source also has each function in the interface of CasADi's `external`.
     pub casadi: bool,
+    /// Sines, square roots and arctangents of the module's own in place of `math.h`.
+    pub no_libm: bool,
 }
 
 /// Numbers, in pieces where a function is long. The compiler decides what waits in memory.
@@ -72,7 +75,8 @@ pub(super) fn identifier(name: &str) -> String {
 /// The header and the source.
 pub(super) fn print(module: &Module, c: &COptions) -> Vec<File> {
     let prefix = c.prefix.clone().unwrap_or_else(|| identifier(module.model.name()));
-    let printer = Source { module, upper: prefix.to_ascii_uppercase(), prefix, header_only: c.header_only, casadi: c.casadi };
+    let printer =
+        Source { module, upper: prefix.to_ascii_uppercase(), prefix, header_only: c.header_only, casadi: c.casadi, no_libm: c.no_libm };
     let header = File { name: format!("{}.h", printer.prefix), text: printer.header() };
     if c.header_only { vec![header] } else { vec![header, File { name: format!("{}.c", printer.prefix), text: printer.source() }] }
 }
@@ -83,6 +87,7 @@ struct Source<'a> {
     upper: String,
     header_only: bool,
     casadi: bool,
+    no_libm: bool,
 }
 
 impl Source<'_> {
@@ -103,21 +108,23 @@ impl Source<'_> {
         self.origin(&mut out);
         let _ = writeln!(out, "#ifndef {upper}_H\n#define {upper}_H\n");
         if self.header_only {
-            let _ = writeln!(out, "#include <math.h>\n");
+            self.include_math(&mut out);
         }
         let _ = writeln!(out, "#ifdef __cplusplus\nextern \"C\" {{\n#endif\n");
-        constants::declare(&mut out, self.module, &self.prefix, self.header_only);
+        constants::declare(&mut out, self.module, &self.prefix, &infinity(self.own_math()), self.header_only);
+        let mut functions = String::new();
         for function in &self.module.functions {
             if self.header_only && function.body.pieces.len() > 1 {
-                self.pieces(&mut out, function);
+                self.pieces(&mut functions, function);
             }
-            self.document(&mut out, function);
+            self.document(&mut functions, function);
             if self.header_only {
-                self.function(&mut out, function);
+                self.function(&mut functions, function);
             } else {
-                let _ = writeln!(out, "{};\n", self.declaration(function));
+                let _ = writeln!(functions, "{};\n", self.declaration(function));
             }
         }
+        out += &self.with_math(functions);
         let _ = writeln!(out, "#ifdef __cplusplus\n}}\n#endif\n\n#endif");
         out
     }
@@ -125,18 +132,45 @@ impl Source<'_> {
     fn source(&self) -> String {
         let mut out = String::new();
         self.origin(&mut out);
-        let _ = writeln!(out, "#include \"{}.h\"\n\n#include <math.h>\n", self.prefix);
-        constants::define(&mut out, self.module, &self.prefix);
+        let _ = writeln!(out, "#include \"{}.h\"\n", self.prefix);
+        self.include_math(&mut out);
+        constants::define(&mut out, self.module, &self.prefix, &infinity(self.own_math()));
+        let mut functions = String::new();
         for function in &self.module.functions {
             if function.body.pieces.len() > 1 {
-                self.pieces(&mut out, function);
+                self.pieces(&mut functions, function);
             }
-            self.function(&mut out, function);
+            self.function(&mut functions, function);
         }
+        out += &self.with_math(functions);
         if self.casadi {
             casadi::write(&mut out, &self.prefix, &self.module.functions);
         }
         out
+    }
+
+    /// The prefix of the module's own mathematical functions, if it has them.
+    fn own_math(&self) -> Option<&str> {
+        self.no_libm.then_some(&self.prefix)
+    }
+
+    /// The library's header, or what is needed of it.
+    fn include_math(&self, out: &mut String) {
+        let up = &self.upper;
+        let _ = if self.no_libm {
+            writeln!(
+                out,
+                "#if defined(__GNUC__)\n#define {up}_INFINITY __builtin_inf()\n#else\n#include <math.h>\n#define {up}_INFINITY INFINITY\n#endif\n"
+            )
+        } else {
+            writeln!(out, "#include <math.h>\n")
+        };
+    }
+
+    /// Functions, behind the mathematical functions of the module's own that they call.
+    fn with_math(&self, functions: String) -> String {
+        let own = self.own_math().map(|prefix| math::text(prefix, &functions));
+        own.unwrap_or_default() + &functions
     }
 
     /// What a file says of itself.
@@ -244,7 +278,8 @@ impl Source<'_> {
             }
             String::new()
         };
-        Printer { body: &function.body, arguments: &function.arguments, reals: self.reals(), places: &place }.statements(out, statements);
+        Printer { body: &function.body, arguments: &function.arguments, reals: self.reals(), own_math: self.own_math(), places: &place }
+            .statements(out, statements);
     }
 
     fn piece(&self, function: &Function, c: usize) -> String {

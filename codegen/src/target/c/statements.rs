@@ -18,6 +18,8 @@ pub(super) struct Printer<'a> {
     pub(super) body: &'a Body,
     pub(super) arguments: &'a [Argument],
     pub(super) reals: Reals,
+    /// What the names of mathematical functions begin with where they are the module's own.
+    pub(super) own_math: Option<&'a str>,
     /// Where each number of the result is.
     pub(super) places: &'a dyn Fn(usize) -> String,
 }
@@ -68,6 +70,11 @@ impl Printer<'_> {
 
     fn sines(&self, out: &mut String, angle: &Angle) {
         let (real, of) = (self.reals.computed, self.operand(&angle.angle));
+        if let (Some(_), Some(sin), Some(cos)) = (self.own_math, angle.sin, angle.cos) {
+            let (cos, both) = (name(cos), format!("{of}, &{}", name(cos)));
+            let _ = writeln!(out, "    {real} {cos};\n    const {real} {} = {};", name(sin), self.call("sin_cos", &both));
+            return;
+        }
         for (dst, function) in [(angle.sin, "sin"), (angle.cos, "cos")] {
             if let Some(dst) = dst {
                 let _ = writeln!(out, "    const {real} {} = {};", name(dst), self.call(function, &of));
@@ -77,7 +84,8 @@ impl Printer<'_> {
 
     /// A call of the mathematical library.
     fn call(&self, function: &str, operands: &str) -> String {
-        format!("{function}{}({operands})", if self.body.ty == Ty::F32 { "f" } else { "" })
+        let prefix = self.own_math.map_or(String::new(), |prefix| format!("{prefix}_"));
+        format!("{prefix}{function}{}({operands})", if self.body.ty == Ty::F32 { "f" } else { "" })
     }
 
     fn expression(&self, expression: &Expr) -> String {
@@ -124,14 +132,20 @@ impl Printer<'_> {
 
     fn literal(&self, x: f64) -> String {
         let text = if self.body.ty == Ty::F32 { format!("{:?}f", x as f32) } else { format!("{x:?}") };
+        let infinity = infinity(self.own_math);
         match x {
-            _ if x.is_nan() => "NAN".into(),
-            f64::INFINITY => "INFINITY".into(),
-            f64::NEG_INFINITY => "(-INFINITY)".into(),
+            _ if x.is_nan() => format!("({infinity} - {infinity})"),
+            f64::INFINITY => infinity,
+            f64::NEG_INFINITY => format!("(-{infinity})"),
             _ if x < 0.0 => format!("({text})"),
             _ => text,
         }
     }
+}
+
+/// The macro for infinity: of `math.h`, or the module's own.
+pub(super) fn infinity(own_math: Option<&str>) -> String {
+    own_math.map_or_else(|| "INFINITY".to_owned(), |prefix| format!("{}_INFINITY", prefix.to_ascii_uppercase()))
 }
 
 fn name(temp: Temp) -> String {
@@ -162,7 +176,7 @@ mod tests {
             };
             let places = |_: usize| "*out".to_owned();
             let reals = Reals { computed: "double", outside: "double" };
-            Printer { body: &body, arguments: &[], reals, places: &places }.operation(op, &operands)
+            Printer { body: &body, arguments: &[], reals, own_math: None, places: &places }.operation(op, &operands)
         };
         assert_eq!(of(Ty::F64, Op::NegMulAdd, [x, y, third]), "(-0.1) - x0 * x1");
         assert_eq!(of(Ty::F64, Op::NegMulSub, [x, y, third]), "-(x0 * x1) - (-0.1)");
