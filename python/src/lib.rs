@@ -95,7 +95,7 @@ fn generate_c(
     request.options.robot.base = robot::base_of(base)?;
     request.options.robot.gravity = gravity;
     request.options.functions = functions.into_iter().map(Into::into).collect();
-    request.options.target = Target::C(COptions { prefix: Some(prefix) });
+    request.options.target = Target::C(COptions { prefix: Some(prefix), ..COptions::default() });
     request.options.stages = false;
     if let Some(frames) = frames {
         request.set_frames(&frames);
