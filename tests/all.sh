@@ -60,6 +60,7 @@ step python3 tests/peers/tables.py --check
 step python3 tests/peers/chart.py --check
 step python3 tests/oracles/make.py --check
 step python3 tests/oracles/external.py
+step python3 tests/embedded/measure.py
 step python3 tests/shipped/shipped.py --sample
 step python_package
 step readme_command
