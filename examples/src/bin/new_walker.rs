@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use articulated::Dynamics;
 use articulated::simulate::{Output, Settings, Simulation};
 
 articulated::robot! {
@@ -63,19 +64,27 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
+/// The name of the joint that degree of freedom `k` belongs to.
+fn joint(k: usize) -> String {
+    let mut joints = (0..robot::JOINTS).filter_map(|index| robot::Robot.joint(index));
+    joints.rfind(|joint| joint.v.0 <= k).map_or(String::new(), |joint| joint.name.replace(['<', '&'], "_"))
+}
+
 /// One line for each degree of freedom that is driven: its distance from the target over time.
 fn plot(errors: &[(f64, [f64; robot::NV])]) -> String {
     let (width, height) = (640.0, 360.0);
     let largest = errors.iter().flat_map(|(_, e)| &e[DRIVEN]).fold(1e-9, |most: f64, e| most.max(e.abs()));
     let mut svg =
-        String::from("<svg xmlns='http://www.w3.org/2000/svg' viewBox='-60 -20 720 430' font-family='sans-serif' font-size='12'>");
-    let _ = write!(svg, "<rect x='-60' y='-20' width='720' height='430' fill='white'/>");
+        String::from("<svg xmlns='http://www.w3.org/2000/svg' viewBox='-60 -20 920 430' font-family='sans-serif' font-size='12'>");
+    let _ = write!(svg, "<rect x='-60' y='-20' width='920' height='430' fill='white'/>");
     for (value, label) in [(largest, format!("{largest:.2}")), (0.0, "0".into()), (-largest, format!("{:.2}", -largest))] {
         let y = height / 2.0 * (1.0 - value / largest);
         let _ = write!(svg, "<path d='M0 {y}H{width}' stroke='#ccc'/><text x='-6' y='{y}' text-anchor='end'>{label}</text>");
     }
+    let below = (height / DRIVEN.len() as f64).min(16.0); // from one name of the legend to the next
     for k in DRIVEN {
-        let hue = 360 * k / robot::NV;
+        let (hue, y) = (360 * k / robot::NV, 12.0 + below * (k - DRIVEN.start) as f64);
+        let _ = write!(svg, "<text x='660' y='{y:.1}' font-size='{:.1}' fill='hsl({hue} 70% 35%)'>{}</text>", 0.8 * below, joint(k));
         let points: Vec<String> =
             errors.iter().map(|(t, e)| format!("{:.1},{:.1}", width * t / END, height / 2.0 * (1.0 - e[k] / largest))).collect();
         let _ = write!(svg, "<polyline points='{}' fill='none' stroke='hsl({hue} 70% 45%)'/>", points.join(" "));
