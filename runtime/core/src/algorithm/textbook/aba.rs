@@ -3,17 +3,23 @@
 //!
 //! Outward: V_i as in [`rnea`](super::rnea), and
 //!
-//!     c_i = Ṡ_i q̇_i + ad(V_i) S_i q̇_i        I_i = G_i        p_i = −ad(V_i)ᵀ G_i V_i − w_i
+//! ```text
+//! c_i = Ṡ_i q̇_i + ad(V_i) S_i q̇_i        I_i = G_i        p_i = −ad(V_i)ᵀ G_i V_i − w_i
+//! ```
 //!
 //! Inward, eliminating one joint after the other:
 //!
-//!     U_i = I_i S_i        D_i = S_iᵀ U_i        u_i = τ_i − S_iᵀ p_i
-//!     I_λ += Ad(T_iλ)ᵀ (I_i − U_i D_i⁻¹ U_iᵀ) Ad(T_iλ)
-//!     p_λ += Ad(T_iλ)ᵀ (p_i + (I_i − U_i D_i⁻¹ U_iᵀ) c_i + U_i D_i⁻¹ u_i)
+//! ```text
+//! U_i = I_i S_i        D_i = S_iᵀ U_i        u_i = τ_i − S_iᵀ p_i
+//! I_λ += Ad(T_iλ)ᵀ (I_i − U_i D_i⁻¹ U_iᵀ) Ad(T_iλ)
+//! p_λ += Ad(T_iλ)ᵀ (p_i + (I_i − U_i D_i⁻¹ U_iᵀ) c_i + U_i D_i⁻¹ u_i)
+//! ```
 //!
 //! Outward, with V̇_0 = [0; −g]:
 //!
-//!     A_i = Ad(T_iλ) V̇_λ + c_i        q̈_i = D_i⁻¹ (u_i − U_iᵀ A_i)        V̇_i = A_i + S_i q̈_i
+//! ```text
+//! A_i = Ad(T_iλ) V̇_λ + c_i        q̈_i = D_i⁻¹ (u_i − U_iᵀ A_i)        V̇_i = A_i + S_i q̈_i
+//! ```
 
 use alloc::vec;
 use alloc::vec::Vec;

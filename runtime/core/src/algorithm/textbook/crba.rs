@@ -3,8 +3,10 @@
 //!
 //! I_i is the inertia of body i and of all that it carries. Inward:
 //!
-//!     I_i = G_i + Σ Ad(T_ki)ᵀ I_k Ad(T_ki)                          over the children k of i
-//!     M_ji = S_jᵀ Ad(T_ij)ᵀ I_i S_i,   M_ij = M_jiᵀ                  for j = i and the bodies that carry i
+//! ```text
+//! I_i = G_i + Σ Ad(T_ki)ᵀ I_k Ad(T_ki)                          over the children k of i
+//! M_ji = S_jᵀ Ad(T_ij)ᵀ I_i S_i,   M_ij = M_jiᵀ                  for j = i and the bodies that carry i
+//! ```
 
 use alloc::vec::Vec;
 

@@ -2,13 +2,17 @@
 //!
 //! Outward, with V_0 = 0 and V̇_0 = [0; −g]:
 //!
-//!     V_i = Ad(T_iλ) V_λ + S_i q̇_i
-//!     V̇_i = Ad(T_iλ) V̇_λ + S_i q̈_i + Ṡ_i q̇_i + ad(V_i) S_i q̇_i
+//! ```text
+//! V_i = Ad(T_iλ) V_λ + S_i q̇_i
+//! V̇_i = Ad(T_iλ) V̇_λ + S_i q̈_i + Ṡ_i q̇_i + ad(V_i) S_i q̇_i
+//! ```
 //!
 //! Inward, with the wrench w_i that the world applies to body i:
 //!
-//!     F_i = G_i V̇_i − ad(V_i)ᵀ G_i V_i − w_i + Σ Ad(T_ki)ᵀ F_k   over the children k of i
-//!     τ_i = S_iᵀ F_i
+//! ```text
+//! F_i = G_i V̇_i − ad(V_i)ᵀ G_i V_i − w_i + Σ Ad(T_ki)ᵀ F_k   over the children k of i
+//! τ_i = S_iᵀ F_i
+//! ```
 
 use alloc::vec;
 use alloc::vec::Vec;
