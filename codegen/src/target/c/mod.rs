@@ -124,7 +124,7 @@ impl Source<'_> {
                 let _ = writeln!(functions, "{};\n", self.declaration(function));
             }
         }
-        out += &self.with_math(functions);
+        out += &self.with_math(&functions);
         let _ = writeln!(out, "#ifdef __cplusplus\n}}\n#endif\n\n#endif");
         out
     }
@@ -142,7 +142,7 @@ impl Source<'_> {
             }
             self.function(&mut functions, function);
         }
-        out += &self.with_math(functions);
+        out += &self.with_math(&functions);
         if self.casadi {
             casadi::write(&mut out, &self.prefix, &self.module.functions);
         }
@@ -168,9 +168,9 @@ impl Source<'_> {
     }
 
     /// Functions, behind the mathematical functions of the module's own that they call.
-    fn with_math(&self, functions: String) -> String {
-        let own = self.own_math().map(|prefix| math::text(prefix, &functions));
-        own.unwrap_or_default() + &functions
+    fn with_math(&self, functions: &str) -> String {
+        let own = self.own_math().map(|prefix| math::text(prefix, functions));
+        own.unwrap_or_default() + functions
     }
 
     /// What a file says of itself.
