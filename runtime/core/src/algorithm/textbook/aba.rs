@@ -1,7 +1,7 @@
 //! The articulated-body algorithm on one page (Featherstone, *Rigid Body Dynamics Algorithms*,
 //! 2008, Table 7.1).
 //!
-//! Outward: V_i as in [`rnea`](super::rnea), and
+//! Outward: V_i as in [`rnea`], and
 //!
 //! ```text
 //! c_i = Ṡ_i q̇_i + ad(V_i) S_i q̇_i        I_i = G_i        p_i = −ad(V_i)ᵀ G_i V_i − w_i

@@ -7,14 +7,14 @@ use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 use crate::Scalar;
 use crate::spatial::Placement;
 
-/// R = 1 + sin θ [ω]× + (1 − cos θ) [ω]×², of a unit axis ω and θ in rad.
+/// `R = 1 + sin θ [ω]× + (1 − cos θ) [ω]×²`, of a unit axis ω and θ in rad.
 pub fn rodrigues<S: Scalar>(axis: Vector3<S>, angle: S) -> Matrix3<S> {
     let (sin, cos) = angle.sin_cos();
     let w = cross_matrix(axis);
     Matrix3::identity() + w * sin + w * w * (S::one() - cos)
 }
 
-/// [v]×, with [v]× r = v × r.
+/// `[v]×`, with `[v]× r = v × r`.
 pub fn cross_matrix<S: Scalar>(v: Vector3<S>) -> Matrix3<S> {
     let o = S::zero();
     Matrix3::new(o, -v.z, v.y, v.z, o, -v.x, -v.y, v.x, o)
@@ -45,19 +45,19 @@ pub(super) fn blocks<S: Scalar>(a: &Matrix3<S>, b: &Matrix3<S>, c: &Matrix3<S>, 
     })
 }
 
-/// Ad(T) = [R 0; [p]×R R]: takes a twist from the axes of the frame to the axes in which T is
+/// `Ad(T) = [R 0; [p]×R R]`: takes a twist from the axes of the frame to the axes in which T is
 /// given.
 pub fn adjoint<S: Scalar>(x: &Placement<S>) -> Matrix6<S> {
     blocks(&x.rotation, &Matrix3::zeros(), &(cross_matrix(x.position) * x.rotation), &x.rotation)
 }
 
-/// Ad(T⁻¹) = [Rᵀ 0; −Rᵀ[p]× Rᵀ].
+/// `Ad(T⁻¹) = [Rᵀ 0; −Rᵀ[p]× Rᵀ]`.
 pub fn inverse_adjoint<S: Scalar>(x: &Placement<S>) -> Matrix6<S> {
     let rt = x.rotation.transpose();
     blocks(&rt, &Matrix3::zeros(), &-(rt * cross_matrix(x.position)), &rt)
 }
 
-/// ad(V) = [[ω]× 0; [v]× [ω]×]: ad(V) A is the rate of a screw A that moves with the twist V.
+/// `ad(V) = [[ω]× 0; [v]× [ω]×]`: ad(V) A is the rate of a screw A that moves with the twist V.
 pub fn ad<S: Scalar>(v: &Vector6<S>) -> Matrix6<S> {
     let (angular, linear) = halves(v);
     let w = cross_matrix(angular);
