@@ -67,8 +67,8 @@ impl Robot {
         Ok(Self { file, scene: None, document, options, effects: None, path, bundled: bundled.is_some(), files })
     }
 
-    /// The robot of a scene: a file, or a bundled one. What the arguments say stands in place of
-    /// what the scene says; edits come after the scene's.
+    /// The robot of a scene: a file, or a bundled one. Arguments replace the values of the scene;
+    /// edits come after the scene's.
     fn of_scene(name: &Path, arguments: &RobotArguments) -> Result<Self, Failure> {
         let (prepared, _) = named_scene::open(name)?;
         let bundled = matches!(prepared.scene.robot, articulated_scene::Robot::Bundled(_));

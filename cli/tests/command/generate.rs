@@ -225,8 +225,8 @@ fn what_is_said_stands_in_place_of_what_the_scene_says() {
     assert!(other.contains("pub const ROD: usize") && !other.contains("SCENE"), "{other}");
 }
 
-/// Names with two `_` side by side come of those that end in one; names in lower case are those
-/// asked for.
+/// Names with two `_` side by side come from names that end in one; names in lower case are the
+/// requested ones.
 #[test]
 fn code_with_odd_names_has_no_warnings() {
     let functions =

@@ -138,11 +138,11 @@ fn meshes_are_drawn_where_they_are_found_and_told_where_they_are_not() {
     assert_eq!(count(&page, "visual"), 2);
     assert_eq!((&page["solids"][0]["material"], &page["solids"][0]["color"]), (&"red".into(), &serde_json::json!([1.0, 0.0, 0.0, 1.0])));
     assert!(!ended.err.contains("rod.stl"), "{}", ended.err);
-    // Where the package stands beside the robot no option is needed.
+    // A package beside the robot needs no option.
     std::fs::rename(at("store"), at("parts")).unwrap();
     assert_eq!(count(&write(&[]).0, "visual"), 2);
     assert_eq!(count(&write(&["--package", at("parts").to_str().unwrap()]).0, "visual"), 2);
-    // What is no mesh is told.
+    // A file that is no mesh is a warning.
     std::fs::write(at("parts/mesh/rod.stl"), "solid").unwrap();
     let (page, ended) = write(&[]);
     assert!(count(&page, "visual") == 1 && ended.err.contains("rod.stl"), "{}", ended.err);

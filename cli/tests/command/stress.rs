@@ -114,8 +114,8 @@ fn what_joints_that_follow_leave_of_each_other_is_within_its_limits() {
     }
 }
 
-/// A motor gives less than it is asked for, and drag is nearly what Coriolis forces are: in the
-/// library and in generated code.
+/// Motor torques are below the requested ones, and drag is nearly as large as Coriolis forces, in
+/// the library and in generated code.
 #[test]
 fn motors_and_drag_are_within_their_limits() {
     let urdf = File::new("arm.urdf", arm("").as_bytes());

@@ -182,7 +182,7 @@ impl External<'_> {
         let _ = writeln!(out, "    default: return 0;\n    }}\n}}\n");
     }
 
-    /// Calls our function, and copies the entries of the results that are asked for.
+    /// Calls our function, and copies the entries of the requested results.
     fn call(&self, out: &mut String) {
         let Self { export, prefix, name, calls, .. } = self;
         let read = &self.inputs[..self.inputs.len() - self.unread];

@@ -1,7 +1,8 @@
 //! What C has in place of `math.h`, for processors without a mathematical library.
 //!
-//! Reduction by π/2 in three parts and polynomials on [−π/4, π/4] and [0, 7/16]; coefficients of fdlibm's `k_sin.c`, `k_cos.c`,
-//! `s_atan.c` and of its constants for π/2 (Sun Microsystems, 1993), in single precision of Cephes' `sinf.c` (S. L. Moshier).
+//! Angles are reduced by π/2 in three parts. Polynomials are on [−π/4, π/4] and [0, 7/16]. Their
+//! coefficients, and π/2, are those of fdlibm's `k_sin.c`, `k_cos.c` and `s_atan.c` (Sun
+//! Microsystems, 1993); in single precision those of Cephes' `sinf.c` (S. L. Moshier).
 
 /// Names in the text below that begin with `P_` get the prefix of the robot.
 const MARK: &str = "P_";

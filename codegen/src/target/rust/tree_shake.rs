@@ -48,8 +48,7 @@ fn without_gaps<'a>(lines: &[&'a str]) -> Vec<&'a str> {
     kept
 }
 
-/// Names of functions that are needed: the first ones, and whatever stands in the text of one that
-/// is needed.
+/// Names of the required functions: the first ones, and all that a required one names in its text.
 fn live<'a>(lines: &[&'a str], items: &[Item<'a>], first: Vec<&'a str>) -> HashSet<&'a str> {
     let mut bodies: HashMap<&str, Vec<&'a str>> = HashMap::new();
     for item in items {
