@@ -107,7 +107,7 @@ impl Format for Urdf {
         }
         let description = lower::lower(&draft, &tree, &leaders)?;
         #[cfg(feature = "second-reader")]
-        bridge::compare(&description, &draft, &tree, &leaders, diagnostics);
+        bridge::compare(&description, &draft, &tree, &leaders.first, diagnostics);
         Some(description)
     }
 }
