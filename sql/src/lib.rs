@@ -1,0 +1,9 @@
+#![doc = include_str!("../README.md")]
+
+mod batch;
+mod columns;
+mod function;
+mod robot;
+
+pub use batch::{Batch, State};
+pub use robot::Robot;
