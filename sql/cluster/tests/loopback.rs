@@ -8,7 +8,6 @@ use std::time::Duration;
 use articulated_datafusion::Robot;
 use articulated_datafusion_cluster::{executor_config, scheduler_config};
 use ballista::prelude::SessionContextExt;
-use ballista_core::config::TaskSchedulingPolicy;
 use ballista_executor::executor_process::{ExecutorProcessConfig, start_executor_process};
 use ballista_scheduler::cluster::BallistaCluster;
 use ballista_scheduler::config::SchedulerConfig;
@@ -20,6 +19,9 @@ use datafusion::prelude::{ParquetReadOptions, SessionContext};
 
 #[path = "../../examples/fleet/mod.rs"]
 mod fleet;
+
+/// No part of the test takes as long.
+const LONGEST: Duration = Duration::from_secs(120);
 
 /// A folder that goes with the test.
 struct Folder(PathBuf);
@@ -60,13 +62,24 @@ async fn start(robots: &[Robot], work: &Path) -> String {
             scheduler_port: port,
             scheduler_connect_timeout_seconds: 30,
             vcores: 2,
-            task_scheduling_policy: TaskSchedulingPolicy::PullStaged,
             work_dir: Some(folder.to_string_lossy().into_owned()),
             ..executor_config(robots)
         };
         tokio::spawn(async move { start_executor_process(Arc::new(config)).await.unwrap() });
     }
     format!("df://127.0.0.1:{port}")
+}
+
+/// A session of the cluster, as soon as the scheduler answers.
+async fn connected(url: &str) -> SessionContext {
+    let (_, port) = url.rsplit_once(':').unwrap();
+    let answers = async {
+        while tokio::net::TcpStream::connect(("127.0.0.1", port.parse().unwrap())).await.is_err() {
+            tokio::time::sleep(Duration::from_millis(20)).await;
+        }
+    };
+    tokio::time::timeout(LONGEST, answers).await.unwrap();
+    SessionContext::remote(url).await.unwrap()
 }
 
 async fn residuals(context: &SessionContext, logs: &Path) -> RecordBatch {
@@ -95,18 +108,9 @@ async fn a_cluster_computes_what_one_process_computes() {
     let expected = residuals(&alone, &logs.0).await;
     assert_eq!(expected.num_rows(), 21);
 
-    let url = start(std::slice::from_ref(&robot), &work.0).await;
-    let connected = async {
-        loop {
-            match SessionContext::remote(&url).await {
-                Ok(context) => break context,
-                Err(_) => tokio::time::sleep(Duration::from_millis(50)).await,
-            }
-        }
-    };
-    let cluster = tokio::time::timeout(Duration::from_secs(30), connected).await.unwrap();
+    let cluster = connected(&start(std::slice::from_ref(&robot), &work.0).await).await;
     robot.register(&cluster).unwrap();
-    let found = tokio::time::timeout(Duration::from_secs(120), residuals(&cluster, &logs.0)).await.unwrap();
+    let found = tokio::time::timeout(LONGEST, residuals(&cluster, &logs.0)).await.unwrap();
 
     for column in [0, 1] {
         assert_eq!(texts(&found, column), texts(&expected, column));
@@ -118,4 +122,17 @@ async fn a_cluster_computes_what_one_process_computes() {
     assert_eq!(numbers(&found, 3), numbers(&expected, 3));
     // Friction of 4 N·m at the fourth joint of the second robot, and no error of the first.
     assert!((numbers(&found, 2)[7 + 3] - 4.0).abs() < 1e-9 && numbers(&found, 3)[..7].iter().all(|x| *x < 1e-9));
+}
+
+/// The functions are computed by the cluster and not by the client.
+#[tokio::test(flavor = "multi_thread", worker_threads = 4)]
+async fn a_cluster_that_does_not_know_the_robot_names_the_function() {
+    let (logs, work) = (Folder::new("logs-without"), Folder::new("work-without"));
+    fleet::write_logs(&logs.0, 10).await.unwrap();
+    let cluster = connected(&start(&[], &work.0).await).await;
+    fleet::robot().unwrap().register(&cluster).unwrap();
+    cluster.register_parquet("log", logs.0.to_string_lossy(), ParquetReadOptions::default()).await.unwrap();
+    let frame = cluster.sql(fleet::RESIDUALS).await.unwrap();
+    let error = tokio::time::timeout(LONGEST, frame.collect()).await.unwrap().unwrap_err().to_string();
+    assert!(error.contains("not provided for scalar function inverse_dynamics"), "{error}");
 }
