@@ -244,8 +244,7 @@ async fn parquet_is_read_with_and_without_the_schema_of_arrow() {
         let options = DataFrameWriteOptions::new().with_single_file_output(true);
         writer.read_batch(table.clone()).unwrap().write_parquet(&file, options, None).await.unwrap();
         let name = format!("log_{without}");
-        let mut options = ParquetReadOptions::default();
-        options.skip_metadata = Some(without);
+        let options = ParquetReadOptions::default().skip_metadata(without);
         context.register_parquet(&name, &file, options).await.unwrap();
         let frame = context.table(name.as_str()).await.unwrap();
         let is_fixed = matches!(frame.schema().field(0).data_type(), DataType::FixedSizeList(..));
@@ -265,6 +264,25 @@ async fn names_of_joints_and_frames_come_with_their_numbers() {
     assert!(joints.value(0).ends_with("[0]") && joints.value(5).ends_with("[5]") && !joints.value(6).contains('['), "{joints:?}");
     let found = query(&context, "SELECT frame_names()").await.unwrap();
     assert!(found.column(0).as_list::<i32>().value_length(0) > 1);
+}
+
+#[tokio::test]
+async fn a_table_without_rows_gives_none() {
+    let context = session(panda());
+    context.register_batch("states", states(&panda(), 3)).unwrap();
+    let found = query(&context, "SELECT mass_matrix(q), kinetic_energy(q, v) FROM states WHERE q[1] > 100").await.unwrap();
+    assert_eq!((found.num_rows(), found.column(0).data_type()), (0, &fixed(DataType::Float64, 49)));
+}
+
+#[tokio::test]
+async fn functions_of_the_session_have_documentation() {
+    let context = SessionContext::new_with_config(SessionConfig::new().with_information_schema(true));
+    Robot::new(panda()).register(&context).unwrap();
+    let sql = "SELECT syntax_example, description FROM information_schema.routines WHERE routine_name = 'mass_matrix'";
+    let found = query(&context, sql).await.unwrap();
+    let text = |k: usize| cast(found.column(k), &DataType::Utf8).unwrap().as_string::<i32>().value(0).to_owned();
+    assert_eq!(text(0), "mass_matrix(q)");
+    assert_eq!(text(1), "M(q). Gives (7, 7): kg·m²|kg·m|kg, symmetric.");
 }
 
 #[tokio::test]

@@ -1,10 +1,35 @@
 //! Functions of robots on a Ballista cluster: the same queries, on many machines.
 //!
 //! Ballista sends a query with the names of its functions. So the scheduler and each executor must
-//! know the robots. [`scheduler_config`] is for
-//! `ballista_scheduler::scheduler_process::start_server`, and [`executor_config`] for
-//! `ballista_executor::executor_process::start_executor_process`. The client registers the robots
-//! in the session that it gets:
+//! know the robots. Each is a program of a few lines:
+//!
+//! ```no_run
+//! use std::sync::Arc;
+//!
+//! use articulated::Base;
+//! use articulated_datafusion::Robot;
+//! use articulated_datafusion_cluster::{executor_config, scheduler_config};
+//! use ballista_executor::executor_process::{ExecutorProcessConfig, start_executor_process};
+//! use ballista_scheduler::cluster::BallistaCluster;
+//! use ballista_scheduler::scheduler_process::start_server;
+//!
+//! async fn scheduler() -> Result<(), Box<dyn std::error::Error>> {
+//!     let config = scheduler_config(&[Robot::load("arm.urdf", Base::Fixed)?]);
+//!     let cluster = BallistaCluster::new_from_config(&config).await?;
+//!     Ok(start_server(cluster, "0.0.0.0:50050".parse()?, Arc::new(config)).await?)
+//! }
+//!
+//! async fn executor() -> Result<(), Box<dyn std::error::Error>> {
+//!     let config = ExecutorProcessConfig {
+//!         bind_host: "0.0.0.0".into(),
+//!         scheduler_host: "scheduler.example".into(),
+//!         ..executor_config(&[Robot::load("arm.urdf", Base::Fixed)?])
+//!     };
+//!     Ok(start_executor_process(Arc::new(config)).await?)
+//! }
+//! ```
+//!
+//! The client registers the robots in the session that it gets:
 //!
 //! ```no_run
 //! use articulated::Base;
@@ -12,11 +37,15 @@
 //! use ballista::prelude::SessionContextExt;
 //! use datafusion::prelude::SessionContext;
 //!
-//! # async fn client() -> Result<(), Box<dyn std::error::Error>> {
-//! let context = SessionContext::remote("df://scheduler.example:50050").await?;
-//! Robot::load("arm.urdf", Base::Fixed)?.register(&context)?;
-//! # Ok(()) }
+//! async fn client() -> Result<SessionContext, Box<dyn std::error::Error>> {
+//!     let context = SessionContext::remote("df://scheduler.example:50050").await?;
+//!     Robot::load("arm.urdf", Base::Fixed)?.register(&context)?;
+//!     Ok(context)
+//! }
 //! ```
+//!
+//! A robot whose prefix or file differs between the machines computes other numbers there: all load
+//! the same file.
 
 use std::sync::Arc;
 
