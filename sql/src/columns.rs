@@ -10,9 +10,9 @@ use datafusion::arrow::datatypes::{DataType, Field, Float64Type};
 use datafusion::error::{DataFusionError, Result};
 use datafusion::logical_expr::ColumnarValue;
 
-/// `len` numbers in each row. One row is `Float64` if `len` is `None`.
+/// A list of `len` items in each row.
 pub(crate) fn list_type(item: DataType, len: usize) -> DataType {
-    // `rows_fit` has the largest robot; a length beyond it is refused when the robot is registered.
+    // A function with more numbers in a row is refused before it has a type.
     DataType::FixedSizeList(Arc::new(Field::new_list_field(item, true)), i32::try_from(len).unwrap_or(i32::MAX))
 }
 

@@ -16,7 +16,7 @@ use datafusion::logical_expr::{
 
 use crate::batch::Run;
 use crate::columns::{Column, coerced, list_type, wrong_type};
-use crate::robot::Evaluate;
+use crate::evaluate::Evaluate;
 
 /// The section of the functions in DataFusion's documentation.
 const SECTION: DocSection = DocSection { include: true, label: "Robot dynamics", description: None };

@@ -2,6 +2,7 @@
 
 mod batch;
 mod columns;
+mod evaluate;
 mod function;
 mod robot;
 

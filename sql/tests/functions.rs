@@ -214,13 +214,13 @@ async fn rows_with_a_null_are_null_and_nan_stays_in_its_row() {
     let list = ListArray::new(item(DataType::Float64), lengths, shorter, Some(nulls));
     let batch = RecordBatch::try_from_iter_with_nullable([("q", q.into_array(), true), ("list", list.into_array(), true)]).unwrap();
     context.register_batch("states", batch).unwrap();
-    let sql = "SELECT gravity_torque(q), gravity_torque(list), potential_energy(q), mass_matrix(NULL), gravity_torque([NULL, 0, 0, 0, 0, 0, 0]) FROM states";
+    let sql = "SELECT gravity_torque(q), gravity_torque(list), potential_energy(q), mass_matrix(NULL), gravity_torque([NULL, 0, 0, 0, 0, 0, 0]), bias_forces(q, NULL) FROM states";
     let found = query(&context, sql).await.unwrap();
     for k in 0..3 {
         let nulls: Vec<bool> = (0..5).map(|row| found.column(k).is_null(row)).collect();
         assert_eq!(nulls, [false, true, true, false, false], "{k}");
     }
-    assert!((3..5).all(|k| found.column(k).null_count() == 5));
+    assert!((3..6).all(|k| found.column(k).null_count() == 5));
     for k in 0..2 {
         let torques = found.column(k).as_fixed_size_list();
         let is_finite = |row: usize| torques.value(row).as_primitive::<Float64Type>().values().iter().all(|x| x.is_finite());
