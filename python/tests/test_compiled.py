@@ -82,3 +82,27 @@ def test_functions_that_the_robot_does_not_have():
     with pytest.raises(articulated.RobotError) as error:
         articulated.bundled("panda_like").compile(["operational_space_inertia"])
     assert error.value.diagnostics[0]["code"] == "bound_frames"
+
+
+@needs_compiler
+def test_a_generated_function_of_many_states_is_used(monkeypatch):
+    """Where the files have NAME_batch, it takes states that all differ; here one that says so."""
+    from articulated import _native
+
+    row = "(size_t count, const double *q, const double *v, double *out)"
+
+    def with_batch(robot, functions, prefix):
+        header, *rest = _native.Robot._generate_c(robot, functions, prefix)
+        declared = header[1].replace("#endif", f"#include <stddef.h>\nvoid {prefix}_bias_forces_batch{row};\n#endif")
+        body = "{ (void)q; (void)v; for (size_t k = 0; k < count; k++) { out[k] = (double)count; } }"
+        return [(header[0], declared if declared != header[1] else header[1]), *rest, ("many.c", f'#include "{prefix}.h"\nvoid {prefix}_bias_forces_batch{row} {body}\n')]
+
+    robot = articulated.bundled("simple_pendulum")
+    expected = robot.bias_forces([0.3], [0.2])
+    monkeypatch.setattr(articulated.Robot, "_generate_c", with_batch)
+    compiled, q, v = robot.compile(["bias_forces"]), np.full((5, 1), 0.3), np.full((5, 1), 0.2)
+    assert compiled.bias_forces(q, v).ravel().tolist() == [5.0] * 5
+    np.testing.assert_allclose(compiled.bias_forces(q, v[0]), np.tile(expected, (5, 1)), rtol=1e-12)
+    np.testing.assert_allclose(compiled.bias_forces(q[0], v[0]), expected, rtol=1e-12)
+    alone = robot.compile(["bias_forces"], batch=False)
+    np.testing.assert_allclose(alone.bias_forces(q, v), np.tile(expected, (5, 1)), rtol=1e-12)
