@@ -245,10 +245,15 @@ def document(function, name, tensor):
     return function
 
 
-def check_count(name, arguments):
-    """Refuses another number of arguments."""
+def in_order(name, arguments, named):
+    """The arguments in order, some by position and some by name."""
     takes = [argument for argument, _, _ in RULES[name].takes]
-    if len(arguments) != len(takes):
-        raise TypeError(f"{name}: found {len(arguments)} arguments after the robot, expected {len(takes)}: {', '.join(takes)}")
-
-
+    given = dict(zip(takes, arguments))
+    wrong = [argument for argument in named if argument not in takes or argument in given]
+    if wrong:
+        raise TypeError(f"{name}: found {wrong[0]!r} by name, expected what is not given by position of {', '.join(takes)}")
+    given.update(named)
+    if len(given) != len(takes) or len(arguments) > len(takes):
+        found = len(arguments) + len(named)
+        raise TypeError(f"{name}: found {found} arguments after the robot, expected {len(takes)}: {', '.join(takes)}")
+    return [given[argument] for argument in takes]

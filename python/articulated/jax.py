@@ -59,9 +59,9 @@ def _array(name, value):
 
 
 def _wrapper(name):
-    def function(robot, *arguments, threads=None):
+    def function(robot, *arguments, threads=None, **named):
         takes, _ = _gradients.sizes(robot, name)
-        _gradients.check_count(name, arguments)
+        arguments = _gradients.in_order(name, arguments, named)
         arrays = [_array(argument, value) for (argument, _), value in zip(takes, arguments)]
         dtype = np.float64 if jax.config.jax_enable_x64 else np.float32
         batch = _gradients.batch_shape(arrays, takes)

@@ -45,9 +45,9 @@ def _tensor(name, value):
 
 
 def _wrapper(name):
-    def function(robot, *arguments, threads=None):
+    def function(robot, *arguments, threads=None, **named):
         takes, _ = _gradients.sizes(robot, name)
-        _gradients.check_count(name, arguments)
+        arguments = _gradients.in_order(name, arguments, named)
         tensors = [_tensor(argument, value) for (argument, _), value in zip(takes, arguments)]
         batch = _gradients.batch_shape(tensors, takes)
         # Gradients of what is broadcast are summed by PyTorch.

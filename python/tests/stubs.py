@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes articulated/__init__.pyi, the types of the package, from the table of functions.
+"""Writes the types of the package, articulated/*.pyi, from the table of functions.
 
     python tests/stubs.py [--check]
 
@@ -10,8 +10,9 @@ import sys
 from pathlib import Path
 
 import articulated
+from articulated import _gradients
 
-FILE = Path(__file__).resolve().parent.parent / "articulated" / "__init__.pyi"
+FOLDER = Path(__file__).resolve().parent.parent / "articulated"
 
 HEAD = '''"""Types of the package. Made by tests/stubs.py from the table of functions."""
 
@@ -196,12 +197,30 @@ def method(function):
     )
 
 
+def derivatives(library, array, imported):
+    """The types of articulated.torch or articulated.jax."""
+    lines = [
+        f'"""Functions of a robot with exact derivatives for {library}. Made by tests/stubs.py from the table of functions."""\n',
+        f"from typing import Any, Optional, Union\n\n{imported}\n\nfrom . import CompiledRobot, Robot\n",
+    ]
+    for name, rule in _gradients.RULES.items():
+        given = "".join(f"{argument}: {array}, " for argument, _, _ in rule.takes)
+        result = "Any" if library == "JAX" else array
+        lines.append(f"def {name}(robot: Union[Robot, CompiledRobot], {given}*, threads: Optional[int] = None) -> {result}: ...")
+    return "\n".join(lines) + "\n"
+
+
 def main():
-    text = HEAD + "".join(method(f) for f in articulated.functions() if f.name != "random_configuration")
-    if "--check" not in sys.argv[1:]:
-        FILE.write_text(text, encoding="utf-8")
-    elif FILE.read_text(encoding="utf-8") != text:
-        sys.exit(f"{FILE.name} is not up to date: run python tests/stubs.py")
+    texts = {
+        "__init__.pyi": HEAD + "".join(method(f) for f in articulated.functions() if f.name != "random_configuration"),
+        "torch.pyi": derivatives("PyTorch", "Tensor", "from torch import Tensor"),
+        "jax.pyi": derivatives("JAX", "ArrayLike", "from numpy.typing import ArrayLike"),
+    }
+    for name, text in texts.items():
+        if "--check" not in sys.argv[1:]:
+            (FOLDER / name).write_text(text, encoding="utf-8")
+        elif (FOLDER / name).read_text(encoding="utf-8") != text:
+            sys.exit(f"{name} is not up to date: run python tests/stubs.py")
 
 
 if __name__ == "__main__":

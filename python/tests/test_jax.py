@@ -63,6 +63,7 @@ def test_batches_and_transformations():
     function = lambda q, v, tau: articulated.jax.forward_dynamics(robot, q, v, tau, threads=2)  # noqa: E731
     for found in (function(q, v, tau), jax.vmap(function)(q, v, tau), jax.jit(jax.vmap(function))(q, v, tau)):
         np.testing.assert_array_equal(found, expected)
+    np.testing.assert_array_equal(articulated.jax.forward_dynamics(robot, q, tau=tau, v=v), expected)
     one = jax.vmap(function, in_axes=(0, None, None))(q, v[0], tau[0])
     np.testing.assert_array_equal(one, robot.forward_dynamics(q, v[0], tau[0]))
     gradient = jax.jit(jax.grad(lambda *x: function(*x).sum(), argnums=(0, 1, 2)))(q, v[0], tau[0])
@@ -96,6 +97,8 @@ def test_bad_calls():
     for call, error, message in (
         (lambda: articulated.jax.gravity_torque(robot, q[:6]), ValueError, "q: found shape \\(6,\\), expected \\(7,\\)"),
         (lambda: articulated.jax.gravity_torque(robot), TypeError, "gravity_torque: found 0 arguments after the robot, expected 1: q"),
+        (lambda: articulated.jax.gravity_torque(robot, q, q=q), TypeError, "gravity_torque: found 'q' by name"),
+        (lambda: articulated.jax.gravity_torque(robot, p=q), TypeError, "gravity_torque: found 'p' by name"),
         (lambda: articulated.jax.gravity_torque("panda", q), TypeError, "robot: found str"),
         (lambda: articulated.jax.gravity_torque(robot, q * 1j), TypeError, "q: found dtype complex128"),
         (lambda: articulated.jax.bias_forces(robot, np.zeros((2, 7)), np.zeros((3, 7))), ValueError, "do not fit"),

@@ -72,6 +72,8 @@ def test_bad_calls():
         (lambda: articulated.torch.gravity_torque(robot, q.float()), TypeError, "q: found torch.float32 on cpu"),
         (lambda: articulated.torch.gravity_torque(robot, q[:6]), ValueError, "q: found shape \\(6,\\), expected \\(7,\\)"),
         (lambda: articulated.torch.gravity_torque(robot), TypeError, "gravity_torque: found 0 arguments after the robot, expected 1: q"),
+        (lambda: articulated.torch.gravity_torque(robot, q, q=q), TypeError, "gravity_torque: found 'q' by name"),
+        (lambda: articulated.torch.gravity_torque(robot, p=q), TypeError, "gravity_torque: found 'p' by name"),
         (lambda: articulated.torch.gravity_torque("panda", q), TypeError, "robot: found str"),
         (lambda: articulated.torch.gravity_torque(robot, "q"), TypeError, "q: found str"),
         (lambda: articulated.torch.gravity_torque(robot, q * float("nan")), ValueError, "q: found nan"),
