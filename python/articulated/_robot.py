@@ -141,9 +141,12 @@ class Robot(_native.Robot):
 
     __slots__ = ("_source", "__weakref__")
 
+    def __new__(cls, *_arguments, **_named):
+        raise TypeError("Robot: found a call of the class, expected one of articulated.load, loads and bundled, which make robots")
+
     @classmethod
     def _made(cls, source, like=None):
-        robot = cls.__new__(cls, *source, like)
+        robot = _native.Robot.__new__(cls, *source, like)
         robot._source = source
         return robot
 

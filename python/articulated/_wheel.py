@@ -50,6 +50,11 @@ def module_name(name):
     return f"robot_{name}" if name[0].isdigit() or keyword.iskeyword(name) else name
 
 
+def _plain(name):
+    """A robot's name for texts: without what ends a string or a line."""
+    return "".join(letter if letter.isprintable() and letter not in "\"\\" else "_" for letter in name)
+
+
 def _checked(name, version):
     if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or keyword.iskeyword(name):
         raise ValueError(f"name: found {name!r}, expected a Python name of ASCII letters, digits and underscores")
@@ -75,7 +80,7 @@ def _module(robot, functions, text):
     numbers = {"LOWER": robot.lower, "UPPER": robot.upper, "VELOCITY_LIMIT": robot.velocity_limit, "EFFORT_LIMIT": robot.effort_limit}
     numbers["NEUTRAL"] = robot.neutral
     body = [
-        f'"""The robot {robot.name!r}: {len(functions)} functions on NumPy arrays, one state or many. Made by articulated.\n\n'
+        f'"""The robot {_plain(robot.name)}: {len(functions)} functions on NumPy arrays, one state or many. Made by articulated.\n\n'
         'SI units, radians. Six-vectors are [angular, linear]. JOINTS has name, kind, and ranges in q and v of each joint.\n"""\n',
         "import ctypes\nimport math\nimport os\nimport threading\n\nimport numpy as np\n",
         "".join(f"{name} = {value!r}\n" for name, value in facts.items()),
@@ -118,7 +123,7 @@ def write(robot, folder, functions, name, version, flags, text):
         library = build(files, command, flags, work, FILE).read_bytes()
     tag = f"py3-none-{platform_tag()}"
     info = f"{name}-{version}.dist-info"
-    summary = f"Dynamics of the robot {' '.join(robot.name.split())}: {', '.join(function.name for function in functions)}"
+    summary = f"Dynamics of the robot {_plain(robot.name)}: {', '.join(function.name for function in functions)}"
     metadata = [
         "Metadata-Version: 2.1",
         f"Name: {name}",

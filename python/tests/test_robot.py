@@ -152,6 +152,12 @@ def test_bad_options(options, error, message):
     assert message in str(found.value)
 
 
+def test_the_class_makes_no_robots():
+    for arguments in ((), ("panda_like",)):
+        with pytest.raises(TypeError, match="expected one of articulated.load, loads and bundled"):
+            articulated.Robot(*arguments)
+
+
 def test_bad_names():
     for bad in (3, None, b"panda_like", ["a"], "pando_like"):
         with pytest.raises(ValueError, match="name: found"):

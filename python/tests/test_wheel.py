@@ -140,6 +140,21 @@ def test_bad_options(robot, tmp_path, options, error, message):
     assert message in str(found.value)
 
 
+def test_names_are_no_code(tmp_path):
+    text = """<robot name='a&quot;&quot;&quot;&#10;raise SystemExit(1)&#10;&quot;&quot;&quot;\\'><link name="b"/><link name="c&quot;\\"><inertial><mass value="1"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link><joint name="j&#10;'" type="continuous"><parent link="b"/>
+    <child link="c&quot;\\"/><axis xyz="0 0 1"/></joint></robot>"""
+    with pytest.warns(articulated.RobotWarning):
+        robot = articulated.loads(text)
+    with zipfile.ZipFile(robot.wheel(tmp_path, ["mass_matrix"], name="odd")) as archive:
+        metadata = archive.read("odd-0.1.0.dist-info/METADATA").decode()
+        archive.extractall(tmp_path / "site")
+    assert len(metadata.splitlines()) == 6
+    check = "import odd; print(odd.mass_matrix([0.0]).tolist(), repr(odd.NAME), repr(odd.JOINTS[0][0]))"
+    done = subprocess.run([sys.executable, "-c", check], cwd=tmp_path / "site", capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == f"[[1.0]] {robot.name!r} {robot.joints[0].name!r}"
+
+
 def test_robots_have_names_of_modules():
     from articulated._wheel import module_name
 
