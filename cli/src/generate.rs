@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
         request.options.parameters = arguments.parameters.iter().cloned().map(Into::into).collect();
     }
     if !arguments.batch.is_empty() {
-        request.options.rust_mut().batch.clone_from(&arguments.batch);
+        request.options.batch.clone_from(&arguments.batch);
     }
     request.options.limbs &= !arguments.no_limbs;
     request.options.level = arguments.level.unwrap_or(request.options.level);
@@ -89,7 +89,6 @@ fn target(arguments: &GenerateArguments, options: &mut Options) -> Result<(), Fa
         return of_c.into_iter().flatten().next().map_or(Ok(()), refuse);
     }
     let of_rust = [
-        ("--batch, or `batch` in the scene", !options.rust().batch.is_empty()),
         ("--standalone", arguments.standalone),
         ("--forbid-unsafe", arguments.forbid_unsafe),
         ("--no-std", arguments.no_std),

@@ -228,10 +228,10 @@ impl Build {
     #[must_use]
     pub fn batch<R: Into<BatchType>>(mut self, reals: impl IntoIterator<Item = R>) -> Self {
         self.findings.errors.retain(|error| error.code != Code::Batch);
-        self.request.options.rust_mut().batch.clear();
+        self.request.options.batch.clear();
         for real in reals {
             match real.into().0 {
-                Ok(real) => self.request.options.rust_mut().batch.push(real),
+                Ok(real) => self.request.options.batch.push(real),
                 Err(name) => {
                     let place = (At::Nowhere, "batch");
                     self.findings.push(Diagnostic::error("", place, Code::Batch, format!("{name:?}"), "\"f64\" or \"f32\""));

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use articulated_core::diagnostic::{Diagnostics, Spanned};
+use articulated_core::lanes::Real;
 use articulated_core::precision::Precision;
 use articulated_scene::{BuiltRobot, RobotOptions, RobotRequest, Scene};
 
@@ -49,6 +50,8 @@ pub struct Options {
     /// Limit of the predicted code size of all functions together, megabytes (10⁶ bytes): see
     /// [`MAX_CODE_SIZE`](crate::MAX_CODE_SIZE), which is the default.
     pub max_code_size: u64,
+    /// The types of numbers for which there are functions of many states at once too.
+    pub batch: Vec<Real>,
     /// The target language, with its options.
     pub target: Target,
     /// Whether the ledger has counts after each model pass, for which the functions are traced once
@@ -67,6 +70,7 @@ impl Default for Options {
             limbs: true,
             level: Precision::default(),
             max_code_size: crate::MAX_CODE_SIZE,
+            batch: Vec::new(),
             target: Target::default(),
             stages: true,
         }

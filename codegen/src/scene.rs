@@ -86,7 +86,7 @@ pub fn fill(options: &mut Options, scene: &Scene) {
     options.parameters = scene.spanned(code.parameters.unwrap_or_default(), &places.parameters);
     options.rename = scene.spanned(code.rename, &places.rename);
     put(code.limbs, &mut options.limbs);
-    options.rust_mut().batch = code.batch.unwrap_or_default();
+    options.batch = code.batch.unwrap_or_default();
     options.level = code.level.unwrap_or(options.level);
     put(code.forbid_unsafe, &mut options.rust_mut().forbid_unsafe);
     options.max_code_size = code.max_code_size.unwrap_or(options.max_code_size);

@@ -167,7 +167,7 @@ mod tests {
             [(chain(24, 24, Base::Fixed), false), (chain(18, 6, Base::Floating), false), (chain(12, 12, Base::Fixed), true)]
         {
             request.options.limbs = false;
-            request.options.rust_mut().batch = if batch { vec![Real::F64] } else { Vec::new() };
+            request.options.batch = if batch { vec![Real::F64] } else { Vec::new() };
             let whole = request.build_robot().unwrap().model;
             for function in functions::<Sym>() {
                 request.options.functions = vec![function.name.into()];

@@ -276,7 +276,7 @@ fn of_a_file_larger_than_any_robot_nothing_is_read() {
 fn empty_lists_stand_in_place_of_those_of_the_scene_too() {
     let file = "../tests/ui/scenes/three.toml";
     let empty = |o: &mut articulated_codegen::Options| {
-        (o.robot.payloads, o.parameters, o.rust_mut().batch) = (Vec::new(), Vec::new(), Vec::new());
+        (o.robot.payloads, o.parameters, o.batch) = (Vec::new(), Vec::new(), Vec::new());
         (o.robot.lock, o.rename) = (Vec::new(), Vec::new());
     };
     let build = Build::scene(file).options(empty).generate().unwrap();

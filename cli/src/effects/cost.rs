@@ -100,7 +100,7 @@ impl Part {
             (o.robot.effects, o.robot.gravity) = (variant.effects.clone(), variant.gravity);
             (o.functions, o.robot.frames, o.rust_mut().runtime, o.stages) =
                 (self.functions.iter().cloned().map(Into::into).collect(), None, None, false);
-            (o.parameters, o.rust_mut().batch) = (Vec::new(), Vec::new());
+            (o.parameters, o.batch) = (Vec::new(), Vec::new());
             progress.doing(format!("generation: {}", variant.what));
             let made = generate_code(&request);
             progress.step();

@@ -117,7 +117,7 @@ fn what_is_said_beside_a_scene_stands_in_its_place() {
 #[test]
 fn types_of_a_batch_may_be_their_names() {
     let build = Build::new("arm.urdf");
-    let types = |build: &Build| build.request.options.rust().batch.clone();
+    let types = |build: &Build| build.request.options.batch.clone();
     let named = build.clone().batch(["f64", "f32"]);
     assert_eq!(types(&named), types(&build.clone().batch([crate::Real::F64, crate::Real::F32])));
     let folder = folder("batch");

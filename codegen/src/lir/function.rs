@@ -2,6 +2,7 @@
 //! choose is decided here, by its [`Capabilities`], and nothing while it prints.
 
 use articulated_core::algorithm::{Dim, Shape};
+use articulated_core::lanes::Real;
 
 use crate::capabilities::Capabilities;
 use crate::graph::Graph;
@@ -131,6 +132,34 @@ impl<'a> Function<'a> {
     /// Whether the values are vectors.
     pub(crate) fn in_lanes(&self) -> bool {
         matches!(self.body.ty, Ty::Vector(_))
+    }
+}
+
+/// A sine or cosine takes as long as so many operations.
+const SINE: u64 = 10;
+
+/// To turn two numbers of a result from blocks into states takes as long as a block saves on so
+/// many operations (AVX-512, Emerald Rapids).
+const TWO_NUMBERS: u64 = 5;
+
+/// A result of which more than three fifths are computed is dense: to store it takes the function
+/// of one state as long.
+const DENSE: (usize, usize) = (3, 5);
+
+impl Function<'_> {
+    /// Whether states one after the other are faster by the function of one state, called for each
+    /// of them. A block saves time for each operation, but its results have to be turned into
+    /// states, which costs time for each number: also for zeros and for the other half of a
+    /// symmetric matrix, which the function of one state only stores.
+    pub(crate) fn is_faster_one_by_one(&self, level: Precision, real: Real) -> bool {
+        let Some(States { body, .. }) = &self.states else { return false };
+        let is_straight = self.columns.is_none() && level == Precision::default();
+        let is_one_array = matches!(self.results.as_slice(), [array] if !array.lengths.is_empty());
+        let has_one = is_straight && is_one_array && self.arguments.iter().all(|a| !a.is_parameters());
+        let (operations, sines) = self.operations;
+        let numbers = body.results.iter().map(Array::numbers).sum::<usize>();
+        let is_sparse = DENSE.1 * body.computed() <= DENSE.0 * numbers;
+        has_one && real == Real::F64 && is_sparse && 2 * (operations + SINE * sines) < TWO_NUMBERS * numbers as u64
     }
 }
 

@@ -79,7 +79,7 @@ fn numbers_that_cannot_be_are_told_once_and_with_all_else() {
 #[test]
 fn a_type_of_numbers_that_is_there_twice_is_told_once_and_with_all_else() {
     let told = error_of(|o| {
-        o.rust_mut().batch = [crate::Real::F32, crate::Real::F64, crate::Real::F32, crate::Real::F32].to_vec();
+        o.batch = [crate::Real::F32, crate::Real::F64, crate::Real::F32, crate::Real::F32].to_vec();
         o.functions = vec!["no_such".into()];
     });
     each_once(&told, &["batch: found a type that is there twice, f32, expected each once", "`no_such`"]);

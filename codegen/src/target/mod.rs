@@ -4,8 +4,9 @@
 pub(crate) mod c;
 pub(crate) mod rust;
 
-use articulated_core::diagnostic::{Diagnostic, Diagnostics, Unused};
+use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Unused};
 use articulated_core::effect::Applied;
+use articulated_core::lanes::Real;
 use articulated_core::model::Model;
 
 use crate::capabilities::Capabilities;
@@ -52,6 +53,17 @@ pub(crate) struct Module<'a> {
     pub(crate) warnings: &'a [Diagnostic],
 }
 
+/// Reports a type of batches that is listed twice.
+fn check_batch(batch: &[Real], log: &mut Diagnostics) {
+    let twice = batch.iter().enumerate().filter(|(k, real)| batch[..*k].contains(real));
+    let mut twice: Vec<&Real> = twice.map(|(_, real)| real).collect();
+    twice.dedup();
+    for real in twice {
+        let found = format!("a type that is there twice, {}", real.name());
+        log.push(Diagnostic::error("", (Default::default(), "batch"), Code::Batch, found, "each once"));
+    }
+}
+
 impl Target {
     /// All targets, with default choices.
     #[must_use]
@@ -78,9 +90,9 @@ impl Target {
 
     /// Reports choices that exclude each other, whatever the robot.
     pub(crate) fn check(&self, options: &Options, log: &mut Diagnostics) {
-        match self {
-            Self::Rust(rust) => rust::check(rust, log),
-            Self::C(c) => c::check(options, c, log),
+        check_batch(&options.batch, log);
+        if let Self::C(c) = self {
+            c::check(options, c, log);
         }
     }
 

@@ -90,7 +90,7 @@ impl Session {
         request.options.functions = self.functions(integrator).into_iter().map(Into::into).collect();
         request.set_frames(&frames);
         (request.options.rust_mut().runtime, request.options.stages) = (None, false);
-        (request.options.parameters, request.options.rust_mut().batch) = (Vec::new(), Vec::new());
+        (request.options.parameters, request.options.batch) = (Vec::new(), Vec::new());
         Ok((articulated_codegen::generate(&request)?, frames))
     }
 

@@ -3,8 +3,10 @@
 //! Arrays are flat, row by row. Functions and constants begin with a prefix, by default the robot's
 //! name.
 
+mod batch;
 mod casadi;
 mod constants;
+mod lanes;
 mod math;
 mod statements;
 
@@ -19,7 +21,7 @@ use crate::lir::function::{Argument, Ending, Function};
 use crate::target::{File, Module};
 use crate::{Arithmetic, Options, Precision, TrigAccuracy};
 pub(in crate::target) use constants::check_names;
-use statements::{Printer, Reals, infinity};
+use statements::{Numbers, Printer, infinity};
 
 /// Choices for C.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,7 +38,7 @@ pub struct COptions {
 
 /// Numbers, in pieces where a function is long. The compiler decides what waits in memory.
 pub(super) fn capabilities(options: &Options) -> Capabilities {
-    Capabilities { level: options.level, vectors: false, raw_memory: false, states: false }
+    Capabilities { level: options.level, vectors: false, raw_memory: false, states: !options.batch.is_empty() }
 }
 
 /// Reports a level that C does not have, and a prefix that is not a name.
@@ -95,11 +97,19 @@ impl Source<'_> {
         self.module.request.options.level
     }
 
-    fn reals(&self) -> Reals {
-        match self.level().arithmetic {
-            Arithmetic::Single => Reals { computed: "float", outside: "float" },
-            Arithmetic::SingleByDouble => Reals { computed: "double", outside: "float" },
-            _ => Reals { computed: "double", outside: "double" },
+    fn numbers(&self) -> Numbers<'_> {
+        let (computed, outside) = match self.level().arithmetic {
+            Arithmetic::Single => ("float", "float"),
+            Arithmetic::SingleByDouble => ("double", "float"),
+            _ => ("double", "double"),
+        };
+        Numbers {
+            computed: computed.to_owned(),
+            outside,
+            is_single: computed == "float",
+            prefix: &self.prefix,
+            own_math: self.own_math(),
+            lanes: None,
         }
     }
 
@@ -107,6 +117,9 @@ impl Source<'_> {
         let (mut out, upper) = (String::new(), &self.upper);
         self.origin(&mut out);
         let _ = writeln!(out, "#ifndef {upper}_H\n#define {upper}_H\n");
+        if !self.module.request.options.batch.is_empty() {
+            let _ = writeln!(out, "#include <stddef.h>\n");
+        }
         if self.header_only {
             self.include_math(&mut out);
         }
@@ -123,6 +136,11 @@ impl Source<'_> {
             } else {
                 let _ = writeln!(functions, "{};\n", self.declaration(function));
             }
+        }
+        if self.header_only {
+            self.batches(&mut functions);
+        } else {
+            self.declare_batches(&mut functions);
         }
         out += &self.with_math(&functions);
         let _ = writeln!(out, "#ifdef __cplusplus\n}}\n#endif\n\n#endif");
@@ -142,6 +160,7 @@ impl Source<'_> {
             }
             self.function(&mut functions, function);
         }
+        self.batches(&mut functions);
         out += &self.with_math(&functions);
         if self.casadi {
             casadi::write(&mut out, &self.prefix, &self.module.functions);
@@ -167,10 +186,14 @@ impl Source<'_> {
         };
     }
 
-    /// Functions, behind the mathematical functions of the module's own that they call.
+    /// Functions, behind the vectors and the mathematical functions of the module's own that they
+    /// call.
     fn with_math(&self, functions: &str) -> String {
-        let own = self.own_math().map(|prefix| math::text(prefix, functions));
-        own.unwrap_or_default() + functions
+        let batch = if functions.contains("_lanes_f") { self.module.request.options.batch.as_slice() } else { &[] };
+        let vectors: String = batch.iter().map(|real| lanes::text(&self.prefix, *real, self.no_libm, functions)).collect();
+        let text = vectors + &lanes::of_four(&self.prefix, self.no_libm, functions) + functions;
+        let own = self.own_math().map(|prefix| math::text(prefix, &text));
+        own.unwrap_or_default() + &text
     }
 
     /// What a file says of itself.
@@ -229,7 +252,7 @@ impl Source<'_> {
     }
 
     fn parameters(&self, function: &Function, results: &[&str]) -> Vec<String> {
-        let outside = self.reals().outside;
+        let outside = self.numbers().outside;
         let argument = |a: &Argument| {
             if a.is_parameters() {
                 format!("const double {}[{}_PARAMETERS]", a.name, self.upper)
@@ -255,7 +278,7 @@ impl Source<'_> {
         match body.pieces.as_slice() {
             [piece] => self.statements(out, function, piece),
             pieces => {
-                let _ = writeln!(out, "    {} m[{}];", self.reals().computed, body.kept);
+                let _ = writeln!(out, "    {} m[{}];", self.numbers().computed, body.kept);
                 (0..pieces.len()).for_each(|c| _ = writeln!(out, "    {}({}, m);", self.piece(function, c), names.join(", ")));
             }
         }
@@ -269,17 +292,8 @@ impl Source<'_> {
 
     fn statements(&self, out: &mut String, function: &Function, statements: &[Stmt]) {
         let results = self.results(function);
-        let place = |mut at: usize| {
-            for (name, array) in results.iter().zip(&function.results) {
-                if at < array.numbers() {
-                    return format!("{name}[{at}]");
-                }
-                at -= array.numbers();
-            }
-            String::new()
-        };
-        Printer { body: &function.body, arguments: &function.arguments, reals: self.reals(), own_math: self.own_math(), places: &place }
-            .statements(out, statements);
+        let place = |at: usize| place(function, &results, at);
+        Printer { arguments: &function.arguments, numbers: &self.numbers(), places: &place }.statements(out, statements);
     }
 
     fn piece(&self, function: &Function, c: usize) -> String {
@@ -291,7 +305,7 @@ impl Source<'_> {
         let (linkage, unused) = (if self.header_only { "static inline" } else { "static" }, unused(&self.names(function)));
         for (c, piece) in function.body.pieces.iter().enumerate() {
             let name = self.piece(function, c);
-            let _ = writeln!(out, "{linkage} void {name}({parameters}, {} *m) {{\n{unused}    (void)m;", self.reals().computed);
+            let _ = writeln!(out, "{linkage} void {name}({parameters}, {} *m) {{\n{unused}    (void)m;", self.numbers().computed);
             self.statements(out, function, piece);
             let _ = writeln!(out, "}}\n");
         }
@@ -306,6 +320,17 @@ impl Source<'_> {
             let _ = writeln!(out, "    for (int k = 0; k < {}; k++) {{\n        {name}[k] = 0;\n    }}", array.numbers());
         }
     }
+}
+
+/// The array of a number of the results, and its index there.
+fn place(function: &Function, results: &[&str], mut at: usize) -> (String, usize) {
+    for (name, array) in results.iter().zip(&function.results) {
+        if at < array.numbers() {
+            return ((*name).to_owned(), at);
+        }
+        at -= array.numbers();
+    }
+    unreachable!("LIR stores what results have")
 }
 
 /// Statements that keep compilers from warnings about arguments that a function does not read.

@@ -4,24 +4,40 @@ use std::fmt::Write;
 
 use crate::graph::Op;
 use crate::lir::function::Argument;
-use crate::lir::{Angle, Body, Expr, Number, Operand, Stmt, Store, Temp, Ty};
+use crate::lir::{Angle, Expr, Number, Operand, Stmt, Store, Temp};
 
-/// The types of C for numbers that are computed with and numbers that callers have.
-#[derive(Clone, Copy)]
-pub(super) struct Reals {
-    pub(super) computed: &'static str,
+/// How numbers are written in C.
+#[derive(Clone)]
+pub(super) struct Numbers<'a> {
+    /// The type of numbers that are computed with.
+    pub(super) computed: String,
+    /// The type of numbers that callers have.
     pub(super) outside: &'static str,
+    /// Whether literals are of type `float`.
+    pub(super) is_single: bool,
+    /// What all names begin with.
+    pub(super) prefix: &'a str,
+    /// The same, where mathematical functions are the module's own.
+    pub(super) own_math: Option<&'a str>,
+    /// For values that are vectors, with a number of each of several states.
+    pub(super) lanes: Option<Lanes>,
+}
+
+/// Vectors with a number of each of several states.
+#[derive(Clone)]
+pub(super) struct Lanes {
+    /// What the names of their types and functions begin with.
+    pub(super) prefix: String,
+    /// How far apart two numbers of a state are.
+    pub(super) stride: usize,
 }
 
 /// Prints the statements of a body.
 pub(super) struct Printer<'a> {
-    pub(super) body: &'a Body,
     pub(super) arguments: &'a [Argument],
-    pub(super) reals: Reals,
-    /// What the names of mathematical functions begin with where they are the module's own.
-    pub(super) own_math: Option<&'a str>,
-    /// Where each number of the result is.
-    pub(super) places: &'a dyn Fn(usize) -> String,
+    pub(super) numbers: &'a Numbers<'a>,
+    /// Where each number of the result is: the array, and the index there.
+    pub(super) places: &'a dyn Fn(usize) -> (String, usize),
 }
 
 impl Printer<'_> {
@@ -30,11 +46,15 @@ impl Printer<'_> {
     }
 
     fn statement(&self, out: &mut String, statement: &Stmt) {
-        let real = self.reals.computed;
+        let real = &self.numbers.computed;
         let _ = match statement {
             Stmt::Let(dst, expression) => {
-                let ty = if statement.compares() { "int" } else { real };
+                let ty = if statement.compares() { &self.mask() } else { real };
                 writeln!(out, "    const {ty} {} = {};", name(*dst), self.expression(expression))
+            }
+            Stmt::SinCos { angles, alone: false } if self.takes_four() && angles.len() > 2 => {
+                self.sines_of_four(out, angles);
+                Ok(())
             }
             Stmt::SinCos { angles, .. } => {
                 angles.iter().for_each(|angle| self.sines(out, angle));
@@ -44,7 +64,7 @@ impl Printer<'_> {
             Stmt::Recall(temp, slot) => writeln!(out, "    const {real} {} = m[{slot}];", name(*temp)),
             Stmt::Store(Store::Fill(at, count, x)) => {
                 (*at..at + count).for_each(|at| {
-                    let _ = writeln!(out, "    {} = {};", (self.places)(at), self.literal(*x));
+                    let _ = self.store(out, at, &Number { of: Operand::Constant(*x), lane: 0 });
                 });
                 Ok(())
             }
@@ -63,16 +83,67 @@ impl Printer<'_> {
     }
 
     fn store(&self, out: &mut String, at: usize, number: &Number) -> std::fmt::Result {
+        let (array, index) = (self.places)(at);
+        if let Some(Lanes { prefix, stride }) = &self.numbers.lanes {
+            return writeln!(out, "    {prefix}_store({array} + {}, {});", index * stride, self.vector(&number.of));
+        }
         let value = self.operand(&number.of);
-        let cast = if self.reals.computed == self.reals.outside { "" } else { "(float)" };
-        writeln!(out, "    {} = {cast}{value};", (self.places)(at))
+        let cast = if self.numbers.computed == self.numbers.outside { "" } else { "(float)" };
+        writeln!(out, "    {array}[{index}] = {cast}{value};")
+    }
+
+    /// The type of comparisons.
+    fn mask(&self) -> String {
+        self.numbers.lanes.as_ref().map_or("int".into(), |lanes| format!("{}_m", lanes.prefix))
+    }
+
+    /// An operand that has to be a vector where values are vectors.
+    fn vector(&self, operand: &Operand) -> String {
+        let text = self.operand(operand);
+        match &self.numbers.lanes {
+            Some(lanes) if operand.temp().is_none() => format!("{}_k({text})", lanes.prefix),
+            _ => text,
+        }
+    }
+
+    /// Whether sines of several angles of one state are computed together.
+    fn takes_four(&self) -> bool {
+        self.numbers.lanes.is_none() && self.numbers.computed == "double"
+    }
+
+    /// Three or four angles in one vector.
+    fn sines_of_four(&self, out: &mut String, angles: &[Angle]) {
+        for angles in angles.chunks(4) {
+            let last = angles.len() - 1;
+            let four: Vec<String> = (0..4).map(|k| self.operand(&angles[k.min(last)].angle)).collect();
+            let first = angles.iter().find_map(|a| a.sin.or(a.cos)).map(name).unwrap_or_default();
+            let prefix = self.numbers.prefix;
+            let _ = writeln!(out, "    double {first}_sines[4], {first}_cosines[4];");
+            let (list, n) = (four.join(", "), angles.len());
+            let _ = writeln!(out, "    {prefix}_sin_cos_of_four({list}, {n}, {first}_sines, {first}_cosines);");
+            for (k, angle) in angles.iter().enumerate() {
+                for (dst, array) in [(angle.sin, "sines"), (angle.cos, "cosines")] {
+                    if let Some(dst) = dst {
+                        let _ = writeln!(out, "    const double {} = {first}_{array}[{k}];", name(dst));
+                    }
+                }
+            }
+        }
     }
 
     fn sines(&self, out: &mut String, angle: &Angle) {
-        let (real, of) = (self.reals.computed, self.operand(&angle.angle));
-        if let (Some(_), Some(sin), Some(cos)) = (self.own_math, angle.sin, angle.cos) {
-            let (cos, both) = (name(cos), format!("{of}, &{}", name(cos)));
-            let _ = writeln!(out, "    {real} {cos};\n    const {real} {} = {};", name(sin), self.call("sin_cos", &both));
+        let (real, of) = (&self.numbers.computed, self.vector(&angle.angle));
+        let has_both = self.numbers.own_math.is_some() && angle.sin.is_some() && angle.cos.is_some();
+        if has_both || self.numbers.lanes.is_some() {
+            let name_of = |temp: Option<Temp>, other: Option<Temp>, what| {
+                temp.map_or_else(|| format!("{}_{what}", other.map(name).unwrap_or_default()), name)
+            };
+            let (sin, cos) = (name_of(angle.sin, angle.cos, "sin"), name_of(angle.cos, angle.sin, "cos"));
+            let call = self.call("sin_cos", &format!("{of}, &{cos}"));
+            let _ = match angle.sin {
+                Some(_) => writeln!(out, "    {real} {cos};\n    const {real} {sin} = {call};"),
+                None => writeln!(out, "    {real} {cos};\n    (void){call};"),
+            };
             return;
         }
         for (dst, function) in [(angle.sin, "sin"), (angle.cos, "cos")] {
@@ -84,15 +155,21 @@ impl Printer<'_> {
 
     /// A call of the mathematical library.
     fn call(&self, function: &str, operands: &str) -> String {
-        let prefix = self.own_math.map_or(String::new(), |prefix| format!("{prefix}_"));
-        format!("{prefix}{function}{}({operands})", if self.body.ty == Ty::F32 { "f" } else { "" })
+        if let Some(lanes) = &self.numbers.lanes {
+            return format!("{}_{function}({operands})", lanes.prefix);
+        }
+        let prefix = self.numbers.own_math.map_or(String::new(), |prefix| format!("{prefix}_"));
+        format!("{prefix}{function}{}({operands})", if self.numbers.is_single { "f" } else { "" })
     }
 
     fn expression(&self, expression: &Expr) -> String {
         match expression {
             Expr::Input { argument, index } => {
-                let argument = &self.arguments[*argument as usize];
-                format!("{}[{index}]", argument.name)
+                let name = self.arguments[*argument as usize].name;
+                match &self.numbers.lanes {
+                    Some(Lanes { prefix, stride }) => format!("{prefix}_load({name} + {})", *index as usize * stride),
+                    None => format!("{name}[{index}]"),
+                }
             }
             Expr::Op(op, operands) => self.operation(*op, operands),
             Expr::LaneInput { .. } | Expr::Broadcast(_) => unreachable!("C has numbers alone: {expression:?}"),
@@ -100,7 +177,16 @@ impl Printer<'_> {
     }
 
     fn operation(&self, op: Op, operands: &[Operand; 3]) -> String {
-        let [a, b, c] = operands.map(|o| self.operand(&o));
+        let [mut a, mut b, mut c] = operands.map(|o| self.operand(&o));
+        let arity = op.row().arity;
+        // An operator of vectors takes one number beside a vector; a function takes vectors.
+        let takes_vectors = matches!(op, Op::Sqrt | Op::Sin | Op::Cos | Op::Atan2 | Op::Select | Op::Positive);
+        if self.numbers.lanes.is_some() && (takes_vectors || operands[..arity.min(2)].iter().all(|o| o.temp().is_none())) {
+            let first = usize::from(op == Op::Select);
+            for (k, text) in [&mut a, &mut b, &mut c].into_iter().enumerate().take(arity).skip(first) {
+                *text = self.vector(&operands[k]);
+            }
+        }
         match op {
             Op::Add => format!("{a} + {b}"),
             Op::Sub => format!("{a} - {b}"),
@@ -111,7 +197,8 @@ impl Printer<'_> {
             Op::Sin => self.call("sin", &a),
             Op::Cos => self.call("cos", &a),
             Op::Atan2 => self.call("atan2", &format!("{a}, {b}")),
-            Op::Positive => format!("{a} > 0"),
+            Op::Positive => format!("{a} > {}", self.vector(&Operand::Constant(0.0))),
+            Op::Select if self.numbers.lanes.is_some() => self.call("select", &format!("{a}, {b}, {c}")),
             Op::Select => format!("{a} ? {b} : {c}"),
             // Compilers contract these where the processor has the instruction, and are allowed to.
             Op::MulAdd => format!("{a} * {b} + {c}"),
@@ -131,8 +218,8 @@ impl Printer<'_> {
     }
 
     fn literal(&self, x: f64) -> String {
-        let text = if self.body.ty == Ty::F32 { format!("{:?}f", x as f32) } else { format!("{x:?}") };
-        let infinity = infinity(self.own_math);
+        let text = if self.numbers.is_single { format!("{:?}f", x as f32) } else { format!("{x:?}") };
+        let infinity = infinity(self.numbers.own_math);
         match x {
             _ if x.is_nan() => format!("({infinity} - {infinity})"),
             f64::INFINITY => infinity,
@@ -155,33 +242,38 @@ fn name(temp: Temp) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::graph::Lanes;
-    use crate::lir::Array;
 
     #[test]
     fn operations_are_those_of_c() {
         let value = |id: usize| Operand::Temp(Temp::of(id));
         let zero = Operand::Constant(0.0);
         let [x, y, third] = [value(0), value(1), Operand::Constant(-0.1)];
-        let of = |ty, op, operands| {
-            let body = Body {
-                ty,
-                lanes: Lanes::default(),
-                results: vec![Array { start: 0, lengths: Vec::new() }],
-                pieces: Vec::new(),
-                kept: 0,
-                slots: None,
-                barrier: false,
-                is_partial: true,
-            };
-            let places = |_: usize| "*out".to_owned();
-            let reals = Reals { computed: "double", outside: "double" };
-            Printer { body: &body, arguments: &[], reals, own_math: None, places: &places }.operation(op, &operands)
+        let of = |is_single, op, operands| {
+            let places = |_: usize| ("out".to_owned(), 0);
+            let numbers = Numbers { computed: "double".into(), outside: "double", is_single, prefix: "arm", own_math: None, lanes: None };
+            Printer { arguments: &[], numbers: &numbers, places: &places }.operation(op, &operands)
         };
-        assert_eq!(of(Ty::F64, Op::NegMulAdd, [x, y, third]), "(-0.1) - x0 * x1");
-        assert_eq!(of(Ty::F64, Op::NegMulSub, [x, y, third]), "-(x0 * x1) - (-0.1)");
-        assert_eq!(of(Ty::F64, Op::Select, [x, y, third]), "x0 ? x1 : (-0.1)");
-        assert_eq!(of(Ty::F32, Op::Atan2, [x, third, zero]), "atan2f(x0, (-0.1f))");
-        assert_eq!(of(Ty::F64, Op::Positive, [x, zero, zero]), "x0 > 0");
+        assert_eq!(of(false, Op::NegMulAdd, [x, y, third]), "(-0.1) - x0 * x1");
+        assert_eq!(of(false, Op::NegMulSub, [x, y, third]), "-(x0 * x1) - (-0.1)");
+        assert_eq!(of(false, Op::Select, [x, y, third]), "x0 ? x1 : (-0.1)");
+        assert_eq!(of(true, Op::Atan2, [x, third, zero]), "atan2f(x0, (-0.1f))");
+        assert_eq!(of(false, Op::Positive, [x, zero, zero]), "x0 > 0.0");
+    }
+
+    /// Operators take a vector and a number, functions take vectors alone.
+    #[test]
+    fn operations_of_many_states_are_those_of_vectors() {
+        let [x, y, half] = [Operand::Temp(Temp::of(0)), Operand::Temp(Temp::of(1)), Operand::Constant(0.5)];
+        let of = |op, operands| {
+            let places = |at: usize| ("out".to_owned(), at);
+            let lanes = Some(Lanes { prefix: "arm_f32".into(), stride: 16 });
+            let numbers =
+                Numbers { computed: "arm_f32_v".into(), outside: "float", is_single: true, prefix: "arm", own_math: Some("arm"), lanes };
+            Printer { arguments: &[], numbers: &numbers, places: &places }.operation(op, &operands)
+        };
+        assert_eq!(of(Op::MulAdd, [x, half, half]), "x0 * 0.5f + 0.5f");
+        assert_eq!(of(Op::Select, [x, y, half]), "arm_f32_select(x0, x1, arm_f32_k(0.5f))");
+        assert_eq!(of(Op::Sqrt, [half, x, x]), "arm_f32_sqrt(arm_f32_k(0.5f))");
+        assert_eq!(of(Op::Positive, [x, y, y]), "x0 > arm_f32_k(0.0f)");
     }
 }

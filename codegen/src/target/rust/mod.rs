@@ -15,9 +15,6 @@ mod spills;
 mod statements;
 mod tree_shake;
 
-use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
-use articulated_core::lanes::Real;
-
 use crate::Options;
 use crate::capabilities::Capabilities;
 use crate::target::{File, Module, Target};
@@ -28,8 +25,6 @@ pub(crate) use module::names::{Names, is_name};
 /// Choices for Rust.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RustOptions {
-    /// The types of numbers for which there are functions of many states at once too.
-    pub batch: Vec<Real>,
     /// No `unsafe` in the generated code, for crates that forbid it: on x86-64 sines and cosines
     /// take a little longer, and long functions without AVX-512 up to twice as long.
     pub forbid_unsafe: bool,
@@ -45,7 +40,7 @@ impl Options {
     /// The choices for Rust; the default ones if the language is another.
     #[must_use]
     pub fn rust(&self) -> &RustOptions {
-        static DEFAULT: RustOptions = RustOptions { batch: Vec::new(), forbid_unsafe: false, no_std: false, runtime: None };
+        static DEFAULT: RustOptions = RustOptions { forbid_unsafe: false, no_std: false, runtime: None };
         if let Target::Rust(rust) = &self.target { rust } else { &DEFAULT }
     }
 
@@ -64,18 +59,7 @@ impl Options {
 /// Vectors and raw memory, unless `unsafe` is forbidden.
 pub(super) fn capabilities(options: &Options, rust: &RustOptions) -> Capabilities {
     let raw_memory = !rust.forbid_unsafe;
-    Capabilities { level: options.level, vectors: raw_memory && options.level.has_lanes(), raw_memory, states: !rust.batch.is_empty() }
-}
-
-/// Reports a type of batches that is listed twice.
-pub(super) fn check(rust: &RustOptions, log: &mut Diagnostics) {
-    let twice = rust.batch.iter().enumerate().filter(|(k, real)| rust.batch[..*k].contains(real));
-    let mut twice: Vec<&Real> = twice.map(|(_, real)| real).collect();
-    twice.dedup();
-    for real in twice {
-        let found = format!("a type that is there twice, {}", real.name());
-        log.push(Diagnostic::error("", (Default::default(), "batch"), Code::Batch, found, "each once"));
-    }
+    Capabilities { level: options.level, vectors: raw_memory && options.level.has_lanes(), raw_memory, states: !options.batch.is_empty() }
 }
 
 /// One file.

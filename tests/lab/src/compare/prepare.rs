@@ -92,7 +92,7 @@ impl Plan {
     /// The function of many states.
     fn batches(&self, robot: &Robot, function: &Function<f64>) -> Result<CompiledBatches, PrepareError> {
         let mut robot = robot.clone();
-        robot.options.rust_mut().batch.clone_from(&self.batch);
+        robot.options.batch.clone_from(&self.batch);
         let generated = robot.generate(&[function.name.to_owned()])?;
         Ok(CompiledBatches::build(&self.rustc, &generated, &self.batch).map_err(|e| Error::tool(&e))?)
     }

@@ -40,25 +40,14 @@ pub(crate) struct Batch<'a> {
     level: Precision,
 }
 
-/// A sine or cosine takes as long as so many operations.
-const SINE: u64 = 10;
-
-/// To turn two numbers of a result from blocks into states takes as long as a block saves on so
-/// many operations (AVX-512, Emerald Rapids).
-const TWO_NUMBERS: u64 = 5;
-
-/// A result of which more than three fifths are computed is dense: to store it takes the function
-/// of one state as long.
-const DENSE: (usize, usize) = (3, 5);
-
 /// How many states a block has, whatever the instruction set: a cache line of each number.
 fn states_of_block(real: Real) -> usize {
     64 / real.bytes()
 }
 
 /// The modules of batches.
-pub(crate) fn batches(out: &mut String, functions: &[Batch], rust: &RustOptions) {
-    if rust.batch.is_empty() {
+pub(crate) fn batches(out: &mut String, functions: &[Batch], reals: &[Real], rust: &RustOptions) {
+    if reals.is_empty() {
         return;
     }
     functions.iter().for_each(|f| f.body(out));
@@ -69,7 +58,7 @@ pub(crate) fn batches(out: &mut String, functions: &[Batch], rust: &RustOptions)
         calls.add_body(&states.body);
         states.few_registers.iter().for_each(|body| calls.add_body(body));
     }
-    for real in &rust.batch {
+    for real in reals {
         module(out, functions, *real, if rust.forbid_unsafe { &SAFE } else { &WAYS }, (rust.no_std, &calls));
     }
 }
@@ -128,22 +117,6 @@ impl<'a> Batch<'a> {
     /// None where there is no function of many states.
     pub(crate) fn of(function: &'a Function<'a>, level: Precision) -> Option<Self> {
         Some(Self { function, states: function.states.as_ref()?, level })
-    }
-
-    /// Whether states one after the other are faster by the function of one state, called for each
-    /// of them. A block saves time for each operation, but its results have to be turned into
-    /// states, which costs time for each number: also for zeros and for the other half of a
-    /// symmetric matrix, which the function of one state only stores.
-    fn is_faster_one_by_one(&self, real: Real) -> bool {
-        let Self { function, level, .. } = self;
-        let is_straight = function.columns.is_none() && *level == Precision::default();
-        let is_one_array = matches!(function.results.as_slice(), [array] if !array.lengths.is_empty());
-        let has_one = is_straight && is_one_array && self.inputs().iter().all(|a| !a.is_parameters);
-        let (operations, sines) = function.operations;
-        let numbers = self.states.body.results.iter().map(crate::lir::Array::numbers).sum::<usize>();
-        let computed = self.states.body.computed();
-        let is_sparse = DENSE.1 * computed <= DENSE.0 * numbers;
-        has_one && real == Real::F64 && is_sparse && 2 * (operations + SINE * sines) < TWO_NUMBERS * numbers as u64
     }
 
     fn name(&self) -> &str {
@@ -282,7 +255,7 @@ mod tests {
         let urdf = format!("<robot name='two'><link name='base'/>{}{}{}{}</robot>", arm("a"), arm("b"), arm("c"), arm("d"));
         let mut request = Request::new("two.urdf", urdf);
         request.options.functions = vec!["mass_matrix".into(), "forward_dynamics".into()];
-        request.options.rust_mut().batch = vec![Real::F64, Real::F32];
+        request.options.batch = vec![Real::F64, Real::F32];
         let source = generate(&request).unwrap().source;
         let (_, doubles) = source.split_once("pub mod batch_f64").unwrap();
         let (doubles, singles) = doubles.split_once("pub mod batch_f32").unwrap();
@@ -298,7 +271,7 @@ mod tests {
         let mut request = Request::new("arm.urdf", urdf);
         request.options.functions = vec!["gravity_torque".into()];
         request.options.parameters = vec!["payload(tip)".into()];
-        request.options.rust_mut().batch = vec![Real::F32];
+        request.options.batch = vec![Real::F32];
         let source = generate(&request).unwrap().source;
         let (_, batch) = source.split_once("macro_rules! gravity_torque_in_block").unwrap();
         for words in [

@@ -16,7 +16,7 @@ impl Batch<'_> {
             self.document(out, what);
             let _ = writeln!(out, "pub fn {name}{suffix}({}) -> ::core::result::Result<(), LengthError> {{", self.declared(of));
             self.lengths(out);
-            if suffix.is_empty() && self.is_faster_one_by_one(real) {
+            if suffix.is_empty() && self.function.is_faster_one_by_one(self.level, real) {
                 self.one_by_one(out);
             } else if self.is_any() {
                 self.calls(out, &format!("{name}_{inner}"), ways);

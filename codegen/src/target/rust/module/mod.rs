@@ -39,7 +39,7 @@ pub(crate) fn module(module: &Module, rust: &RustOptions) -> String {
     functions.iter().for_each(|f| function(&mut text, f, context));
     support(&mut text.implementation, functions, (forbid_unsafe, rust.no_std), level);
     let of_many: Vec<Batch> = functions.iter().filter_map(|f| Batch::of(f, level)).collect();
-    batches(&mut text.implementation, &of_many, rust);
+    batches(&mut text.implementation, &of_many, &request.options.batch, rust);
     if functions.iter().any(spills::is_used) {
         text.implementation += spills::MODULE;
     }
@@ -47,7 +47,7 @@ pub(crate) fn module(module: &Module, rust: &RustOptions) -> String {
         text.implementation += &bare::float();
     }
     let Text { public: mut out, implementation } = text;
-    for real in &rust.batch {
+    for real in &request.options.batch {
         let _ = writeln!(out, "pub use self::{IMPLEMENTATION}::batch_{};\n", real.name());
     }
     if let Some(path) = &rust.runtime {
@@ -282,7 +282,7 @@ fn arm(
 mod tests {
     use articulated_core::description::Base;
 
-    use crate::{Options, Real, Request, RustOptions, generate};
+    use crate::{Options, Real, Request, generate};
 
     /// Names of helpers, of modules and of their types, each as a function or as the type of
     /// several results.
@@ -309,13 +309,17 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("articulated-kept-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         let (file, out) = (folder.join("robot.rs"), folder.join("robot.rmeta"));
-        let rust = |options: RustOptions| move |o: &mut Options| *o.rust_mut() = options.clone();
         let level = |name: &'static str| move |o: &mut Options| o.level = name.parse().unwrap();
-        let of_many = RustOptions { batch: vec![Real::F64, Real::F32], ..RustOptions::default() };
+        let of_many = |forbid_unsafe: bool| {
+            move |o: &mut Options| {
+                o.batch = vec![Real::F64, Real::F32];
+                o.rust_mut().forbid_unsafe = forbid_unsafe;
+            }
+        };
         let sources = [
             source("quadruped", &|_| {}),
-            source("quadruped", &rust(of_many.clone())),
-            source("ur5_like", &rust(RustOptions { forbid_unsafe: true, ..of_many })),
+            source("quadruped", &of_many(false)),
+            source("ur5_like", &of_many(true)),
             source("ur5_like", &level("f32")),
             source("ur5_like", &level("compensated + two")),
             source("ur5_like", &level("f64 + correct")),
@@ -345,8 +349,10 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("articulated-format-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         let file = folder.join("robot.rs");
-        let rust = RustOptions { batch: vec![Real::F64], runtime: Some("::articulated".into()), ..RustOptions::default() };
-        let inputs = |o: &mut Options| (o.parameters, *o.rust_mut()) = (vec!["gravity".into()], rust.clone());
+        let inputs = |o: &mut Options| {
+            (o.parameters, o.batch) = (vec!["gravity".into()], vec![Real::F64]);
+            o.rust_mut().runtime = Some("::articulated".into());
+        };
         for text in [source("quadruped", &|_| {}), source("ur5_like", &inputs)] {
             std::fs::write(&file, text).unwrap();
             let done = rustfmt().args(["--check", "--edition=2024"]).arg(&file).output().unwrap();
