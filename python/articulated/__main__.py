@@ -39,6 +39,7 @@ def wheel(words):
     options.add_argument("--name", help="the name of the package and of its module [default: the robot's]")
     options.add_argument("--version", default="0.1.0", help="the version of the package [default: 0.1.0]")
     options.add_argument("--flag", action="append", default=[], help="another option of the compiler, as --flag=-march=native; may be repeated")
+    options.add_argument("--batch", action="store_true", help="also code for many states at once; the compiler takes longer")
     given = options.parse_args(words)
     is_bundled = given.robot in bundled_names() and not os.path.exists(given.robot)
     base = "floating" if given.floating else None if is_bundled else "fixed"
@@ -46,7 +47,7 @@ def wheel(words):
         warnings.simplefilter("always", RobotWarning)
         try:
             robot = (bundled if is_bundled else load)(given.robot, base=base, gravity=given.gravity, frames=given.frames)
-            path = robot.wheel(given.output, given.functions, name=given.name, version=given.version, flags=given.flag)
+            path = robot.wheel(given.output, given.functions, name=given.name, version=given.version, flags=given.flag, batch=given.batch)
         except (ValueError, TypeError, RuntimeError, OSError) as error:
             print("\n".join(f"error: {line}" for line in str(error).splitlines()), file=sys.stderr)
             return 3 if isinstance(error, RuntimeError) else 1

@@ -46,24 +46,44 @@ def lengths(robot, dims):
     return tuple(named.get(dim, dim) for dim in dims)
 
 
+# States that are computed at once where an argument is the same for all: it is repeated so often.
+BLOCK = 64
+
+
 def _loop(robot, function, has_batch):
     """C of the function for many states.
 
     ``given`` and ``steps``: where each argument is, and the step from one state to the next, zero if
-    it is the same for all. Results follow each other. Arguments that all differ from state to state
-    are rows, which a generated ``PREFIX_NAME_batch(count, arguments, out)`` takes as they are.
+    it is the same for all. Results follow each other. States of a batch, of which a step is not
+    zero, go to the generated ``PREFIX_NAME_batch_f64(count, arguments, out)`` over rows, if there is
+    one: all of them, also a single one, so that results do not depend on how many there are.
     """
     name, takes = f"{PREFIX}_{function.name}", range(len(function.takes))
-    at = ", ".join([*(f"given[{i}] + k * steps[{i}]" for i in takes), f"out + k * {math.prod(lengths(robot, function.gives))}"])
-    batch = ""
-    if has_batch:
-        differ = " && ".join(["states > 1", *(f"steps[{i}] != 0" for i in takes)])
-        rows = ", ".join(["states", *(f"given[{i}]" for i in takes), "out"])
-        batch = f"    if ({differ}) {{\n        {name}_batch({rows});\n        return;\n    }}\n"
-    return (
-        f"\nvoid {symbol(function)}(size_t states, const double *const *given, const size_t *steps, double *out) {{\n{batch}"
-        f"    for (size_t k = 0; k < states; k++) {{\n        {name}({at});\n    }}\n}}\n"
-    )
+    sizes, size = [math.prod(lengths(robot, dims)) for _, dims, _ in function.takes], math.prod(lengths(robot, function.gives))
+    lines = [f"void {symbol(function)}(size_t states, const double *const *given, const size_t *steps, double *out) {{"]
+    if has_batch and any(sizes):
+        batch, some = f"{name}_batch_f64", [i for i in takes if sizes[i]]
+        rows = ", ".join(f"steps[{i}] ? given[{i}] + first * steps[{i}] : same_{i}" if sizes[i] else f"given[{i}]" for i in takes)
+        lines += [
+            f"    if ({' && '.join(f'steps[{i}]' for i in some)}) {{",
+            f"        {batch}({', '.join(['states', *(f'given[{i}]' for i in takes), 'out'])});",
+            "        return;",
+            "    }",
+            f"    if ({' || '.join(f'steps[{i}]' for i in some)}) {{",
+            *(f"        double same_{i}[{BLOCK} * {sizes[i]}];" for i in some),
+            f"        for (size_t k = 0; k < {BLOCK}; k++) {{",
+            *(f"            for (size_t j = 0; j < {sizes[i]} && !steps[{i}]; j++) {{ same_{i}[k * {sizes[i]} + j] = given[{i}][j]; }}" for i in some),
+            "        }",
+            f"        for (size_t first = 0; first < states; first += {BLOCK}) {{",
+            f"            const size_t count = states - first < {BLOCK} ? states - first : {BLOCK};",
+            f"            {batch}(count, {rows}, out + first * {size});",
+            "        }",
+            "        return;",
+            "    }",
+        ]
+    at = ", ".join([*(f"given[{i}] + k * steps[{i}]" for i in takes), f"out + k * {size}"])
+    lines += ["    for (size_t k = 0; k < states; k++) {", f"        {name}({at});", "    }", "}"]
+    return "\n" + "\n".join(lines) + "\n"
 
 
 def symbol(function):
@@ -73,9 +93,9 @@ def symbol(function):
 
 def sources(robot, functions, batch):
     """The C files of these functions and of their loops, each a name and a text."""
-    files = robot._generate_c([function.name for function in functions], PREFIX)
+    files = robot._generate_c([function.name for function in functions], PREFIX, batch)
     header = "".join(text for name, text in files if name.endswith(".h"))
-    has_batch = {f.name: batch and re.search(rf"\b{PREFIX}_{f.name}_batch\s*\(", header) is not None for f in functions}
+    has_batch = {f.name: re.search(rf"\b{PREFIX}_{f.name}_batch_f64\s*\(", header) is not None for f in functions}
     loops = "".join(_loop(robot, function, has_batch[function.name]) for function in functions)
     return [*files, (f"{PREFIX}_loop.c", f'#include <stddef.h>\n#include "{PREFIX}.h"\n{loops}')]
 

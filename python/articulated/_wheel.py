@@ -113,12 +113,12 @@ def _types(functions, robot):
     return "\n".join(lines) + "\n"
 
 
-def write(robot, folder, functions, name, version, flags, text):
+def write(robot, folder, functions, name, version, flags, batch, text):
     """Compiles, and writes the wheel into a folder, which is made. Its path."""
     name = module_name(robot.name) if name is None else name
     _checked(name, version)
     command = compiler()
-    files = sources(robot, functions, True)
+    files = sources(robot, functions, batch)
     with tempfile.TemporaryDirectory() as work:
         library = build(files, command, flags, work, FILE).read_bytes()
     tag = f"py3-none-{platform_tag()}"

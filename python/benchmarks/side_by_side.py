@@ -117,7 +117,7 @@ def mujoco_run(robot, urdf, name, states):
 def rows(robot_name, seconds, rng, with_compiled, with_million):
     robot = articulated.bundled(robot_name)
     urdf = next(urdf for name, urdf, *_ in articulated._native.bundled_robots() if name == robot_name)
-    compiled = robot.compile([name for name, *_ in FUNCTIONS], flags=["-march=native"]) if with_compiled else None
+    compiled = robot.compile([name for name, *_ in FUNCTIONS], flags=["-march=native"], batch=True) if with_compiled else None
     for name, extra, peer, parallel in FUNCTIONS:
         method = getattr(robot, name)
         for count in COUNTS + [MILLION] * (with_million and name == "inverse_dynamics"):

@@ -9,7 +9,7 @@ use articulated::description::{Description, Limit, Origin, Payload};
 use articulated::model::FLOATING_BASE;
 use articulated::spatial::Reference;
 use articulated::{Base, Model};
-use articulated_codegen::{Appended, COptions, Request, Target, generate};
+use articulated_codegen::{Appended, COptions, Real, Request, Target, generate};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -280,11 +280,13 @@ impl Robot {
         Ok(Self::made(model, request, (about, built.reading.warnings, unused)))
     }
 
-    /// C99 of functions: its files, each with a name and a text. All names begin with `prefix`.
-    fn _generate_c(&self, py: Python<'_>, functions: Vec<String>, prefix: String) -> PyResult<Vec<(String, String)>> {
+    /// C99 of functions: its files, each with a name and a text. All names begin with `prefix`. `batch`:
+    /// functions of many states too.
+    fn _generate_c(&self, py: Python<'_>, functions: Vec<String>, prefix: String, batch: bool) -> PyResult<Vec<(String, String)>> {
         let mut request = self.request.clone();
         request.options.functions = functions.into_iter().map(Into::into).collect();
         request.options.target = Target::C(COptions { prefix: Some(prefix), ..COptions::default() });
+        request.options.batch = if batch { vec![Real::F64] } else { Vec::new() };
         request.options.stages = false;
         let generated = py.detach(|| catch_unwind(AssertUnwindSafe(|| generate(&request)))).map_err(|_| batch::mistake())?;
         let generated = generated.map_err(|findings| errors::refused(py, &findings))?;

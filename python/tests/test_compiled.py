@@ -34,7 +34,7 @@ def test_compiled_functions_are_the_library_s(name):
             np.testing.assert_array_equal(method(*arguments, threads=threads), found)
         one = method(*(argument[3] for argument in arguments))
         assert isinstance(one, float) if function.gives == () else one.shape == found.shape[1:]
-        np.testing.assert_array_equal(one, found[3])
+        np.testing.assert_allclose(one, found[3], rtol=0, atol=near)
         if len(arguments) > 1:
             mixed = [arguments[0], *(argument[5] for argument in arguments[1:])]
             np.testing.assert_array_equal(method(*mixed)[5], found[5])
@@ -85,24 +85,31 @@ def test_functions_that_the_robot_does_not_have():
 
 
 @needs_compiler
-def test_a_generated_function_of_many_states_is_used(monkeypatch):
-    """Where the files have NAME_batch, it takes states that all differ; here one that says so."""
-    from articulated import _native
+@pytest.mark.parametrize("batch", [False, True])
+def test_functions_of_many_states(batch):
+    """With and without code for many states at once: the library's values, which threads and neighbours do not change."""
+    robot = articulated.bundled("panda_like")
+    names = ["inverse_dynamics", "forward_dynamics", "mass_matrix", "kinetic_energy", "integrate"]
+    compiled, rng = robot.compile(names, batch=batch), np.random.default_rng(4)
+    for function in (f for f in FUNCTIONS if f.name in names):
+        arguments = draw(robot, function, rng, 203)
+        method, expected = getattr(compiled, function.name), getattr(robot, function.name)(*arguments)
+        near = 1e-10 * max(1.0, np.abs(expected).max())
+        found = method(*arguments)
+        np.testing.assert_allclose(found, expected, rtol=0, atol=near)
+        for first, end in ((0, 1), (3, 4), (5, 70), (64, 203)):
+            np.testing.assert_array_equal(method(*(argument[first:end] for argument in arguments), threads=2), found[first:end])
+        for kept in range(len(arguments)):
+            mixed = [argument if k == kept else argument[7] for k, argument in enumerate(arguments)]
+            same = [argument if k == kept else np.repeat(argument[7:8], 203, axis=0) for k, argument in enumerate(arguments)]
+            np.testing.assert_array_equal(method(*mixed), method(*same))
 
-    row = "(size_t count, const double *q, const double *v, double *out)"
 
-    def with_batch(robot, functions, prefix):
-        header, *rest = _native.Robot._generate_c(robot, functions, prefix)
-        declared = header[1].replace("#endif", f"#include <stddef.h>\nvoid {prefix}_bias_forces_batch{row};\n#endif")
-        body = "{ (void)q; (void)v; for (size_t k = 0; k < count; k++) { out[k] = (double)count; } }"
-        return [(header[0], declared if declared != header[1] else header[1]), *rest, ("many.c", f'#include "{prefix}.h"\nvoid {prefix}_bias_forces_batch{row} {body}\n')]
+@needs_compiler
+def test_code_for_many_states_is_there_if_it_is_asked_for():
+    from articulated import _compiled
 
-    robot = articulated.bundled("simple_pendulum")
-    expected = robot.bias_forces([0.3], [0.2])
-    monkeypatch.setattr(articulated.Robot, "_generate_c", with_batch)
-    compiled, q, v = robot.compile(["bias_forces"]), np.full((5, 1), 0.3), np.full((5, 1), 0.2)
-    assert compiled.bias_forces(q, v).ravel().tolist() == [5.0] * 5
-    np.testing.assert_allclose(compiled.bias_forces(q, v[0]), np.tile(expected, (5, 1)), rtol=1e-12)
-    np.testing.assert_allclose(compiled.bias_forces(q[0], v[0]), expected, rtol=1e-12)
-    alone = robot.compile(["bias_forces"], batch=False)
-    np.testing.assert_allclose(alone.bias_forces(q, v), np.tile(expected, (5, 1)), rtol=1e-12)
+    robot = articulated.bundled("panda_like")
+    rows = [function for function in FUNCTIONS if function.name == "inverse_dynamics"]
+    alone, batch = ("".join(text for _, text in _compiled.sources(robot, rows, is_batch)) for is_batch in (False, True))
+    assert "inverse_dynamics_batch_f64(states" in batch and "batch_f64" not in alone
