@@ -70,7 +70,7 @@ def robot():
 
 @pytest.fixture(scope="module")
 def made(robot, tmp_path_factory):
-    return robot.wheel(tmp_path_factory.mktemp("dist"), ["inverse_dynamics", "mass_matrix", "kinetic_energy"], version="1.2", batch=True)
+    return robot.wheel(tmp_path_factory.mktemp("dist"), ["inverse_dynamics", "mass_matrix", "kinetic_energy"], version="1.2")
 
 
 def test_a_wheel_works_without_articulated(robot, made, tmp_path):
@@ -103,12 +103,12 @@ def test_what_a_wheel_has(robot, made):
     assert "Name: quadruped\nVersion: 1.2\n" in metadata and "Requires-Dist: numpy" in metadata
     compile(types, "__init__.pyi", "exec")
     assert "def inverse_dynamics(q: ArrayLike, v: ArrayLike, a: ArrayLike, *, threads: Optional[int] = None)" in types
-    again = robot.wheel(made.parent / "again", ["inverse_dynamics", "mass_matrix", "kinetic_energy"], version="1.2", batch=True)
+    again = robot.wheel(made.parent / "again", ["inverse_dynamics", "mass_matrix", "kinetic_energy"], version="1.2")
     assert again.read_bytes() == made.read_bytes()
 
 
 def test_the_command(tmp_path, capsys, monkeypatch):
-    assert wheel(["simple_pendulum", "-o", str(tmp_path), "--functions", "gravity_torque", "--name", "swing", "--gravity=0,0,-1"]) == 0
+    assert wheel(["simple_pendulum", "-o", str(tmp_path), "--functions", "gravity_torque", "--batch", "--name", "swing", "--gravity=0,0,-1"]) == 0
     path = Path(capsys.readouterr().out.strip())
     assert path.parent == tmp_path and path.name.startswith("swing-0.1.0-") and path.is_file()
     assert wheel([str(tmp_path / "none.urdf")]) == 1 and "none.urdf" in capsys.readouterr().err
