@@ -35,6 +35,8 @@ use arguments::Format;
 use command_line::{Arguments, Command};
 use failure::{Failure, OK, USAGE};
 
+pub use simulate::in_process as scene;
+
 /// Runs the command with these words, the program's own name first. The exit status: see
 /// [`failure`].
 pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {

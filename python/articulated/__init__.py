@@ -11,8 +11,24 @@
 from ._compiled import CompiledRobot
 from ._errors import RobotError, RobotWarning
 from ._robot import Function, Joint, Robot, bundled, bundled_names, functions, load, loads
+from ._scene import Motion, Scene, bundled_scene_names
 
-__all__ = ["CompiledRobot", "Function", "Joint", "Robot", "RobotError", "RobotWarning", "bundled", "bundled_names", "functions", "load", "loads"]
+__all__ = [
+    "CompiledRobot",
+    "Function",
+    "Joint",
+    "Motion",
+    "Robot",
+    "RobotError",
+    "RobotWarning",
+    "Scene",
+    "bundled",
+    "bundled_names",
+    "bundled_scene_names",
+    "functions",
+    "load",
+    "loads",
+]
 __version__ = "0.1.0"
-for _class in (RobotError, RobotWarning, Robot, CompiledRobot, Joint, Function):
+for _class in (RobotError, RobotWarning, Robot, CompiledRobot, Joint, Function, Scene, Motion):
     _class.__module__ = __name__

@@ -1,7 +1,8 @@
 """Types of the package. Made by tests/stubs.py from the table of functions."""
 
 from os import PathLike
-from typing import Any, Iterable, NamedTuple, Optional, Sequence, Union
+from pathlib import Path
+from typing import Any, Iterable, Mapping, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,13 +38,50 @@ class CompiledRobot:
     path: PathLike[str]
     def __getattr__(self, name: str) -> Any: ...
 
+class Scene:
+    def __init__(self, scene: Union[str, bytes, PathLike[str], PathLike[bytes]]) -> None: ...
+    @property
+    def name(self) -> str: ...
+    def run(
+        self,
+        *,
+        end: Optional[float] = None,
+        integrator: Optional[str] = None,
+        step: Optional[float] = None,
+        rtol: Optional[float] = None,
+        atol: Optional[float] = None,
+        every: Optional[float] = None,
+    ) -> Motion: ...
+    def show(self, **changes: Any) -> Path: ...
+    def write(self, path: Union[str, PathLike[str]], **changes: Any) -> list[str]: ...
+
+class Motion:
+    columns: dict[str, NDArray[np.float64]]
+    units: dict[str, str]
+    summary: dict[str, Any]
+    time: NDArray[np.float64]
+    q: NDArray[np.float64]
+    v: NDArray[np.float64]
+    tau: NDArray[np.float64]
+    @property
+    def status(self) -> str: ...
+    @property
+    def events(self) -> list[dict[str, Any]]: ...
+    def __getitem__(self, title: str) -> NDArray[np.float64]: ...
+    def __len__(self) -> int: ...
+    def to_arrow(self) -> Any: ...
+    def write(self, path: Union[str, PathLike[str]], packages: Iterable[Union[str, PathLike[str]]] = ...) -> list[str]: ...
+    def show(self, packages: Iterable[Union[str, PathLike[str]]] = ...) -> Path: ...
+
 def functions() -> tuple[Function, ...]: ...
+def bundled_scene_names() -> dict[str, str]: ...
 def bundled_names() -> dict[str, str]: ...
 def load(
     path: Union[str, bytes, PathLike[str], PathLike[bytes]],
     base: str = "fixed",
     gravity: ArrayLike = ...,
     frames: Optional[Iterable[str]] = None,
+    wrenches_in: str = "body",
 ) -> Robot: ...
 def loads(
     text: Union[str, bytes, bytearray, memoryview],
@@ -51,9 +89,14 @@ def loads(
     base: str = "fixed",
     gravity: ArrayLike = ...,
     frames: Optional[Iterable[str]] = None,
+    wrenches_in: str = "body",
 ) -> Robot: ...
 def bundled(
-    name: str, base: Optional[str] = None, gravity: ArrayLike = ..., frames: Optional[Iterable[str]] = None
+    name: str,
+    base: Optional[str] = None,
+    gravity: ArrayLike = ...,
+    frames: Optional[Iterable[str]] = None,
+    wrenches_in: str = "body",
 ) -> Robot: ...
 
 class Robot:
@@ -86,11 +129,36 @@ class Robot:
     @property
     def neutral(self) -> NDArray[np.float64]: ...
     @property
+    def wrenches_in(self) -> str: ...
+    @property
     def unused(self) -> tuple[str, ...]: ...
     def with_gravity(self, gravity: ArrayLike) -> Robot: ...
     def with_frames(self, frames: Iterable[str]) -> Robot: ...
+    def with_wrenches_in(self, reference: str) -> Robot: ...
+    def lock(self, joint: Union[str, Mapping[str, ArrayLike]], at: ArrayLike = 0.0) -> Robot: ...
+    def payload(
+        self, link: str, mass: float, center_of_mass: ArrayLike = ..., inertia: Optional[ArrayLike] = None
+    ) -> Robot: ...
+    def append(
+        self,
+        other: Union[Robot, str, bytes, PathLike[str], PathLike[bytes]],
+        at: str,
+        prefix: str = "",
+        position: ArrayLike = ...,
+        rpy: ArrayLike = ...,
+    ) -> Robot: ...
     def call(self, name: str, *arguments: ArrayLike, threads: Optional[int] = None) -> Any: ...
-    def compile(self, functions: Iterable[str], *, flags: Iterable[str] = ...) -> CompiledRobot: ...
+    def compile(self, functions: Iterable[str], *, flags: Iterable[str] = ..., batch: bool = False) -> CompiledRobot: ...
+    def wheel(
+        self,
+        folder: Union[str, PathLike[str]],
+        functions: Iterable[str] = ...,
+        *,
+        name: Optional[str] = None,
+        version: str = "0.1.0",
+        flags: Iterable[str] = ...,
+        batch: bool = False,
+    ) -> Path: ...
     def placements_matrices(self, q: ArrayLike, *, threads: Optional[int] = None) -> NDArray[np.float64]: ...
     def random_configuration(
         self,

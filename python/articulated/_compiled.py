@@ -1,18 +1,16 @@
 """Functions of one robot as generated C, compiled by the system's compiler and kept in a cache."""
 
-import ctypes
 import hashlib
+import math
 import os
 import platform
+import re
 import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
-import threading
 from pathlib import Path
-
-import numpy as np
 
 from . import _native
 
@@ -42,39 +40,90 @@ def cache():
     return path
 
 
-def _loop(function):
-    """C of the function for many states: each argument with the step from one state to the next, zero if it is the same."""
-    names = [name for name, _, _ in function.takes]
-    given = "".join(f"const double *{name}, size_t {name}_step, " for name in names)
-    at = ", ".join([*(f"{name} + k * {name}_step" for name in names), "out + k * out_step"])
-    return (
-        f"\nvoid {PREFIX}_many_{function.name}(size_t states, {given}double *out, size_t out_step) {{\n"
-        f"    for (size_t k = 0; k < states; k++) {{\n        {PREFIX}_{function.name}({at});\n    }}\n}}\n"
-    )
+def lengths(robot, dims):
+    """Dimensions as numbers of this robot."""
+    named = {"nq": robot.nq, "nv": robot.nv, "frames": len(robot.frames), "links": len(robot.links)}
+    return tuple(named.get(dim, dim) for dim in dims)
 
 
-def library(source, functions, flags):
+# States that are computed at once where an argument is the same for all: it is repeated so often.
+BLOCK = 64
+
+
+def _loop(robot, function, has_batch):
+    """C of the function for many states.
+
+    ``given`` and ``steps``: where each argument is, and the step from one state to the next, zero if
+    it is the same for all. Results follow each other. States of a batch, of which a step is not
+    zero, go to the generated ``PREFIX_NAME_batch_f64(count, arguments, out)`` over rows, if there is
+    one: all of them, also a single one, so that results do not depend on how many there are.
+    """
+    name, takes = f"{PREFIX}_{function.name}", range(len(function.takes))
+    sizes, size = [math.prod(lengths(robot, dims)) for _, dims, _ in function.takes], math.prod(lengths(robot, function.gives))
+    lines = [f"void {symbol(function)}(size_t states, const double *const *given, const size_t *steps, double *out) {{"]
+    if has_batch and any(sizes):
+        batch, some = f"{name}_batch_f64", [i for i in takes if sizes[i]]
+        rows = ", ".join(f"steps[{i}] ? given[{i}] + first * steps[{i}] : same_{i}" if sizes[i] else f"given[{i}]" for i in takes)
+        lines += [
+            f"    if ({' && '.join(f'steps[{i}]' for i in some)}) {{",
+            f"        {batch}({', '.join(['states', *(f'given[{i}]' for i in takes), 'out'])});",
+            "        return;",
+            "    }",
+            f"    if ({' || '.join(f'steps[{i}]' for i in some)}) {{",
+            *(f"        double same_{i}[{BLOCK} * {sizes[i]}];" for i in some),
+            f"        for (size_t k = 0; k < {BLOCK}; k++) {{",
+            *(f"            for (size_t j = 0; j < {sizes[i]} && !steps[{i}]; j++) {{ same_{i}[k * {sizes[i]} + j] = given[{i}][j]; }}" for i in some),
+            "        }",
+            f"        for (size_t first = 0; first < states; first += {BLOCK}) {{",
+            f"            const size_t count = states - first < {BLOCK} ? states - first : {BLOCK};",
+            f"            {batch}(count, {rows}, out + first * {size});",
+            "        }",
+            "        return;",
+            "    }",
+        ]
+    at = ", ".join([*(f"given[{i}] + k * steps[{i}]" for i in takes), f"out + k * {size}"])
+    lines += ["    for (size_t k = 0; k < states; k++) {", f"        {name}({at});", "    }", "}"]
+    return "\n" + "\n".join(lines) + "\n"
+
+
+def symbol(function):
+    """The name of the loop of a function."""
+    return f"{PREFIX}_loop_{function.name}"
+
+
+def sources(robot, functions, batch):
+    """The C files of these functions and of their loops, each a name and a text."""
+    files = robot._generate_c([function.name for function in functions], PREFIX, batch)
+    header = "".join(text for name, text in files if name.endswith(".h"))
+    has_batch = {f.name: re.search(rf"\b{PREFIX}_{f.name}_batch_f64\s*\(", header) is not None for f in functions}
+    loops = "".join(_loop(robot, function, has_batch[function.name]) for function in functions)
+    return [*files, (f"{PREFIX}_loop.c", f'#include <stddef.h>\n#include "{PREFIX}.h"\n{loops}')]
+
+
+def build(files, command, flags, folder, name):
+    """Compiles C files in a folder into a shared object of this name there."""
+    for file, text in files:
+        Path(folder, file).write_text(text, encoding="utf-8")
+    line = [*command, *FLAGS, *flags, "-o", name, *(file for file, _ in files if file.endswith(".c")), "-lm"]
+    done = subprocess.run(line, cwd=folder, capture_output=True, text=True)
+    if done.returncode != 0:
+        message = (done.stderr or done.stdout).strip()[-2000:]
+        raise RuntimeError(f"compile: the C compiler refused: {' '.join(line)}\n{message}")
+    return Path(folder, name)
+
+
+def library(robot, functions, flags, batch):
     """The path of the shared object of these functions, compiled unless it is in the cache."""
     command = compiler()
-    files = _native.generate_c(*source, [function.name for function in functions], PREFIX)
-    loops = f'#include <stddef.h>\n#include "{PREFIX}.h"\n' + "".join(_loop(function) for function in functions)
-    files = [*files, (f"{PREFIX}_many.c", loops)]
+    files = sources(robot, functions, batch)
     version = subprocess.run([*command, "--version"], capture_output=True, text=True).stdout
     key = repr((files, command, version, FLAGS, flags, platform.machine(), sys.platform))
     path = cache() / f"{hashlib.sha256(key.encode('utf-8', 'surrogatepass')).hexdigest()[:32]}.so"
     if path.exists():
         return path
     with tempfile.TemporaryDirectory(dir=path.parent) as folder:
-        for name, text in files:
-            Path(folder, name).write_text(text, encoding="utf-8")
-        sources = [name for name, _ in files if name.endswith(".c")]
-        line = [*command, *FLAGS, *flags, "-o", "robot.so", *sources, "-lm"]
-        done = subprocess.run(line, cwd=folder, capture_output=True, text=True)
-        if done.returncode != 0:
-            message = (done.stderr or done.stdout).strip()[-2000:]
-            raise RuntimeError(f"compile: the C compiler refused: {' '.join(line)}\n{message}")
         # At once, so that another process never finds half of it.
-        os.replace(os.path.join(folder, "robot.so"), path)
+        os.replace(build(files, command, flags, folder, "robot.so"), path)
     return path
 
 
@@ -85,55 +134,16 @@ class CompiledRobot:
     same values up to rounding.
     """
 
-    def __init__(self, robot, functions, flags, document):
+    def __init__(self, robot, functions, flags, batch, text):
         self.robot = robot
         self.functions = tuple(function.name for _, function in functions)
-        self.path = library(robot._source[:5], [function for _, function in functions], flags)
-        self._library = ctypes.CDLL(str(self.path))
-        for index, function in functions:
-            setattr(self, function.name, self._method(index, function, document(function)))
+        self.path = library(robot, [function for _, function in functions], flags, batch)
+        rows = [(index, symbol(function), function.name, text(function)) for index, function in functions]
+        for name, method in zip(self.functions, _native.load_compiled(robot, self.path, rows)):
+            setattr(self, name, method)
 
     def __repr__(self):
         return f"<articulated.CompiledRobot {self.robot.name!r}: {', '.join(self.functions)}>"
 
     def __reduce__(self):
         raise TypeError("found a compiled robot to copy or pickle, expected the robot itself: compile it again there")
-
-    def _method(self, index, function, documentation):
-        many = self._library[f"{PREFIX}_many_{function.name}"]
-        many.restype = None
-        many.argtypes = [ctypes.c_size_t, *([ctypes.c_void_p, ctypes.c_size_t] * (len(function.takes) + 1))]
-        names, core = [name for name, _, _ in function.takes], self.robot._core
-
-        def run(given, threads):
-            states, arrays, shape = core._arguments(index, given)
-            threads = _native.threads(threads)
-            out = np.empty(shape)
-            count = 1 if states is None else states
-            dims = [len(dims) for _, dims, _ in function.takes]
-            # The step of an argument that is the same for all states is zero.
-            steps = [array.size // count if count and array.ndim > n else 0 for array, n in zip(arrays, dims)]
-            places = [array.ctypes.data for array in arrays]
-            size, begin = (out.size // count if count else 0), out.ctypes.data
-
-            def part(first, end):
-                given = [x for place, step in zip(places, steps) for x in (place + 8 * first * step, step)]
-                many(end - first, *given, begin + 8 * first * size, size)
-
-            if out.size:
-                threads = min(threads, count)
-                ends = [count * k // threads for k in range(threads + 1)]
-                workers = [threading.Thread(target=part, args=ends[k : k + 2]) for k in range(1, threads)]
-                for worker in workers:
-                    worker.start()
-                part(*ends[:2])
-                for worker in workers:
-                    worker.join()
-            return out if shape else float(out)
-
-        scope = {"run": run}
-        given = "".join(f"{name}, " for name in names)
-        exec(f"def {function.name}({given}*, threads=None):\n    return run(({given}), threads)\n", scope)
-        method = scope[function.name]
-        method.__doc__ = documentation
-        return method

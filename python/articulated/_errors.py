@@ -33,8 +33,31 @@ class RobotWarning(UserWarning):
         return type(self), (str(self), self.diagnostic)
 
 
+def _shared(name, value):
+    """An array over the memory of an object of another library (DLPack); None where it is not to be had."""
+    if isinstance(value, (np.ndarray, np.generic)) or not hasattr(value, "__dlpack__"):
+        return None
+    try:
+        kind = int(value.__dlpack_device__()[0])
+    except Exception:
+        return None
+    # 1: the CPU. 3, 11, 13: memory of a graphics processor that the CPU reads too.
+    if kind not in (1, 3, 11, 13):
+        found = getattr(value, "device", f"kind {kind} of DLPack")
+        raise TypeError(f"{name}: found {type(value).__name__} on device {found}, expected one on the CPU")
+    try:
+        return np.from_dlpack(value)
+    except Exception:
+        return None
+
+
 def as_numbers(name, value):
     """``value`` as a C-contiguous array of float64; the errors name the argument."""
+    shared = _shared(name, value)
+    if shared is not None:
+        if shared.dtype == np.float64 and shared.flags.c_contiguous and shared.flags.aligned:
+            return shared
+        value = shared
     try:
         array = np.asarray(value)
     except MemoryError:

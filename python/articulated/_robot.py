@@ -2,13 +2,13 @@
 
 import os
 import warnings
-from typing import NamedTuple
+from typing import NamedTuple, Optional
 
 import numpy as np
 
-from . import _native
+from . import _native, _wheel
 from ._compiled import CompiledRobot
-from ._errors import RobotWarning
+from ._errors import RobotWarning, as_numbers
 
 GRAVITY = (0.0, 0.0, -9.81)
 
@@ -69,17 +69,65 @@ def _names(what, names):
     return names
 
 
-def _vector(name, value):
-    from ._errors import as_numbers
+def _name(what, name):
+    if not isinstance(name, str):
+        raise TypeError(f"{what}: found {type(name).__name__}, expected a name")
+    return name
 
+
+def _path(what, path):
+    try:
+        return os.fsdecode(path)
+    except TypeError:
+        raise TypeError(f"{what}: found {type(path).__name__}, expected the name of a file") from None
+
+
+def _reference(name):
+    if name not in ("body", "world", "world_aligned"):
+        raise ValueError(f'wrenches_in: found {name!r}, expected "body", "world" or "world_aligned"')
+    return name
+
+
+def _vector(name, value, expected):
+    """Finite numbers; three of them, unless nothing is expected."""
     array = as_numbers(name, value)
-    if array.shape != (3,) or not np.isfinite(array).all():
-        found = f"shape {array.shape}" if array.shape != (3,) else f"{array.tolist()}"
-        raise ValueError(f"{name}: found {found}, expected three finite numbers, m/s² in the world frame")
+    if expected is None:
+        expected = "finite numbers"
+        is_shape = array.ndim == 1
+    else:
+        is_shape = array.shape == (3,)
+    if not is_shape or not np.isfinite(array).all():
+        found = f"{array.tolist()}" if is_shape else f"shape {array.shape}"
+        raise ValueError(f"{name}: found {found}, expected {expected}")
     return tuple(array.tolist())
 
 
-class Robot:
+def _inertia(value):
+    array = as_numbers("inertia", value)
+    if array.shape == (3, 3) and np.array_equal(array, array.T):
+        array = array[np.triu_indices(3)]
+    if array.shape != (6,) or not np.isfinite(array).all():
+        found = "a matrix that is not symmetric" if array.shape == (3, 3) else f"shape {array.shape}"
+        found = found if array.shape != (6,) else f"{array.tolist()}"
+        raise ValueError(f"inertia: found {found}, expected a symmetric (3, 3), or xx, xy, xz, yy, yz, zz, kg·m²")
+    return tuple(array.tolist())
+
+
+class _Source(NamedTuple):
+    """What makes a robot: its document, and what is requested of it."""
+
+    file: str
+    document: bytes
+    base: str
+    gravity: tuple
+    wrenches_in: str = "body"
+    frames: Optional[tuple] = None
+    append: tuple = ()
+    payloads: tuple = ()
+    locks: tuple = ()
+
+
+class Robot(_native.Robot):
     """A robot's dynamics. ``articulated.load``, ``loads`` and ``bundled`` make one.
 
     Each function takes one state, such as q of shape (nq,), or N states, of shape (N, nq), and
@@ -91,113 +139,116 @@ class Robot:
     in q and v are in ``joints``.
     """
 
-    __slots__ = ("_core", "_call", "_source", "__weakref__")
+    __slots__ = ("_source", "__weakref__")
 
-    def __init__(self, core, source):
-        self._core = core
-        self._call = core._call
-        self._source = source
+    def __new__(cls, *_arguments, **_named):
+        raise TypeError("Robot: found a call of the class, expected one of articulated.load, loads and bundled, which make robots")
 
     @classmethod
-    def _made(cls, file, document, base, gravity, frames, includes):
-        core = _native.Robot(file, document, base, gravity, includes)
-        if frames is not None:
-            core = core._with_frames(frames)
-        return cls(core, (file, document, base, gravity, frames, includes))
+    def _made(cls, source, like=None):
+        robot = _native.Robot.__new__(cls, *source, like)
+        robot._source = source
+        return robot
 
     def __reduce__(self):
         return _remade, (type(self), self._source)
 
     def __repr__(self):
-        base, frames = self._source[2], len(self.frames)
-        return f"<articulated.Robot {self.name!r}: {base} base, nq={self.nq}, nv={self.nv}, {frames} frames>"
-
-    @property
-    def name(self):
-        """The robot's name."""
-        return self._core.name
-
-    @property
-    def base(self):
-        """ "fixed" or "floating"."""
-        return self._source[2]
-
-    @property
-    def nq(self):
-        """Number of coordinates."""
-        return self._core.nq
-
-    @property
-    def nv(self):
-        """Number of degrees of freedom."""
-        return self._core.nv
+        return f"<articulated.Robot {self.name!r}: {self.base} base, nq={self.nq}, nv={self.nv}, {len(self.frames)} frames>"
 
     @property
     def joints(self):
         """The joints that have coordinates of their own, in the order of q and v."""
-        return tuple(Joint(name, kind, slice(*q), slice(*v)) for name, kind, q, v in self._core._joints)
-
-    @property
-    def frames(self):
-        """Names of the frames, in the order of results such as ``placements``."""
-        return tuple(self._core.frames)
-
-    @property
-    def links(self):
-        """Names of the moving links, in the order of ``joint_wrenches``."""
-        return tuple(self._core.links)
-
-    @property
-    def lower(self):
-        """Lower bounds of q, (nq,), rad or m; -inf where there are none."""
-        return self._core.lower
-
-    @property
-    def upper(self):
-        """Upper bounds of q, (nq,), rad or m; inf where there are none."""
-        return self._core.upper
-
-    @property
-    def velocity_limit(self):
-        """Largest rates, (nv,), rad/s or m/s; inf where there are none."""
-        return self._core.velocity_limit
-
-    @property
-    def effort_limit(self):
-        """Largest torques or forces, (nv,), N·m or N; inf where there are none."""
-        return self._core.effort_limit
-
-    @property
-    def gravity(self):
-        """Gravity in the world frame, (3,), m/s²."""
-        return self._core.gravity
-
-    @property
-    def moving_mass(self):
-        """Mass of the moving links, kg."""
-        return self._core.moving_mass
-
-    @property
-    def neutral(self):
-        """The configuration of zeros, (nq,), with quaternions (0, 0, 0, 1)."""
-        return self._core.neutral
-
-    @property
-    def unused(self):
-        """What the file says and the dynamics do not use, a sentence each."""
-        return tuple(self._core.unused)
+        return tuple(Joint(name, kind, slice(*q), slice(*v)) for name, kind, q, v in self._joints)
 
     def with_gravity(self, gravity):
         """The same robot under another gravity, m/s² in the world frame."""
-        gravity = _vector("gravity", gravity)
-        file, document, base, _, frames, includes = self._source
-        return type(self)(self._core._with_gravity(gravity), (file, document, base, gravity, frames, includes))
+        return self._made(self._source._replace(gravity=_vector("gravity", gravity, "three finite numbers, m/s² in the world frame")), self)
 
     def with_frames(self, frames):
         """The same robot with these frames only, in this order. Fewer frames take less time."""
-        frames = _names("frames", frames)
-        file, document, base, gravity, _, includes = self._source
-        return type(self)(self._core._with_frames(frames), (file, document, base, gravity, frames, includes))
+        return self._made(self._source._replace(frames=tuple(_names("frames", frames))), self)
+
+    def with_wrenches_in(self, reference):
+        """The same robot, with the external wrenches that functions take in other axes.
+
+        Args:
+            reference: "body": axes of each frame, about its origin. "world": axes of the world frame,
+                about the world frame's origin. "world_aligned": axes of the world frame, about the
+                frame's origin.
+        """
+        return self._made(self._source._replace(wrenches_in=_reference(reference)), self)
+
+    def lock(self, joint, at=0.0):
+        """The robot with a joint held. Its coordinates leave q and v; links keep their names.
+
+        Args:
+            joint: The joint's name; or a dict of several names and their coordinates.
+            at: Its coordinate, rad or m; several for a joint that has several.
+
+        Raises:
+            RobotError: There is no such joint, or the coordinates do not fit it.
+        """
+        joints = joint if isinstance(joint, dict) else {joint: at}
+        for name in joints:
+            _name("joint", name)
+        locks = tuple((name, _vector("at", np.atleast_1d(as_numbers("at", one)), None)) for name, one in joints.items())
+        return self._edited(self._source._replace(locks=self._source.locks + locks))
+
+    def payload(self, link, mass, center_of_mass=(0.0, 0.0, 0.0), inertia=None):
+        """The robot with a load on a link.
+
+        Args:
+            link: The link's name.
+            mass: kg.
+            center_of_mass: (3,), m, in the link's frame.
+            inertia: About the centre of mass, in axes of the link, kg·m²: (3, 3), or xx, xy, xz, yy,
+                yz, zz. None for a point mass.
+
+        Raises:
+            RobotError: There is no such link, or no such body.
+        """
+        numbers = as_numbers("mass", mass)
+        if numbers.shape != () or not np.isfinite(numbers):
+            raise ValueError(f"mass: found {mass!r}, expected a finite number, kg")
+        center = _vector("center_of_mass", center_of_mass, "three finite numbers, m in the frame of the link")
+        inertia = (0.0,) * 6 if inertia is None else _inertia(inertia)
+        payloads = (*self._source.payloads, (_name("link", link), float(numbers), center, inertia))
+        return self._edited(self._source._replace(payloads=payloads))
+
+    def append(self, other, at, prefix="", position=(0.0, 0.0, 0.0), rpy=(0.0, 0.0, 0.0)):
+        """The robot with another one, such as a gripper, fixed to a link.
+
+        Args:
+            other: A robot without edits, or the path of a file.
+            at: The link that carries it.
+            prefix: What its names of joints and links begin with here.
+            position: (3,), m: its root's origin in the frame of the link.
+            rpy: (3,), rad: roll, pitch and yaw of its root there.
+
+        Raises:
+            RobotError: There is no such link, or a name occurs twice.
+        """
+        if isinstance(other, Robot):
+            source = other._source
+            if source.append or source.payloads or source.locks:
+                raise ValueError("other: found a robot with edits, expected one as loaded; append it first, and edit the result")
+            file, document = source.file, source.document
+        else:
+            file = _path("other", other)
+            document = _native.read(file)
+        position = _vector("position", position, "three finite numbers, m in the frame of the link")
+        rpy = _vector("rpy", rpy, "three finite numbers, rad")
+        row = (file, document, _name("at", at), _name("prefix", prefix), position, rpy)
+        return self._edited(self._source._replace(append=(*self._source.append, row)))
+
+    def _edited(self, source):
+        known = {finding["message"] for finding in self._warnings}
+        robot = self._made(source)
+        for finding in robot._warnings:
+            if finding["message"] not in known:
+                warnings.warn(RobotWarning(finding["message"], finding), stacklevel=3)
+        return robot
 
     def call(self, name, *arguments, threads=None):
         """The function of this name, with its arguments in order."""
@@ -206,7 +257,7 @@ class Robot:
             raise _unknown("name", name, _INDEX, "a function of articulated.functions()")
         return self._call(index, arguments, threads)
 
-    def compile(self, functions, *, flags=()):
+    def compile(self, functions, *, flags=(), batch=False):
         """Some of the functions as straight-line C for this robot, compiled by the system's C compiler.
 
         Compiled robots are kept in the user's cache, or in the folder that the environment variable
@@ -215,6 +266,8 @@ class Robot:
         Args:
             functions: Names of functions, such as ["inverse_dynamics"].
             flags: More options of the compiler, such as ["-march=native"].
+            batch: Also compile code that computes a state in each lane of a vector: a call of N states
+                takes a third of the time or less, and the compiler two to four times as long.
 
         Returns:
             CompiledRobot, with the functions as methods.
@@ -222,6 +275,31 @@ class Robot:
         Raises:
             RuntimeError: There is no C compiler, or it refuses the code.
         """
+        rows = [(index, _TABLE[index]) for index in self._chosen("compile", functions)]
+        return CompiledRobot(self, rows, tuple(_names("flags", flags)), bool(batch), _text)
+
+    def wheel(self, folder, functions=_wheel.FUNCTIONS, *, name=None, version="0.1.0", flags=(), batch=False):
+        """Writes a wheel of this robot: a package of its functions that needs NumPy alone, neither
+        articulated nor a compiler where it is installed.
+
+        Args:
+            folder: Where the wheel goes; made if it is not there.
+            functions: Names of functions. The package has them under these names.
+            name: The name of the package and of its module; None for the robot's.
+            version: The version of the package.
+            flags: More options of the C compiler. With -march=native the wheel needs such a processor.
+            batch: Also compile code for many states at once, see ``compile``.
+
+        Returns:
+            The path of the wheel.
+
+        Raises:
+            RuntimeError: There is no C compiler, or it refuses the code.
+        """
+        rows = [_TABLE[index] for index in self._chosen("wheel", functions)]
+        return _wheel.write(self, _path("folder", folder), rows, name, version, tuple(_names("flags", flags)), bool(batch), _documentation)
+
+    def _chosen(self, what, functions):
         chosen = list(dict.fromkeys(_names("functions", functions)))
         for name in chosen:
             if name not in _INDEX:
@@ -229,9 +307,8 @@ class Robot:
         if not chosen:
             raise ValueError("functions: found none, expected at least one")
         if self.nv == 0:
-            raise ValueError("compile: found a robot without degrees of freedom, expected one that moves")
-        rows = [(_INDEX[name], _TABLE[_INDEX[name]]) for name in chosen]
-        return CompiledRobot(self, rows, tuple(_names("flags", flags)), _documentation)
+            raise ValueError(f"{what}: found a robot without degrees of freedom, expected one that moves")
+        return [_INDEX[name] for name in chosen]
 
     def placements_matrices(self, q, *, threads=None):
         """Placements of all frames in the world frame as homogeneous matrices.
@@ -278,7 +355,7 @@ class Robot:
 
 
 def _remade(cls, source):
-    return cls._made(*source)
+    return cls._made(source)
 
 
 def _documentation(function):
@@ -304,36 +381,45 @@ def _documentation(function):
     )
 
 
-def _method(index, function):
-    names = [name for name, _, _ in function.takes]
-    given = "".join(f"{name}, " for name in names)
+def _text(function):
+    """The signature and the documentation of a method, as the interpreter reads them."""
+    given = "".join(f"{name}, " for name, _, _ in function.takes)
+    return f"{function.name}($self, {given}*, threads=None)\n--\n\n{_documentation(function)}"
+
+
+def _reader(function):
+    given = "".join(f"{name}, " for name, _, _ in function.takes)
     scope = {}
-    # The names are the table's; a function of this text has the arguments and the errors of one written by hand.
-    exec(f"def {function.name}(self, {given}*, threads=None):\n    return self._call({index}, ({given}), threads)\n", scope)
-    method = scope[function.name]
-    method.__doc__ = _documentation(function)
-    method.__qualname__ = f"Robot.{function.name}"
-    method.__module__ = "articulated"
-    return method
+    # The names are the table's; Python itself reads the keywords of a call, and refuses wrong ones.
+    exec(f"def {function.name}(self, {given}*, threads=None):\n    return ({given}), threads\n", scope)
+    return scope[function.name]
+
+
+_READERS = [_reader(function) for function in _TABLE]
+
+
+def _read(index, given, named):
+    """The arguments in order, and ``threads``; called where a call has keywords or another number of arguments."""
+    return _READERS[index](None, *given, **named)
 
 
 for _index, _function in enumerate(_TABLE):
     if not hasattr(Robot, _function.name):
-        setattr(Robot, _function.name, _method(_index, _function))
+        setattr(Robot, _function.name, _native.method(_index, _function.name, _text(_function)))
 
 
-def _robot(file, document, base, gravity, frames, includes):
+def _robot(file, document, base, gravity, frames, wrenches_in):
     if base not in ("fixed", "floating"):
         raise ValueError(f'base: found {base!r}, expected "fixed" or "floating"')
-    gravity = _vector("gravity", gravity)
-    frames = None if frames is None else _names("frames", frames)
-    robot = Robot._made(file, document, base, gravity, frames, includes)
-    for finding in robot._core._warnings:
+    gravity = _vector("gravity", gravity, "three finite numbers, m/s² in the world frame")
+    frames = None if frames is None else tuple(_names("frames", frames))
+    robot = Robot._made(_Source(file, document, base, gravity, _reference(wrenches_in), frames))
+    for finding in robot._warnings:
         warnings.warn(RobotWarning(finding["message"], finding), stacklevel=3)
     return robot
 
 
-def load(path, base="fixed", gravity=GRAVITY, frames=None):
+def load(path, base="fixed", gravity=GRAVITY, frames=None, wrenches_in="body"):
     """The robot of a file.
 
     Args:
@@ -341,6 +427,7 @@ def load(path, base="fixed", gravity=GRAVITY, frames=None):
         base: "fixed" if the root link does not move, "floating" if it has six degrees of freedom.
         gravity: (3,), m/s² in the world frame.
         frames: Names of the frames (links) to compute, in this order; None for all.
+        wrenches_in: What external wrenches are given in, see ``Robot.with_wrenches_in``.
 
     Raises:
         RobotError: The file is not a robot; ``diagnostics`` lists all mistakes at once.
@@ -348,14 +435,11 @@ def load(path, base="fixed", gravity=GRAVITY, frames=None):
     Warns:
         RobotWarning: Something in the file looks wrong; the values are used as they are.
     """
-    try:
-        path = os.fsdecode(path)
-    except TypeError:
-        raise TypeError(f"path: found {type(path).__name__}, expected the name of a file") from None
-    return _robot(path, _native.read(path), base, gravity, frames, True)
+    path = _path("path", path)
+    return _robot(path, _native.read(path), base, gravity, frames, wrenches_in)
 
 
-def loads(text, name="robot.urdf", base="fixed", gravity=GRAVITY, frames=None):
+def loads(text, name="robot.urdf", base="fixed", gravity=GRAVITY, frames=None, wrenches_in="body"):
     """The robot of a text, str or bytes; ``name`` is the name of its file in messages. See ``load``."""
     if isinstance(text, str):
         text = text.encode("utf-8", "surrogatepass")
@@ -365,16 +449,16 @@ def loads(text, name="robot.urdf", base="fixed", gravity=GRAVITY, frames=None):
         raise TypeError(f"text: found {type(text).__name__}, expected str or bytes")
     if not isinstance(name, str):
         raise TypeError(f"name: found {type(name).__name__}, expected str")
-    return _robot(name, text, base, gravity, frames, False)
+    return _robot(name, text, base, gravity, frames, wrenches_in)
 
 
-def bundled(name, base=None, gravity=GRAVITY, frames=None):
+def bundled(name, base=None, gravity=GRAVITY, frames=None, wrenches_in="body"):
     """One of the robots that come with the package; ``bundled_names`` lists them. ``base``: None for its own."""
     robots = {robot: (urdf, own) for robot, urdf, own, _ in _native.bundled_robots()}
     if not isinstance(name, str) or name not in robots:
         raise _unknown("name", name, robots, "one of " + ", ".join(robots))
     urdf, own = robots[name]
-    return _robot(f"{name}.urdf", urdf.encode(), own if base is None else base, gravity, frames, False)
+    return _robot(f"{name}.urdf", urdf.encode(), own if base is None else base, gravity, frames, wrenches_in)
 
 
 def bundled_names():

@@ -5,6 +5,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 
+use crate::method::is_finite;
+
 /// An argument with its states.
 pub(crate) struct Argument<'py> {
     array: PyReadonlyArrayDyn<'py, f64>,
@@ -15,11 +17,6 @@ pub(crate) struct Argument<'py> {
 }
 
 impl<'py> Argument<'py> {
-    /// The array itself.
-    pub(crate) fn array(&self) -> Bound<'py, PyArrayDyn<f64>> {
-        (*self.array).clone()
-    }
-
     /// All numbers, state by state.
     pub(crate) fn numbers(&self) -> PyResult<&[f64]> {
         self.array.as_slice().map_err(|error| PyValueError::new_err(error.to_string()))
@@ -38,6 +35,30 @@ pub(crate) fn shown(shape: &[usize]) -> String {
 fn shown_many(shape: &[usize]) -> String {
     let rest: String = shape.iter().map(|n| format!(", {n}")).collect();
     if shape.is_empty() { "(N,)".into() } else { format!("(N{rest})") }
+}
+
+/// The index of number `at` of an array of this shape.
+fn place(at: usize, shape: &[usize]) -> String {
+    let mut rest = at;
+    let mut index: Vec<usize> = shape.iter().rev().map(|n| (rest % n, rest /= n).0).collect();
+    index.reverse();
+    format!("{index:?}")
+}
+
+/// The first number that is infinite or not a number.
+fn first_not_finite(numbers: &[f64]) -> Option<usize> {
+    if is_finite(numbers) { None } else { numbers.iter().position(|x| !x.is_finite()) }
+}
+
+/// A number that is not finite, as Python writes it.
+fn spelled(x: f64) -> &'static str {
+    if x.is_nan() {
+        "nan"
+    } else if x > 0.0 {
+        "inf"
+    } else {
+        "-inf"
+    }
 }
 
 /// Whether an array's numbers can be borrowed as they are.
@@ -69,7 +90,13 @@ pub(crate) fn argument<'py>(name: &str, value: &Bound<'py, PyAny>, shape: &[usiz
         }
     };
     let array = array.try_readonly().map_err(|error| PyValueError::new_err(format!("{name}: {error}")))?;
-    Ok(Argument { array, states, len: shape.iter().product() })
+    let argument = Argument { array, states, len: shape.iter().product() };
+    let numbers = argument.numbers()?;
+    if let Some(at) = first_not_finite(numbers) {
+        let place = place(at, argument.array.shape());
+        return Err(PyValueError::new_err(format!("{name}: found {} at {place}, expected finite numbers", spelled(numbers[at]))));
+    }
+    Ok(argument)
 }
 
 /// The number of states that the arguments agree on; `None` for one state.

@@ -1,5 +1,8 @@
 //! The loop over states, in one thread or in several.
 
+// For calls of compiled functions, which check nothing.
+#![allow(unsafe_code)]
+
 use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -11,6 +14,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyBool;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::compiled::Loop;
+use crate::signature::MOST_ARGUMENTS;
 
 /// The most threads of a call.
 const MOST_THREADS: usize = 1024;
@@ -36,12 +42,39 @@ impl Workspaces {
     }
 }
 
+/// What computes a function.
+#[derive(Clone, Copy)]
+pub(crate) enum Kernel<'a> {
+    /// The library.
+    Generic { function: &'static Function<f64>, model: &'a Model<f64>, workspaces: &'a Workspaces },
+    /// Compiled code for the robot whose signature arguments and results are checked with.
+    Compiled(Loop),
+}
+
+impl Kernel<'_> {
+    /// One state, whose arguments and result have the sizes of the robot's signature.
+    pub(crate) fn one(&self, arguments: &[&[f64]], out: &mut [f64]) -> PyResult<()> {
+        match self {
+            Self::Generic { function, model, workspaces } => {
+                let done = workspaces.with(model, |ws| function.call(model, ws, arguments, out));
+                done.map_err(|error| PyValueError::new_err(error.to_string()))
+            }
+            Self::Compiled(function) => {
+                let mut places = [std::ptr::null(); MOST_ARGUMENTS];
+                places.iter_mut().zip(arguments).for_each(|(place, argument)| *place = argument.as_ptr());
+                // SAFETY: it reads as many numbers of each argument, and writes as many, as the
+                // signature says.
+                unsafe { function(1, places.as_ptr(), [0; MOST_ARGUMENTS].as_ptr(), out.as_mut_ptr()) };
+                Ok(())
+            }
+        }
+    }
+}
+
 /// A call with its arguments checked: slices of all states, and how many numbers one state has
 /// there; zero for an argument that is the same for all.
 pub(crate) struct Call<'a> {
-    pub(crate) function: &'static Function<f64>,
-    pub(crate) model: &'a Model<f64>,
-    pub(crate) workspaces: &'a Workspaces,
+    pub(crate) kernel: &'a Kernel<'a>,
     pub(crate) arguments: Vec<(&'a [f64], usize, usize)>,
     /// Numbers of one result.
     pub(crate) len: usize,
@@ -50,15 +83,28 @@ pub(crate) struct Call<'a> {
 impl Call<'_> {
     /// Computes the states from number `first` on, as many as `out` has room for.
     fn states(&self, first: usize, out: &mut [f64]) -> Result<(), FunctionError> {
-        self.workspaces.with(self.model, |ws| {
-            let mut arguments: Vec<&[f64]> = Vec::with_capacity(self.arguments.len());
-            for (i, out) in out.chunks_exact_mut(self.len).enumerate() {
-                arguments.clear();
-                arguments.extend(self.arguments.iter().map(|(all, stride, len)| &all[(first + i) * stride..][..*len]));
-                self.function.call(self.model, ws, &arguments, out)?;
+        match *self.kernel {
+            Kernel::Generic { function, model, workspaces } => workspaces.with(model, |ws| {
+                let mut arguments: Vec<&[f64]> = Vec::with_capacity(self.arguments.len());
+                for (i, out) in out.chunks_exact_mut(self.len).enumerate() {
+                    arguments.clear();
+                    arguments.extend(self.arguments.iter().map(|(all, stride, len)| &all[(first + i) * stride..][..*len]));
+                    function.call(model, ws, &arguments, out)?;
+                }
+                Ok(())
+            }),
+            Kernel::Compiled(function) => {
+                let states = out.len() / self.len;
+                let last = first + states.saturating_sub(1);
+                let place = |&(all, stride, len): &(&[f64], usize, usize)| all[first * stride..last * stride + len].as_ptr();
+                let places: Vec<*const f64> = self.arguments.iter().map(place).collect();
+                let steps: Vec<usize> = self.arguments.iter().map(|(_, stride, _)| *stride).collect();
+                // SAFETY: for each of so many states it reads as many numbers of each argument,
+                // and writes as many, as the signature says; the slices above have all of them.
+                unsafe { function(states, places.as_ptr(), steps.as_ptr(), out.as_mut_ptr()) };
+                Ok(())
             }
-            Ok(())
-        })
+        }
     }
 
     /// Computes all states of `out`, in so many threads.

@@ -6,15 +6,18 @@
 
 mod arrays;
 mod batch;
+mod compiled;
 mod errors;
+mod method;
 mod robot;
+mod scene;
+mod signature;
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use articulated::algorithm::{Dim, Function, functions};
 use articulated::formats::{MOST_BYTES, read_file};
-use articulated_codegen::{COptions, Request, Target, generate};
 use articulated_core::diagnostic::{Code, Diagnostic, Place};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
@@ -78,44 +81,22 @@ fn nearest(wrong: &str, names: Vec<String>) -> Option<String> {
     articulated_core::suggest::nearest(wrong, names.iter().map(String::as_str))
 }
 
-/// C99 of a robot's functions: its files, each with a name and a text. All names begin with `prefix`.
+/// Runs the command `articulated` with these words, the program's name first. Its exit status.
 #[pyfunction]
-#[allow(clippy::too_many_arguments)] // Why: what makes a robot, one by one.
-fn generate_c(
-    py: Python<'_>,
-    file: &str,
-    document: &[u8],
-    base: &str,
-    gravity: [f64; 3],
-    frames: Option<Vec<String>>,
-    functions: Vec<String>,
-    prefix: String,
-) -> PyResult<Vec<(String, String)>> {
-    let mut request = Request::new(file, document);
-    request.options.robot.base = robot::base_of(base)?;
-    request.options.robot.gravity = gravity;
-    request.options.functions = functions.into_iter().map(Into::into).collect();
-    request.options.target = Target::C(COptions { prefix: Some(prefix), ..COptions::default() });
-    request.options.stages = false;
-    if let Some(frames) = frames {
-        request.set_frames(&frames);
-    }
-    let generated = py.detach(|| catch_unwind(AssertUnwindSafe(|| generate(&request)))).map_err(|_| batch::mistake())?;
-    let generated = generated.map_err(|findings| errors::refused(py, &findings))?;
-    Ok(generated.files.into_iter().map(|file| (file.name, file.text)).collect())
-}
-
-/// The number of threads that `threads=` means.
-#[pyfunction]
-#[pyo3(signature = (given=None))]
-fn threads(given: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
-    batch::threads(given)
+fn command(py: Python<'_>, words: Vec<OsString>) -> u8 {
+    py.detach(|| articulated_cli::run(words))
 }
 
 #[pymodule(gil_used = true)]
 mod _native {
     #[pymodule_export]
+    use super::compiled::load_compiled;
+    #[pymodule_export]
+    use super::method::method_of_robots;
+    #[pymodule_export]
     use super::robot::Robot;
     #[pymodule_export]
-    use super::{bundled_robots, generate_c, nearest, read, table, threads};
+    use super::scene::{Recorded, Scene, bundled_scenes};
+    #[pymodule_export]
+    use super::{bundled_robots, command, nearest, read, table};
 }

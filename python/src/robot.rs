@@ -1,29 +1,33 @@
 //! The robot: a model with room for its calls.
 
 use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::OnceLock;
 
-use articulated::algorithm::{Dim, Function, Needs, functions};
-use articulated::description::{Description, Limit};
-use articulated::formats::{Disk, NoFiles, Options, Sources, read_with};
+use articulated::algorithm::{Function, Needs, functions};
+use articulated::description::{Description, Limit, Origin, Payload};
 use articulated::model::FLOATING_BASE;
-use articulated::{Base, Model, Shape};
-use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place};
-use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
+use articulated::spatial::Reference;
+use articulated::{Base, Model};
+use articulated_codegen::{Appended, COptions, Real, Request, Target, generate};
+use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
+use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
 
 use crate::arrays::{self, Argument};
-use crate::batch::{self, Call, Workspaces};
+use crate::batch::{self, Call, Kernel, Workspaces};
 use crate::errors;
+use crate::signature::{Signature, signatures};
 
 /// A robot's model. `articulated.load` makes one.
 #[pyclass(frozen, subclass, module = "articulated._native")]
 pub(crate) struct Robot {
     model: Model<f64>,
-    /// The model's sizes; counting its links takes time.
-    shape: Shape,
+    /// The robot as code is generated from it.
+    request: Request,
+    pub(crate) signatures: Vec<Signature>,
     /// Names of the links that [`Model::links`] lists.
     links: Vec<String>,
     warnings: Vec<Diagnostic>,
@@ -32,11 +36,15 @@ pub(crate) struct Robot {
     lacks: OnceLock<Lacks>,
 }
 
-/// Arguments that may be read as they are.
-type Arrays<'py> = Vec<Bound<'py, PyArrayDyn<f64>>>;
-
 /// The first index and the end.
 type Ends = (usize, usize);
+
+/// A robot to append: its file's name, its document, the link that carries it, what stands before
+/// its names, and the position and roll, pitch and yaw of its root there.
+type AppendedRow = (String, Vec<u8>, String, String, [f64; 3], [f64; 3]);
+
+/// A load: the link, its mass, its centre of mass, and xx, xy, xz, yy, yz, zz of its inertia.
+type PayloadRow = (String, f64, [f64; 3], [f64; 6]);
 
 /// What the robot does not have and some functions need.
 struct Lacks {
@@ -53,9 +61,15 @@ pub(crate) fn name_of(base: Base) -> &'static str {
     }
 }
 
-pub(crate) fn base_of(name: &str) -> PyResult<Base> {
+fn base_of(name: &str) -> PyResult<Base> {
     let named = [Base::Fixed, Base::Floating].into_iter().find(|base| name_of(*base) == name);
     named.ok_or_else(|| PyValueError::new_err(format!("base: found {name:?}, expected \"fixed\" or \"floating\"")))
+}
+
+fn reference_of(name: &str) -> PyResult<Reference> {
+    let named = [Reference::Body, Reference::World, Reference::WorldAligned].into_iter().find(|one| one.name() == name);
+    let wrong = || PyValueError::new_err(format!("wrenches_in: found {name:?}, expected \"body\", \"world\" or \"world_aligned\""));
+    named.ok_or_else(wrong)
 }
 
 /// Names of the moving links, in the order of [`Model::links`].
@@ -66,16 +80,27 @@ fn links(description: &Description, model: &Model<f64>) -> Vec<String> {
     model.links().map(|i| model.bodies()[i].name.as_str()).map(|body| name(body).unwrap_or_else(|| body.to_owned())).collect()
 }
 
-/// A row of the table.
-fn row(index: usize) -> PyResult<&'static Function<f64>> {
-    functions::<f64>().get(index).ok_or_else(|| PyValueError::new_err("found no such function"))
+/// The model with these frames. Errors: those that it does not have.
+fn framed(py: Python<'_>, model: Model<f64>, names: &[String]) -> PyResult<Model<f64>> {
+    let all = model.frames();
+    let mut findings = Diagnostics::new("");
+    for name in names.iter().filter(|name| all.iter().all(|frame| frame.name != **name)) {
+        let known = all.iter().map(|frame| frame.name.as_str());
+        findings.unknown(((Default::default(), "frames"), Code::UnknownName), (format!("{name:?}"), name), "a frame of the robot", known);
+    }
+    findings.result(()).map_err(|findings| errors::refused(py, &findings))?;
+    model.with_frames(names).map_err(|error| PyValueError::new_err(error.to_string()))
 }
 
 impl Robot {
-    fn with(&self, model: Model<f64>) -> Self {
-        let (links, warnings, unused) = (self.links.clone(), self.warnings.clone(), self.unused.clone());
-        let shape = model.shape();
-        Self { model, shape, links, warnings, unused, workspaces: Workspaces::default(), lacks: OnceLock::new() }
+    fn made(model: Model<f64>, request: Request, (links, warnings, unused): (Vec<String>, Vec<Diagnostic>, Vec<String>)) -> Self {
+        let signatures = signatures(model.shape());
+        Self { model, request, signatures, links, warnings, unused, workspaces: Workspaces::default(), lacks: OnceLock::new() }
+    }
+
+    /// What computes a row of the table.
+    pub(crate) fn kernel(&self, index: usize) -> Kernel<'_> {
+        Kernel::Generic { function: self.signatures[index].function, model: &self.model, workspaces: &self.workspaces }
     }
 
     fn lacks(&self) -> &Lacks {
@@ -89,9 +114,20 @@ impl Robot {
         })
     }
 
+    /// Whether a function is defined for this robot.
+    pub(crate) fn is_defined(&self, function: &Function<f64>) -> bool {
+        if function.needs == Needs::Nothing {
+            return true;
+        }
+        let lacks = self.lacks();
+        let mass = function.needs != Needs::Mass || lacks.mass;
+        let inertia = lacks.massless.is_empty() || !function.inverts_mass_matrix();
+        mass && inertia && (function.needs != Needs::FreeFrames || lacks.bound_frames.is_empty())
+    }
+
     /// Refuses a function that is not defined for this robot.
     fn check_defined(&self, py: Python<'_>, function: &Function<f64>) -> PyResult<()> {
-        if function.needs == Needs::Nothing {
+        if self.is_defined(function) {
             return Ok(());
         }
         let lacks = self.lacks();
@@ -119,21 +155,48 @@ impl Robot {
     }
 
     /// The number of states, if it has a dimension of its own, and the arguments.
-    fn checked<'py>(&self, function: &Function<f64>, given: &Bound<'py, PyTuple>) -> PyResult<(Option<usize>, Vec<Argument<'py>>)> {
-        let names: Vec<&str> = function.takes.iter().map(|argument| argument.name()).collect();
+    fn checked<'py>(&self, signature: &Signature, given: &Bound<'py, PyTuple>) -> PyResult<(Option<usize>, Vec<Argument<'py>>)> {
+        let names: Vec<&str> = signature.function.takes.iter().map(|argument| argument.name()).collect();
         if given.len() != names.len() {
-            let (name, found, expected) = (function.name, given.len(), names.len());
+            let (name, found, expected) = (signature.function.name, given.len(), names.len());
             return Err(PyTypeError::new_err(format!("{name}: found {found} arguments, expected {expected}: {}", names.join(", "))));
         }
         let mut arguments = Vec::with_capacity(names.len());
-        for (argument, value) in function.takes.iter().zip(given.iter()) {
-            arguments.push(arrays::argument(argument.name(), &value, &self.lengths(argument.dims()))?);
+        for ((name, size), value) in names.iter().zip(&signature.arguments).zip(given.iter()) {
+            arguments.push(arrays::argument(name, &value, &size.lengths())?);
         }
         Ok((arrays::states(&names, &arguments)?, arguments))
     }
 
-    fn lengths(&self, dims: &[Dim]) -> Vec<usize> {
-        dims.iter().map(|dim| dim.len(self.shape)).collect()
+    /// Row `index` of the table at these arguments, one state or many.
+    pub(crate) fn call<'py>(
+        &self,
+        py: Python<'py>,
+        index: usize,
+        kernel: &Kernel<'_>,
+        given: &Bound<'py, PyTuple>,
+        threads: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let signature = self.signatures.get(index).ok_or_else(|| PyValueError::new_err("found no such function"))?;
+        self.check_defined(py, signature.function)?;
+        let (states, arguments) = self.checked(signature, given)?;
+        let threads = batch::threads(threads.filter(|given| !given.is_none()))?;
+        let shape: Vec<usize> = states.into_iter().chain(signature.result.lengths()).collect();
+        let mut slices = Vec::with_capacity(arguments.len());
+        for argument in &arguments {
+            slices.push((argument.numbers()?, if argument.states.is_some() { argument.len } else { 0 }, argument.len));
+        }
+        let call = Call { kernel, arguments: slices, len: signature.result.len };
+        if shape.is_empty() {
+            let mut number = [0.0];
+            call.run(py, &mut number, threads)?;
+            return Ok(number[0].into_pyobject(py)?.into_any());
+        }
+        let out = arrays::output(py, &shape)?;
+        let mut numbers = out.try_readwrite().map_err(|error| PyValueError::new_err(error.to_string()))?;
+        call.run(py, numbers.as_slice_mut().map_err(|error| PyValueError::new_err(error.to_string()))?, threads)?;
+        drop(numbers);
+        Ok(out.into_any())
     }
 
     fn for_each_joint(
@@ -163,49 +226,71 @@ impl Robot {
 
 #[pymethods]
 impl Robot {
+    /// `like`: the same robot, of which only gravity, frames and the reference of wrenches differ.
     #[new]
-    #[pyo3(signature = (file, document, base, gravity, includes))]
-    fn new(py: Python<'_>, file: &str, document: &[u8], base: &str, gravity: [f64; 3], includes: bool) -> PyResult<Self> {
-        let base = base_of(base)?;
-        let options = Options { file: file.into(), base, ..Options::default() };
-        let sources: &(dyn Sources + Sync) = if includes { &Disk } else { &NoFiles };
-        let reading = py.detach(|| read_with(sources, document, &options)).map_err(|findings| errors::refused(py, &findings))?;
-        let model = Model::new(&reading.description, base).map_err(|error| {
-            let finding = Diagnostic::refusal(file, Place::DOCUMENT, Code::Model, error.to_string());
-            let mut all = Diagnostics::from(finding);
-            all.extend(reading.warnings.iter().cloned());
-            errors::refused(py, &all)
-        })?;
-        Ok(Self {
-            shape: model.shape(),
-            links: links(&reading.description, &model),
-            model: model.with_gravity(gravity),
-            warnings: reading.warnings,
-            unused: reading.unused.iter().map(ToString::to_string).collect(),
-            workspaces: Workspaces::default(),
-            lacks: OnceLock::new(),
-        })
-    }
-
-    fn _with_gravity(&self, gravity: [f64; 3]) -> Self {
-        self.with(self.model.clone().with_gravity(gravity))
-    }
-
-    fn _with_frames(&self, py: Python<'_>, names: Vec<String>) -> PyResult<Self> {
-        let all = self.model.frames();
-        let mut findings = Diagnostics::new("");
-        for name in names.iter().filter(|name| all.iter().all(|frame| frame.name != **name)) {
-            let known = all.iter().map(|frame| frame.name.as_str());
-            findings.unknown(
-                ((Default::default(), "frames"), Code::UnknownName),
-                (format!("{name:?}"), name),
-                "a frame of the robot",
-                known,
-            );
+    #[pyo3(signature = (file, document, base, gravity, wrenches_in, frames, append, payloads, locks, like=None))]
+    #[allow(clippy::too_many_arguments)] // Why: what makes a robot, one by one.
+    fn new(
+        py: Python<'_>,
+        file: &str,
+        document: &[u8],
+        base: &str,
+        gravity: [f64; 3],
+        wrenches_in: &str,
+        frames: Option<Vec<String>>,
+        append: Vec<AppendedRow>,
+        payloads: Vec<PayloadRow>,
+        locks: Vec<(String, Vec<f64>)>,
+        like: Option<&Bound<'_, Self>>,
+    ) -> PyResult<Self> {
+        let reference = reference_of(wrenches_in)?;
+        if let Some(like) = like {
+            let like = like.get();
+            let mut request = like.request.clone();
+            (request.options.robot.gravity, request.options.robot.wrench_reference) = (gravity, reference);
+            let mut model = like.model.clone().with_gravity(gravity).with_wrenches_in(reference);
+            if let Some(frames) = frames {
+                model = framed(py, model, &frames)?;
+                request.set_frames(&frames);
+            }
+            return Ok(Self::made(model, request, (like.links.clone(), like.warnings.clone(), like.unused.clone())));
         }
-        findings.result(()).map_err(|findings| errors::refused(py, &findings))?;
-        let model = self.model.clone().with_frames(&names);
-        Ok(self.with(model.map_err(|error| PyValueError::new_err(error.to_string()))?))
+        let mut request = Request::new(file, document);
+        let options = &mut request.options.robot;
+        (options.base, options.gravity, options.wrench_reference) = (base_of(base)?, gravity, reference);
+        options.append = append
+            .into_iter()
+            .map(|(file, document, at, prefix, xyz, rpy)| {
+                let origin = if rpy == [0.0; 3] { Origin::at(xyz) } else { Origin::new(xyz, rpy) };
+                Appended { document, file: file.into(), at: at.into(), prefix, origin }
+            })
+            .collect();
+        let payload =
+            |(link, mass, center_of_mass, inertia): PayloadRow| Payload { link, name: None, mass, center_of_mass, inertia }.into();
+        options.payloads = payloads.into_iter().map(payload).collect();
+        options.lock = locks.into_iter().map(Into::into).collect();
+        let built = py.detach(|| request.build_robot()).map_err(|findings| errors::refused(py, &findings))?;
+        let mut model = built.model;
+        let about = links(&built.reading.description, &model);
+        if let Some(frames) = frames {
+            model = framed(py, model, &frames)?;
+            request.set_frames(&frames);
+        }
+        let unused = built.reading.unused.iter().map(ToString::to_string).collect();
+        Ok(Self::made(model, request, (about, built.reading.warnings, unused)))
+    }
+
+    /// C99 of functions: its files, each with a name and a text. All names begin with `prefix`. `batch`:
+    /// functions of many states too.
+    fn _generate_c(&self, py: Python<'_>, functions: Vec<String>, prefix: String, batch: bool) -> PyResult<Vec<(String, String)>> {
+        let mut request = self.request.clone();
+        request.options.functions = functions.into_iter().map(Into::into).collect();
+        request.options.target = Target::C(COptions { prefix: Some(prefix), ..COptions::default() });
+        request.options.batch = if batch { vec![Real::F64] } else { Vec::new() };
+        request.options.stages = false;
+        let generated = py.detach(|| catch_unwind(AssertUnwindSafe(|| generate(&request)))).map_err(|_| batch::mistake())?;
+        let generated = generated.map_err(|findings| errors::refused(py, &findings))?;
+        Ok(generated.files.into_iter().map(|file| (file.name, file.text)).collect())
     }
 
     /// Row `index` of the table at these arguments, one state or many.
@@ -216,39 +301,22 @@ impl Robot {
         given: &Bound<'py, PyTuple>,
         threads: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let function = row(index)?;
-        self.check_defined(py, function)?;
-        let (states, arguments) = self.checked(function, given)?;
-        let threads = batch::threads(threads)?;
-
-        let mut shape = self.lengths(function.gives);
-        let len = shape.iter().product();
-        if let Some(states) = states {
-            shape.insert(0, states);
+        if index >= functions::<f64>().len() {
+            return Err(PyValueError::new_err("found no such function"));
         }
-        let mut slices = Vec::with_capacity(arguments.len());
-        for argument in &arguments {
-            slices.push((argument.numbers()?, if argument.states.is_some() { argument.len } else { 0 }, argument.len));
-        }
-        let call = Call { function, model: &self.model, workspaces: &self.workspaces, arguments: slices, len };
-        if shape.is_empty() {
-            let mut number = [0.0];
-            call.run(py, &mut number, threads)?;
-            return Ok(number[0].into_pyobject(py)?.into_any());
-        }
-        let out = arrays::output(py, &shape)?;
-        let mut numbers = out.try_readwrite().map_err(|error| PyValueError::new_err(error.to_string()))?;
-        call.run(py, numbers.as_slice_mut().map_err(|error| PyValueError::new_err(error.to_string()))?, threads)?;
-        drop(numbers);
-        Ok(out.into_any())
+        self.call(py, index, &self.kernel(index), given, threads)
     }
 
-    /// The arguments of row `index`, checked: the number of states, the arrays, and the shape of the result.
-    fn _arguments<'py>(&self, index: usize, given: &Bound<'py, PyTuple>) -> PyResult<(Option<usize>, Arrays<'py>, Vec<usize>)> {
-        let function = row(index)?;
-        let (states, arguments) = self.checked(function, given)?;
-        let shape = states.into_iter().chain(self.lengths(function.gives)).collect();
-        Ok((states, arguments.iter().map(|argument| argument.array()).collect(), shape))
+    /// "fixed" or "floating".
+    #[getter]
+    fn base(&self) -> &'static str {
+        name_of(self.request.options.robot.base)
+    }
+
+    /// What external wrenches are given in: "body", "world" or "world_aligned".
+    #[getter]
+    fn wrenches_in(&self) -> &'static str {
+        self.model.wrench_reference().name()
     }
 
     /// The robot's name.
@@ -271,14 +339,14 @@ impl Robot {
 
     /// Names of the frames, in the order of results.
     #[getter]
-    fn frames(&self) -> Vec<&str> {
-        self.model.frames().iter().map(|frame| frame.name.as_str()).collect()
+    fn frames<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.model.frames().iter().map(|frame| frame.name.as_str()))
     }
 
     /// Names of the moving links, in the order of `joint_wrenches`.
     #[getter]
-    fn links(&self) -> Vec<&str> {
-        self.links.iter().map(String::as_str).collect()
+    fn links<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.links)
     }
 
     /// Name, kind, range in q and range in v of each joint.
@@ -338,7 +406,7 @@ impl Robot {
 
     /// What the file says and the dynamics do not use.
     #[getter]
-    fn unused(&self) -> Vec<&str> {
-        self.unused.iter().map(String::as_str).collect()
+    fn unused<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.unused)
     }
 }

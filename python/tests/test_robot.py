@@ -152,6 +152,12 @@ def test_bad_options(options, error, message):
     assert message in str(found.value)
 
 
+def test_the_class_makes_no_robots():
+    for arguments in ((), ("panda_like",)):
+        with pytest.raises(TypeError, match="expected one of articulated.load, loads and bundled"):
+            articulated.Robot(*arguments)
+
+
 def test_bad_names():
     for bad in (3, None, b"panda_like", ["a"], "pando_like"):
         with pytest.raises(ValueError, match="name: found"):
@@ -165,13 +171,30 @@ def test_bad_names():
             articulated.loads(bad)
 
 
-def test_examples_of_the_documentation():
+def test_examples_of_the_documentation(tmp_path, monkeypatch):
     import doctest
+    import importlib.util
+    import os
+    import shutil
+    import webbrowser
     from pathlib import Path
+
+    from test_edits import GRIPPER
 
     assert doctest.testmod(articulated).failed == 0
     text = (Path(__file__).resolve().parent.parent / "README.md").read_text(encoding="utf-8")
-    scope = {}
-    first, *_ = text.split("```python\n")[1:]
-    exec(first.split("```")[0], scope)
-    assert scope["taus"].shape == (4096, 7) and scope["mass"].shape == (7, 7)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(webbrowser, "open", lambda url: True)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.setenv("ARTICULATED_CACHE", str(tmp_path / "cache"))
+    (tmp_path / "gripper.urdf").write_text(GRIPPER)
+    scope, run = {}, 0
+    needs = {"to_arrow": "pyarrow", "articulated.torch": "torch", "articulated.jax": "jax"}
+    for block in text.split("```python\n")[1:]:
+        code = block.split("```")[0]
+        is_there = all(importlib.util.find_spec(module) for word, module in needs.items() if word in code)
+        if is_there and (".compile(" not in code or shutil.which(os.environ.get("CC", "cc").split()[0])):
+            exec(code, scope)
+            run += 1
+    assert run >= 2 and scope["taus"].shape == (4096, 7) and scope["mass"].shape == (7, 7)
+    assert (scope["arm"].nv, scope["arm"].frames) == (7, ("hand_palm",))

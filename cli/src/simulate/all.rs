@@ -66,8 +66,8 @@ fn row(name: &'static str, arguments: &SimulateArguments, rustc: &Rustc) -> Resu
     let (generated, frames) = session.generate(settings.integrator)?;
     let robot = Straight::build(rustc, &generated).map_err(|e| Failure::tool(&e))?;
     let quiet = Progress::hidden();
-    let fast = motion::run(&session, &initial, Code::Generated(&robot, &frames), &settings, &quiet)?;
-    let slow = motion::run(&session, &initial, Code::Generic, &settings, &quiet)?;
+    let fast = motion::run(&session, &initial, Code::Generated(&robot, &frames), &settings, &quiet, &mut || true)?;
+    let slow = motion::run(&session, &initial, Code::Generic, &settings, &quiet, &mut || true)?;
     let (fast, slow) = (Summary::new(&session, &fast, &settings, "generated"), Summary::new(&session, &slow, &settings, "generic"));
     if let Some(error) = fast.error.as_ref().or(slow.error.as_ref()) {
         return Err(Failure::input([format!("{name}: {error}")]));

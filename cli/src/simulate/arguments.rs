@@ -6,7 +6,7 @@ use clap::{ArgGroup, Args};
 
 use super::page::Package;
 
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Default)]
 #[command(group = ArgGroup::new("written").args(["output", "mcap"]).multiple(true))]
 pub(crate) struct SimulateArguments {
     /// A bundled scene's name, or the path of a scene
@@ -58,6 +58,16 @@ pub(crate) struct SimulateArguments {
     /// ends only, nothing is drawn)
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) every: Option<f64>,
+    /// Whether a program has filled these in, whose messages name fields and not options.
+    #[arg(skip)]
+    pub(crate) is_program: bool,
+}
+
+impl SimulateArguments {
+    /// An option as messages name it.
+    pub(super) fn option(&self, name: &str) -> String {
+        if self.is_program { name.to_owned() } else { format!("--{name}") }
+    }
 }
 
 fn time(text: &str) -> Result<f64, String> {
@@ -68,7 +78,8 @@ fn seconds(text: &str) -> Result<f64, String> {
     text.trim().parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite()).ok_or_else(|| "expected a number of seconds greater than 0".into())
 }
 
-fn integrator(text: &str) -> Result<String, String> {
+/// The name of an integrator.
+pub(super) fn integrator(text: &str) -> Result<String, String> {
     let names = || articulated::simulate::integrators().iter().map(|i| i.name);
     if names().any(|name| name == text) {
         return Ok(text.to_owned());

@@ -26,6 +26,10 @@ pub(super) struct Files<'a> {
     packages: &'a [Package],
 }
 
+/// What messages call the path and the time between records.
+pub(super) const OPTIONS: [&str; 2] = ["--output", "--every"];
+pub(super) const FIELDS: [&str; 2] = ["path", "every"];
+
 enum Place<'a> {
     Folder(&'a Path),
     Page(&'a Path),
@@ -33,24 +37,27 @@ enum Place<'a> {
 
 impl<'a> Files<'a> {
     /// The folder of `--output`, made if it is not there, or the page, if the name ends with
-    /// `.html`. Errors: the name of a Parquet file; a page of the motion's ends.
-    pub(super) fn at(path: &'a Path, packages: &'a [Package], settings: &Settings) -> Result<Self, Failure> {
+    /// `.html`. `names`: [`OPTIONS`] or [`FIELDS`]. Errors: the name of a Parquet file; a page of
+    /// the motion's ends.
+    pub(super) fn at(path: &'a Path, packages: &'a [Package], settings: &Settings, names: [&str; 2]) -> Result<Self, Failure> {
         let ends = settings.output == Output::Ends;
+        let [output, every] = names;
         let named = |ending: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
         let refused =
-            |found: &str, expected: &str| Err(Failure::usage(format!("--output {}: found {found}, expected {expected}", path.display())));
+            |found: &str, expected: &str| Err(Failure::usage(format!("{output} {}: found {found}, expected {expected}", path.display())));
         if named("parquet") {
             let expected = "a folder: recording.csv is written into it, and pandas or polars make Parquet of that";
             return refused("the name of a Parquet file", expected);
         }
         if !is_page(path) {
-            output::folder("--output", path)?;
+            output::folder(output, path)?;
             return Ok(Self { place: Place::Folder(path), ends, packages });
         }
         if ends {
-            return refused("the name of a page", "a folder, as only the motion's ends are recorded; --every SECONDS records it all");
+            let expected = format!("a folder, as only the motion's ends are recorded; {every} SECONDS records it all");
+            return refused("the name of a page", &expected);
         }
-        output::file("--output", path)?;
+        output::file(output, path)?;
         Ok(Self { place: Place::Page(path), ends, packages })
     }
 

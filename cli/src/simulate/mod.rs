@@ -3,6 +3,7 @@
 mod all;
 pub(crate) mod arguments;
 mod files;
+pub mod in_process;
 mod label;
 mod mcap;
 mod monitor;
@@ -51,7 +52,7 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     }
     motion::solvable(&session)?;
     let size = Size::look_ahead(session.model.shape(), &mut settings, arguments)?;
-    let files = arguments.output.as_deref().map(|path| Files::at(path, &arguments.package, &settings)).transpose()?;
+    let files = arguments.output.as_deref().map(|path| Files::at(path, &arguments.package, &settings, files::OPTIONS)).transpose()?;
     arguments.mcap.as_deref().map_or(Ok(()), |path| output::file("--mcap", path))?;
     let progress = Progress::of_whole(format!("{}: motion", session.name));
     let (mut motion, code) = match arguments.generated {
@@ -93,12 +94,12 @@ fn by_generated_code(session: &Session, initial: &InitialState, settings: &Setti
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let robot = Straight::build(&rustc, &generated).map_err(|e| Failure::tool(&e))?;
     progress.doing(format!("{}: motion", session.name));
-    motion::run(session, initial, Code::Generated(&robot, &frames), settings, progress)
+    motion::run(session, initial, Code::Generated(&robot, &frames), settings, progress, &mut || true)
 }
 
 fn by_generic_code(session: &Session, initial: &InitialState, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
     if cfg!(debug_assertions) {
         console::warn("this command was built without optimisation: its speed means little");
     }
-    motion::run(session, initial, Code::Generic, settings, progress)
+    motion::run(session, initial, Code::Generic, settings, progress, &mut || true)
 }

@@ -70,16 +70,20 @@ pub(super) fn solvable(session: &Session) -> Result<(), Failure> {
     Ok(articulated_codegen::defined(file, model, &articulated_codegen::massless(model), FunctionId::forward_dynamics.row::<f64>())?)
 }
 
-/// Runs it by this code.
+/// Runs it by this code. `go_on` is called after each step, and returns false to stop the run.
 pub(super) fn run(
     session: &Session,
     initial: &InitialState,
     code: Code<'_>,
     settings: &Settings,
     progress: &Progress,
+    go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Motion, Failure> {
     let mut monitor = RunMonitor::new(session, settings, progress);
-    let (outcome, unavailable) = session.run(initial, code, settings, &mut |t, counts| monitor.look(t, counts))?;
+    let (outcome, unavailable) = session.run(initial, code, settings, &mut |t, counts| {
+        monitor.look(t, counts);
+        go_on()
+    })?;
     let Outcome { recording, occurrences, creep, ending, reached, ball, error, wall } = outcome;
     let (counts, balance) = (recording.counts, recording.balance.unwrap_or_default());
     let error = error.map(|e| e.to_string());

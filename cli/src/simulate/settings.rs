@@ -11,7 +11,8 @@ use articulated_lab::session::Session;
 pub(super) fn of(session: &Session, arguments: &SimulateArguments) -> Result<Settings, Failure> {
     let (scene, file) = (session.scene.simulation.as_ref(), &session.scene.file);
     if scene.is_none() && arguments.end.is_none() {
-        return Err(Failure::input([format!("{file}: simulation: found nothing, expected [simulation] with `end`, s, or --end here")]));
+        let end = arguments.option("end");
+        return Err(Failure::input([format!("{file}: simulation: found nothing, expected [simulation] with `end`, s, or {end} here")]));
     }
     let integrator = session.scene.default_integrator();
     let mut settings = scene.map_or_else(|| Settings { integrator, ..Settings::default() }, |s| s.settings.clone());
@@ -55,15 +56,19 @@ fn choose_steps(settings: &mut Settings, a: &SimulateArguments, file: &str) -> R
     }
     if let (false, None, Some(name)) = (settings.integrator.row().adaptive, settings.step, &a.integrator) {
         return Err(Failure::input([format!(
-            "--integrator {name}: found no length of its steps, expected --step, s, or `step` in [simulation] of {file}"
+            "{} {name}: found no length of its steps, expected {}, s, or `step` in [simulation] of {file}",
+            a.option("integrator"),
+            a.option("step")
         )]));
     }
     let Some(step) = settings.step else { return Ok(()) };
     let tolerances = [("rtol", a.rtol), ("atol", a.atol)].into_iter().filter(|(_, given)| given.is_some());
-    let by = if a.step.is_some() { "--step".to_owned() } else { format!("`step` in [simulation] of {file}") };
+    let by = if a.step.is_some() { a.option("step") } else { format!("`step` in [simulation] of {file}") };
     let message = |(option, _)| {
         format!(
-            "--{option}: found a fixed step of {step:?} s ({by}), which no tolerance chooses, expected an integrator that chooses its steps, as --integrator dopri5"
+            "{}: found a fixed step of {step:?} s ({by}), which no tolerance chooses, expected an integrator that chooses its steps, as {} dopri5",
+            a.option(option),
+            a.option("integrator")
         )
     };
     let lines: Vec<String> = tolerances.map(message).collect();
@@ -80,7 +85,7 @@ fn message(problem: &SettingError, a: &SimulateArguments, file: &str) -> String 
         ("output", "every", a.every.is_some()),
     ];
     match options.iter().find(|(key, _, given)| *key == problem.key && *given) {
-        Some((_, option, _)) => format!("--{option}: found {}, expected {}", problem.found, problem.right),
+        Some((_, option, _)) => format!("{}: found {}, expected {}", a.option(option), problem.found, problem.right),
         None => format!("{file}: {problem}"),
     }
 }

@@ -3,12 +3,15 @@
 use super::recording::{Named, Recording};
 use crate::table::plain;
 
-/// A column of a file.
+/// A column of a table of a motion.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Column {
-    pub(super) title: String,
-    pub(super) unit: String,
-    pub(super) values: Vec<f64>,
+pub struct Column {
+    /// Its title, as `q.elbow`.
+    pub title: String,
+    /// Its unit; empty for a number without one.
+    pub unit: String,
+    /// A number for each time.
+    pub values: Vec<f64>,
 }
 
 const MOMENTUM: [&str; 6] = ["angular.x", "angular.y", "angular.z", "linear.x", "linear.y", "linear.z"];

@@ -1,5 +1,6 @@
 //! Console output: lines on the two streams, and progress on a terminal.
 
+use std::cell::RefCell;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
@@ -41,7 +42,28 @@ pub fn refuse(text: &str) {
     let _ = io::stderr().lock().write_all(harmless(text).as_bytes());
 }
 
+thread_local! {
+    /// Where this thread's lines go instead of the standard error stream.
+    static COLLECTED: RefCell<Option<Vec<String>>> = const { RefCell::new(None) };
+}
+
+/// Runs, and returns the warnings and notes that this thread would have written meanwhile, without
+/// their level. For programs that are not a command.
+pub fn collect<T>(run: impl FnOnce() -> T) -> (T, Vec<String>) {
+    let before = COLLECTED.replace(Some(Vec::new()));
+    let out = run();
+    (out, COLLECTED.replace(before).unwrap_or_default())
+}
+
+/// Whether a line was collected.
+fn is_collected(text: &str) -> bool {
+    COLLECTED.with_borrow_mut(|lines| lines.as_mut().map(|lines| lines.push(text.to_owned())).is_some())
+}
+
 fn say(level: &str, colour: &str, text: &str) {
+    if is_collected(text) {
+        return;
+    }
     let mut stream = io::stderr().lock();
     let coloured = stream.is_terminal() && std::env::var_os("NO_COLOR").is_none();
     let level = if coloured { format!("\x1b[1;{colour}m{level}\x1b[0m") } else { level.to_owned() };
@@ -176,7 +198,13 @@ impl Drop for Progress {
 
 #[cfg(test)]
 mod tests {
-    use super::{Bar, harmless};
+    use super::{Bar, collect, harmless, warn};
+
+    #[test]
+    fn lines_of_a_program_are_collected() {
+        assert_eq!(collect(|| warn("a\nb")), ((), vec!["a\\nb".to_owned()]));
+        assert_eq!(collect(|| collect(|| warn("inner")).1.len()), (1, vec![]));
+    }
 
     #[test]
     fn what_moves_the_cursor_or_turns_the_direction_is_escaped() {

@@ -95,13 +95,13 @@ impl Session {
     }
 
     /// Runs the motion, by generated code or by the generic library; `look` sees the time and the
-    /// counts after each step. The outcome, and what the scene looks for and the code has not.
+    /// counts after each step, and returns false to stop the run. The outcome, and what the scene looks for and the code has not.
     pub fn run(
         &self,
         initial: &InitialState,
         code: Code<'_>,
         settings: &Settings,
-        look: &mut dyn FnMut(f64, &Counts),
+        look: &mut dyn FnMut(f64, &Counts) -> bool,
     ) -> Result<(Outcome, Vec<String>), MotionErrors> {
         match code {
             Code::Generic => self.run_by(initial, (&self.model, &self.frame_names()), settings, look),
@@ -114,15 +114,12 @@ impl Session {
         initial: &InitialState,
         (robot, frames): (&R, &[S]),
         settings: &Settings,
-        look: &mut dyn FnMut(f64, &Counts),
+        look: &mut dyn FnMut(f64, &Counts) -> bool,
     ) -> Result<(Outcome, Vec<String>), MotionErrors> {
         let mut motion = self.motion(robot, frames, settings.clone())?;
         let unavailable: Vec<String> = motion.unavailable_events().iter().map(ToString::to_string).collect();
         unavailable.iter().for_each(|line| console::warn(line));
-        let outcome = motion.run(initial, &mut |t, counts| {
-            look(t, counts);
-            true
-        })?;
+        let outcome = motion.run(initial, look)?;
         Ok((outcome, unavailable))
     }
 

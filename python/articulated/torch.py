@@ -1,0 +1,66 @@
+"""Functions of a robot on tensors of PyTorch, with exact derivatives for ``backward``.
+
+>>> import articulated, articulated.torch, torch                        # doctest: +SKIP
+>>> robot = articulated.bundled("panda_like")                           # doctest: +SKIP
+>>> q = torch.zeros(7, dtype=torch.float64, requires_grad=True)         # doctest: +SKIP
+>>> articulated.torch.gravity_torque(robot, q).sum().backward()         # doctest: +SKIP
+
+Tensors are of float64 on the CPU, and shared with NumPy without a copy. Derivatives are first ones.
+"""
+
+try:
+    import torch
+except ImportError as _error:
+    raise ImportError("articulated.torch: found no PyTorch, expected it to be installed: pip install torch") from _error
+
+from . import _gradients
+
+
+class _Function(torch.autograd.Function):
+    @staticmethod
+    def forward(ctx, robot, name, threads, *tensors):
+        ctx.of = robot, name, threads
+        ctx.save_for_backward(*tensors)
+        return torch.from_numpy(_gradients.value(robot, name, threads, [tensor.detach().numpy() for tensor in tensors]))
+
+    @staticmethod
+    @torch.autograd.function.once_differentiable
+    def backward(ctx, gradient):
+        arrays = [tensor.detach().numpy() for tensor in ctx.saved_tensors]
+        found = _gradients.gradients(*ctx.of, arrays, gradient.detach().numpy())
+        needed = ctx.needs_input_grad[3:]
+        return None, None, None, *(torch.from_numpy(one) if is_needed else None for one, is_needed in zip(found, needed))
+
+
+def _tensor(name, value):
+    if not isinstance(value, torch.Tensor):
+        try:
+            return torch.as_tensor(value, dtype=torch.float64)
+        except (TypeError, ValueError, RuntimeError) as error:
+            raise TypeError(f"{name}: found {type(value).__name__} ({error}), expected a tensor") from None
+    if value.dtype != torch.float64 or value.device.type != "cpu" or value.layout != torch.strided:
+        found = f"{value.dtype} on {value.device}, {value.layout}"
+        raise TypeError(f"{name}: found {found}, expected a dense tensor of torch.float64 on the CPU: {name}.double().cpu()")
+    return value
+
+
+def _wrapper(name):
+    def function(robot, *arguments, threads=None, **named):
+        takes, _ = _gradients.sizes(robot, name)
+        arguments = _gradients.in_order(name, arguments, named)
+        tensors = [_tensor(argument, value) for (argument, _), value in zip(takes, arguments)]
+        batch = _gradients.batch_shape(tensors, takes)
+        # Gradients of what is broadcast are summed by PyTorch.
+        return _Function.apply(robot, name, threads, *(tensor.expand(batch + shape) for tensor, (_, shape) in zip(tensors, takes)))
+
+    return _gradients.document(function, name, "Tensors of float64 on the CPU")
+
+
+for _name in _gradients.RULES:
+    globals()[_name] = _wrapper(_name)
+
+__all__ = list(_gradients.RULES)
+
+
+def __getattr__(name):
+    return _gradients.rule(__name__, name)

@@ -1,0 +1,118 @@
+"""Robots with joints held, loads, and other robots on them; external wrenches in other axes."""
+
+import pickle
+import warnings
+
+import articulated
+import numpy as np
+import pytest
+
+ROBOT = articulated.bundled("panda_like")
+GRIPPER = """<robot name="gripper"><link name="palm"><inertial><mass value="0.5"/><inertia ixx="1e-3" ixy="0" ixz="0" iyy="1e-3" iyz="0" izz="1e-3"/>
+</inertial></link><link name="finger"><inertial><origin xyz="0 0 0.02"/><mass value="0.1"/><inertia ixx="1e-4" ixy="0" ixz="0" iyy="1e-4" iyz="0" izz="1e-4"/>
+</inertial></link><joint name="grip" type="prismatic"><parent link="palm"/><child link="finger"/><axis xyz="0 1 0"/>
+<limit lower="0" upper="0.04" effort="10" velocity="1"/></joint></robot>"""
+
+
+def test_a_locked_joint_leaves_the_coordinates():
+    name = ROBOT.joints[3].name
+    held = ROBOT.lock(name, -0.4)
+    assert held.nq == held.nv == 6 and name not in [joint.name for joint in held.joints] and held.frames == ROBOT.frames
+    rest = [k for k in range(7) if k != 3]
+    rng = np.random.default_rng(0)
+    q, v, a = ROBOT.random_configuration(rng), rng.normal(size=7), rng.normal(size=7)
+    q[3], v[3], a[3] = -0.4, 0, 0
+    near = dict(rtol=0, atol=1e-12)
+    np.testing.assert_allclose(held.inverse_dynamics(q[rest], v[rest], a[rest]), ROBOT.inverse_dynamics(q, v, a)[rest], **near)
+    np.testing.assert_allclose(held.placements(q[rest]), ROBOT.placements(q), **near)
+    both = ROBOT.lock({ROBOT.joints[0].name: 0.1, ROBOT.joints[6].name: np.array([0.2])})
+    assert both.nv == 5 and ROBOT.lock(ROBOT.joints[0].name, 0.1).lock(ROBOT.joints[6].name, [0.2]).nv == 5
+
+
+def test_a_load_adds_its_weight():
+    q = ROBOT.random_configuration(1)
+    loaded = ROBOT.payload("link_7", 2.0, (0.0, 0.1, 0.2))
+    assert loaded.moving_mass == pytest.approx(ROBOT.moving_mass + 2)
+    frame = ROBOT.placements_matrices(q)[ROBOT.frames.index("link_7")]
+    jacobian = ROBOT.jacobians_world(q)[ROBOT.frames.index("link_7")]
+    place, force = frame[:3, :3] @ [0.0, 0.1, 0.2] + frame[:3, 3], np.array([0, 0, -2 * 9.81])
+    wrench = np.concatenate([np.cross(place, force), force])
+    np.testing.assert_allclose(loaded.gravity_torque(q), ROBOT.gravity_torque(q) - jacobian.T @ wrench, rtol=0, atol=1e-10)
+    point = ROBOT.payload("link_7", 2.0)
+    body = ROBOT.payload("link_7", 2.0, inertia=np.diag([0.1, 0.2, 0.25]))
+    six = ROBOT.payload("link_7", 2.0, inertia=[0.1, 0, 0, 0.2, 0, 0.25])
+    np.testing.assert_array_equal(body.mass_matrix(q), six.mass_matrix(q))
+    assert np.linalg.eigvalsh(body.mass_matrix(q) - point.mass_matrix(q)).min() > -1e-12
+
+
+def test_a_gripper_is_appended(tmp_path):
+    gripper = articulated.loads(GRIPPER, name="gripper.urdf")
+    both = ROBOT.append(gripper, "link_7", "left_", (0, 0, 0.1), (0, 0, 0.5))
+    assert both.nv == 8 and both.joints[-1].name == "left_grip" and {"left_palm", "left_finger"} <= set(both.frames)
+    path = tmp_path / "gripper.urdf"
+    path.write_text(GRIPPER)
+    q = both.random_configuration(0)
+    np.testing.assert_array_equal(ROBOT.append(path, at="link_7", prefix="left_", position=(0, 0, 0.1), rpy=(0, 0, 0.5)).placements(q), both.placements(q))
+    # Edits are made in one order, whatever the order of calls: append, load, lock.
+    held = both.lock("left_grip", 0.02).payload("left_palm", 0.1)
+    other = both.payload("left_palm", 0.1).lock("left_grip", 0.02)
+    np.testing.assert_array_equal(held.mass_matrix(q[:7]), other.mass_matrix(q[:7]))
+    with pytest.raises(ValueError, match="other: found a robot with edits"):
+        ROBOT.append(held, "link_7")
+
+
+def test_edits_are_kept():
+    robot = ROBOT.lock(ROBOT.joints[0].name, 0.3).payload("link_7", 1.0).with_gravity((0, 1, -5)).with_frames(["link_7"]).with_wrenches_in("world")
+    q = robot.random_configuration(0)
+    for other in (pickle.loads(pickle.dumps(robot)), robot.with_gravity((0, 0, 0)).with_gravity((0, 1, -5))):
+        assert (other.nv, other.frames, other.wrenches_in, other.gravity.tolist()) == (6, ("link_7",), "world", [0, 1, -5])
+        np.testing.assert_array_equal(other.gravity_torque(q), robot.gravity_torque(q))
+    assert robot.lock(robot.joints[0].name).nv == 5 and robot.lock(robot.joints[0].name).frames == ("link_7",)
+
+
+def test_wrenches_in_other_axes():
+    q = ROBOT.random_configuration(2)
+    wrenches = np.random.default_rng(0).normal(size=(len(ROBOT.frames), 6))
+    for reference in ("body", "world", "world_aligned"):
+        robot = ROBOT.with_wrenches_in(reference)
+        assert robot.wrenches_in == reference and articulated.bundled("panda_like", wrenches_in=reference).wrenches_in == reference
+        jacobians = robot.call(f"jacobians_{reference}", q)
+        expected = robot.gravity_torque(q) - np.einsum("fij,fi->j", jacobians, wrenches)
+        np.testing.assert_allclose(robot.static_torque(q, wrenches), expected, rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("edit, error, message", [
+    (lambda r: r.lock("no_such"), articulated.RobotError, "no_such"),
+    (lambda r: r.lock("joint_1", [0, 0]), articulated.RobotError, "joint_1"),
+    (lambda r: r.lock("joint_1", np.nan), ValueError, "at: found [nan], expected finite numbers"),
+    (lambda r: r.lock(3), TypeError, "joint: found int, expected a name"),
+    (lambda r: r.lock("joint_1", "x"), TypeError, "at: found dtype <U1"),
+    (lambda r: r.payload("no_such", 1.0), articulated.RobotError, "no_such"),
+    (lambda r: r.payload("link_7", -1.0), articulated.RobotError, ""),
+    (lambda r: r.payload("link_7", np.inf), ValueError, "mass: found inf, expected a finite number"),
+    (lambda r: r.payload("link_7", 1.0, (0, 0)), ValueError, "center_of_mass: found shape (2,)"),
+    (lambda r: r.payload("link_7", 1.0, inertia=np.zeros((2, 2))), ValueError, "inertia: found shape (2, 2)"),
+    (lambda r: r.payload("link_7", 1.0, inertia=np.arange(9.0).reshape(3, 3)), ValueError, "inertia: found a matrix that is not symmetric"),
+    (lambda r: r.append("no_such.urdf", "link_7"), articulated.RobotError, "no_such.urdf"),
+    (lambda r: r.append(3, "link_7"), TypeError, "other: found int, expected the name of a file"),
+    (lambda r: r.append(articulated.loads(GRIPPER), "no_such"), articulated.RobotError, "no_such"),
+    (lambda r: r.append(articulated.loads(GRIPPER), "link_7", position=(0, 0)), ValueError, "position: found shape (2,)"),
+    (lambda r: r.append(r, "link_7"), articulated.RobotError, ""),
+    (lambda r: r.with_wrenches_in("wordl"), ValueError, "wrenches_in: found 'wordl', expected \"body\", \"world\" or \"world_aligned\""),
+])
+def test_bad_edits(edit, error, message):
+    with pytest.raises(error) as found:
+        edit(ROBOT)
+    assert message in str(found.value)
+
+
+def test_warnings_of_edits_are_new_ones():
+    odd = GRIPPER.replace('ixx="1e-4"', 'ixx="9"')
+    with pytest.warns(articulated.RobotWarning):
+        gripper = articulated.loads(odd)
+    with pytest.warns(articulated.RobotWarning) as caught:
+        ROBOT.append(gripper, "link_7")
+    assert caught[0].filename == __file__
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        gripper.lock("grip", 0.01)

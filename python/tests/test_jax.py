@@ -1,0 +1,108 @@
+"""Derivatives for JAX. Skipped where it is not installed."""
+
+import articulated
+import numpy as np
+import pytest
+
+jax = pytest.importorskip("jax", reason="JAX (pip install jax) is not installed: no derivatives for it to test")
+jax.config.update("jax_enable_x64", True)
+import articulated.jax  # noqa: E402
+from articulated import _gradients  # noqa: E402
+
+ROBOTS = ["double_pendulum", "panda_like", "quadruped", "spinning_top", "gripper_arm"]
+
+
+def draw(robot, name, rng):
+    out = []
+    for argument, shape in _gradients.sizes(robot, name)[0]:
+        if argument in ("q", "target"):
+            q = robot.random_configuration(rng)
+            # Quaternions of any length.
+            out.append(q * rng.uniform(0.7, 1.4) if robot.nq != robot.nv else q)
+        else:
+            out.append(rng.normal(size=shape))
+    return out
+
+
+def differences(function, arguments, k):
+    """∂(function)/∂(argument k) by central differences, and their error."""
+    out = []
+    for h in (1e-5, 2e-5):
+        columns = []
+        for index in np.ndindex(arguments[k].shape):
+            step = np.zeros(arguments[k].shape)
+            step[index] = h
+            values = [np.asarray(function(*arguments[:k], arguments[k] + sign * step, *arguments[k + 1 :])) for sign in (1, -1)]
+            columns.append((values[0] - values[1]) / (2 * h))
+        out.append(np.stack(columns, axis=-1).reshape(columns[0].shape + arguments[k].shape))
+    better = (4 * out[0] - out[1]) / 3
+    return better
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("name", _gradients.RULES)
+def test_jacobians_are_those_of_differences(robot, name):
+    robot = articulated.bundled(robot)
+    robot = robot.with_frames(robot.frames[-2:])
+    arguments = draw(robot, name, np.random.default_rng(5))
+    function = lambda *x: getattr(articulated.jax, name)(robot, *x)  # noqa: E731
+    value = lambda *x: _gradients.value(robot, name, None, x)  # noqa: E731
+    np.testing.assert_array_equal(function(*arguments), value(*arguments))
+    found = jax.jacrev(function, argnums=tuple(range(len(arguments))))(*arguments)
+    for k, jacobian in enumerate(found):
+        expected = differences(value, arguments, k)
+        assert jacobian.shape == expected.shape
+        np.testing.assert_allclose(jacobian, expected, rtol=0, atol=1e-7 * max(1.0, np.abs(expected).max()))
+
+
+def test_batches_and_transformations():
+    robot = articulated.bundled("panda_like")
+    rng = np.random.default_rng(0)
+    q, v, tau = robot.random_configuration(rng, 6), rng.normal(size=(6, 7)), rng.normal(size=(6, 7))
+    expected = robot.forward_dynamics(q, v, tau)
+    function = lambda q, v, tau: articulated.jax.forward_dynamics(robot, q, v, tau, threads=2)  # noqa: E731
+    for found in (function(q, v, tau), jax.vmap(function)(q, v, tau), jax.jit(jax.vmap(function))(q, v, tau)):
+        np.testing.assert_array_equal(found, expected)
+    np.testing.assert_array_equal(articulated.jax.forward_dynamics(robot, q, tau=tau, v=v), expected)
+    one = jax.vmap(function, in_axes=(0, None, None))(q, v[0], tau[0])
+    np.testing.assert_array_equal(one, robot.forward_dynamics(q, v[0], tau[0]))
+    gradient = jax.jit(jax.grad(lambda *x: function(*x).sum(), argnums=(0, 1, 2)))(q, v[0], tau[0])
+    assert [part.shape for part in gradient] == [(6, 7), (7,), (7,)]
+    derivatives = robot.forward_dynamics_derivatives(q, v[0], tau[0])
+    np.testing.assert_allclose(gradient[0], derivatives[:, 0].sum(axis=1), rtol=1e-12, atol=1e-9)
+    np.testing.assert_allclose(gradient[1], derivatives[:, 1].sum(axis=(0, 1)), rtol=1e-12, atol=1e-9)
+    nested = jax.vmap(jax.vmap(function))(q.reshape(2, 3, 7), v.reshape(2, 3, 7), tau.reshape(2, 3, 7))
+    np.testing.assert_array_equal(nested.reshape(6, 7), expected)
+
+
+def test_compiled_functions_and_single_precision():
+    import os
+    import shutil
+
+    robot = articulated.bundled("panda_like")
+    q = robot.random_configuration(1)
+    if shutil.which(os.environ.get("CC", "cc").split()[0]):
+        compiled = robot.compile(["gravity_torque", "inverse_dynamics_derivatives"])
+        run = lambda of: jax.jacrev(lambda q: articulated.jax.gravity_torque(of, q))(q)  # noqa: E731
+        np.testing.assert_allclose(run(compiled), run(robot), rtol=0, atol=1e-10)
+    with jax.enable_x64(False) if hasattr(jax, "enable_x64") else jax.experimental.disable_x64():
+        tau = articulated.jax.gravity_torque(robot, q)
+        assert tau.dtype == np.float32
+        np.testing.assert_allclose(tau, robot.gravity_torque(q.astype(np.float32)), rtol=1e-6, atol=1e-5)
+
+
+def test_bad_calls():
+    robot = articulated.bundled("panda_like")
+    q = np.zeros(7)
+    for call, error, message in (
+        (lambda: articulated.jax.gravity_torque(robot, q[:6]), ValueError, "q: found shape \\(6,\\), expected \\(7,\\)"),
+        (lambda: articulated.jax.gravity_torque(robot), TypeError, "gravity_torque: found 0 arguments after the robot, expected 1: q"),
+        (lambda: articulated.jax.gravity_torque(robot, q, q=q), TypeError, "gravity_torque: found 'q' by name"),
+        (lambda: articulated.jax.gravity_torque(robot, p=q), TypeError, "gravity_torque: found 'p' by name"),
+        (lambda: articulated.jax.gravity_torque("panda", q), TypeError, "robot: found str"),
+        (lambda: articulated.jax.gravity_torque(robot, q * 1j), TypeError, "q: found dtype complex128"),
+        (lambda: articulated.jax.bias_forces(robot, np.zeros((2, 7)), np.zeros((3, 7))), ValueError, "do not fit"),
+        (lambda: articulated.jax.mass_matrix, AttributeError, "found 'mass_matrix', which has no derivative here"),
+    ):
+        with pytest.raises(error, match=message):
+            call()
