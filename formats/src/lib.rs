@@ -41,11 +41,13 @@
 //! * A reader reports all findings to one [`Diagnostics`] and continues as far as it can.
 //! * Only [`Sources`] open files. [`read`] opens none.
 
+mod cycles;
 mod files;
 mod format;
 mod reading;
 mod snap;
 pub mod urdf;
+mod xml;
 
 #[cfg(doc)]
 use articulated_core::description::Description;
