@@ -44,6 +44,7 @@
 mod cycles;
 mod files;
 mod format;
+pub mod mjcf;
 mod reading;
 mod snap;
 pub mod urdf;

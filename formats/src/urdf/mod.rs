@@ -75,6 +75,7 @@ pub use write::write;
 use crate::xml::document;
 use crate::xml::element::Tag;
 use crate::xml::lines::Lines;
+use crate::xml::markup;
 use crate::{Format, Input, Options};
 
 /// The format of URDF files.
@@ -91,7 +92,7 @@ impl Format for Urdf {
     }
 
     fn recognizes(&self, bytes: &[u8]) -> bool {
-        bytes.windows(6).any(|window| window == b"<robot")
+        markup::root(bytes) == Some(b"robot")
     }
 
     fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Description> {
