@@ -18,6 +18,11 @@ pub trait Format: Sync + std::panic::RefUnwindSafe {
     /// Whether a document looks like one of this format.
     fn recognizes(&self, bytes: &[u8]) -> bool;
 
+    /// Whether a document may include other files.
+    fn includes_files(&self) -> bool {
+        false
+    }
+
     /// The robot of a document. Reports all findings; `None` if there is an error, or no robot.
     fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Description>;
 }

@@ -251,6 +251,13 @@ pub(crate) fn check(root: &Element, log: &mut Diagnostics) {
             }
         }
         for child in element.children.iter().filter(|child| !has(row.tags, &child.name)) {
+            // MuJoCo accepts these and does not read them.
+            if row.name == "mujoco" && ["body", "frame", "replicate"].contains(&child.name.as_str()) {
+                let found = format!("<{}> outside of <worldbody>", child.name);
+                child.warning((&subject, ""), Code::Misplaced, found, "it inside <worldbody>, where alone it counts; ignored", log);
+                child.unused(&subject, None, "in no place where it counts", log);
+                continue;
+            }
             match reason(row.unused_tags, &child.name) {
                 // Each of the tags in a section, or the section where there are none.
                 Some(why) if row.name == "mujoco" && !child.children.is_empty() => {

@@ -54,6 +54,10 @@ impl Format for Mjcf {
         markup::root(bytes).is_some_and(|name| name.eq_ignore_ascii_case(b"mujoco"))
     }
 
+    fn includes_files(&self) -> bool {
+        true
+    }
+
     fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Description> {
         let documents = documents::Documents::read(input, diagnostics)?;
         let name = documents.root(0).text("model").filter(|name| !name.trim().is_empty()).unwrap_or("robot");

@@ -119,32 +119,33 @@ impl<'a> Values<'a> {
         Pose { position: self.exactly("pos", log).unwrap_or_default(), rotation: self.orientation(angles, log) }
     }
 
-    /// The orientation: one of the alternatives, of the nearest class that has one, or else `quat`.
+    /// The orientation, of the nearest class that has one.
     pub(crate) fn orientation(&self, angles: &Angles, log: &mut Diagnostics) -> Quaternion {
-        const ALTERNATIVES: [&str; 4] = ["axisangle", "xyaxes", "zaxis", "euler"];
-        for layer in &self.layers {
-            let given = ALTERNATIVES.iter().chain(&["quat"]).filter(|name| layer.attribute(name).is_some());
-            if given.clone().count() > 1 {
-                let found = given.copied().collect::<Vec<_>>().join(" and ");
-                layer.error((&self.subject, "orientation"), Code::TwoRotations, found, "one of them", log);
+        const FORMS: [&str; 5] = ["quat", "axisangle", "xyaxes", "zaxis", "euler"];
+        let forms = |layer: &&Element| -> Vec<&str> { FORMS.into_iter().filter(|name| layer.attribute(name).is_some()).collect() };
+        let with = self.layers.iter().map(|layer| (*layer, forms(layer))).find(|(_, forms)| !forms.is_empty());
+        let with = match with {
+            None => return IDENTITY,
+            Some((_, forms)) if forms.len() == 1 => forms.first().copied(),
+            Some((layer, forms)) => {
+                layer.error((&self.subject, "orientation"), Code::TwoRotations, forms.join(" and "), "one of them", log);
                 return IDENTITY;
             }
-        }
-        let with = self.layers.iter().find_map(|layer| ALTERNATIVES.iter().find(|name| layer.attribute(name).is_some()));
+        };
         let found = match with {
-            Some(&"axisangle") => self.exactly("axisangle", log).map(|[x, y, z, angle]| {
+            Some("axisangle") => self.exactly("axisangle", log).map(|[x, y, z, angle]| {
                 unit([x, y, z]).map(|axis| about(axis, angles.radians(angle))).ok_or(("axisangle", "an axis that is not zero"))
             }),
-            Some(&"xyaxes") => self.exactly("xyaxes", log).map(|[a, b, c, x, y, z]| {
+            Some("xyaxes") => self.exactly("xyaxes", log).map(|[a, b, c, x, y, z]| {
                 let axes = unit([a, b, c]).and_then(|first| {
                     let second = unit(subtract([x, y, z], scale(first, dot(first, [x, y, z]))))?;
                     Some(of_axes(first, second, unit(cross(first, second))?))
                 });
                 axes.ok_or(("xyaxes", "two axes that are not zero and not parallel"))
             }),
-            Some(&"zaxis") => self.exactly("zaxis", log).map(|z| unit(z).map(of_z_axis).ok_or(("zaxis", "an axis that is not zero"))),
-            Some(_) => self.exactly("euler", log).map(|euler| Ok(angles.euler(euler))),
-            None => self.exactly::<4>("quat", log).map(|quat| {
+            Some("zaxis") => self.exactly("zaxis", log).map(|z| unit(z).map(of_z_axis).ok_or(("zaxis", "an axis that is not zero"))),
+            Some("euler") => self.exactly("euler", log).map(|euler| Ok(angles.euler(euler))),
+            _ => self.exactly::<4>("quat", log).map(|quat| {
                 let length = norm([norm([quat[0], quat[1], quat[2]]), quat[3], 0.0]);
                 if length > TINY && length.is_finite() { Ok(quat) } else { Err(("quat", "a quaternion that is not zero")) }
             }),
