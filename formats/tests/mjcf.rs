@@ -305,7 +305,7 @@ fn copies_and_depth_are_bounded() {
 
 #[test]
 fn no_part_of_a_file_makes_the_reader_panic() {
-    let text = include_str!("corpus/arm.xml");
+    let text = include_str!("corpus/mjcf/arm.xml");
     assert!(accepted(text).warnings.len() < 3);
     for end in (0..text.len()).filter(|end| text.is_char_boundary(*end)) {
         drop(read(text[..end].as_bytes(), &options()));

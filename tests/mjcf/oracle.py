@@ -50,14 +50,17 @@ def main():
     python = environment()
     if Path(sys.executable).resolve() != python.resolve() and "MJCF_ORACLE" not in os.environ:
         build()
-        code = subprocess.run([str(python), *sys.argv], env={**os.environ, "MJCF_ORACLE": "1"}).returncode
+        words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in sys.argv]
+        # MuJoCo writes a log into the folder that it runs in.
+        code = subprocess.run([str(python), *words], cwd=PLACE, env={**os.environ, "MJCF_ORACLE": "1"}).returncode
         sys.exit(code)
     if arguments.file:
         verdict, numbers = compare(Path(arguments.file))
         print(verdict, *(f"{name}: {value:.1e}" for name, value in sorted(numbers.items())), sep="\n  ")
         sys.exit(verdict != "equal")
+    own = HERE / "models"
     rows = {}
-    for name, path in packages(arguments):
+    for name, path in [("files of this folder", own), *packages(arguments)]:
         rows[name] = files_of(path)
         counts = collections.Counter(verdict.split(":")[0] for _, verdict, _ in rows[name])
         print(f"{name}: " + ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items())), flush=True)
@@ -156,6 +159,7 @@ def compare(path):
     import numpy as np
 
     warnings.simplefilter("ignore")
+    mujoco.set_mju_user_warning(lambda text: None)
     try:
         mujoco.MjModel.from_xml_path(str(path))
         spec = mujoco.MjSpec.from_file(str(path))
