@@ -337,6 +337,9 @@ impl Build {
 
     fn write_in(&self, folder: &Path, name: &str) -> Result<Written, Diagnostics> {
         let mut request = self.request()?;
+        for (included, _) in request.options.robot.included.files() {
+            println!("cargo::rerun-if-changed={}", from_root(included).display());
+        }
         request.options.stages = false;
         let path = file_in(folder, name)?;
         if let Target::C(c) = &mut request.options.target {
@@ -363,12 +366,17 @@ impl Build {
                 scene.without_robot("no URDF", "urdf; a bundled robot is known to the command line alone: give its URDF with Build::urdf"),
             ),
             (None, "") => {}
-            (_, file) => request.document = loader.read(file.as_ref(), &self.robot, "urdf", &mut log).unwrap_or_default(),
+            (_, file) => {
+                request.document = loader.read(file.as_ref(), &self.robot, "urdf", &mut log).unwrap_or_default();
+                loader.include(file, &request.document, request.options.robot.formats);
+            }
         }
         for other in &mut request.options.robot.append {
             let span = other.file.span.clone().unwrap_or_default();
             other.document = loader.read(other.file.value.as_ref(), &span, "append.urdf", &mut log).unwrap_or_default();
+            loader.include(&other.file.value, &other.document, request.options.robot.formats);
         }
+        request.options.robot.included = loader.included.clone();
         if !log.is_ok() {
             // Mistakes in the words of the request are mistakes without the robot too.
             check_words(&request, &mut log);

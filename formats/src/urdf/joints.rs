@@ -1,15 +1,15 @@
 //! The tag `<joint>`.
 
-use super::markup::hint;
+use crate::xml::markup::hint;
 use articulated_core::description::{JointDynamics, JointKind};
 use articulated_core::diagnostic::{Code, Diagnostics, Place, Subject, quote};
 use articulated_core::suggest::nearest;
 
 use super::ast::{DraftJoint, DraftMimic, Reference, has_one_coordinate};
-use super::element::Tag;
-use super::number::{self, attribute, attribute_list};
 use super::robot::{Context, Version};
 use super::{frame, limits, unused, xacro};
+use crate::xml::element::Tag;
+use crate::xml::number::{self, attribute, attribute_list};
 
 const TAGS: [&str; 9] = ["origin", "parent", "child", "axis", "axis2", "thread", "limit", "dynamics", "mimic"];
 

@@ -1,6 +1,6 @@
 //! Which joint follows which.
 
-use super::markup::hint;
+use crate::xml::markup::hint;
 use articulated_core::diagnostic::{Code, Diagnostics, Place, quote};
 use std::collections::HashMap;
 
@@ -8,9 +8,9 @@ use articulated_core::listed;
 use articulated_core::suggest::Suggester;
 
 use super::ast::{DraftJoint, DraftMimic, has_one_coordinate};
-use super::cycles::{around, cycles};
 use super::joints::kinds_with;
 use super::xacro::is_expression;
+use crate::cycles::{around, cycles};
 
 /// For each joint, the joints that it follows.
 pub(crate) struct Leaders {
