@@ -21,7 +21,7 @@ const COMMIT: &str = match option_env!("ARTICULATED_COMMIT") {
 
 /// Options that do not apply to motions: reading and editing of a robot, which a scene determines,
 /// and functions and states to measure.
-const OF_FUNCTIONS: [&str; 15] = [
+const OF_FUNCTIONS: [&str; 16] = [
     "floating",
     "fixed",
     "gravity",
@@ -30,6 +30,7 @@ const OF_FUNCTIONS: [&str; 15] = [
     "rename",
     "append",
     "payload",
+    "coupling",
     "lock",
     "frames",
     "wrenches_in",

@@ -3,7 +3,7 @@
 use std::ffi::OsStr;
 use std::path::PathBuf;
 
-use articulated_core::description::{Origin, Payload};
+use articulated_core::description::{Coupling, Origin, Payload};
 use articulated_core::spatial::Reference;
 use clap::Args;
 use clap::builder::{OsStringValueParser, TypedValueParser};
@@ -21,6 +21,10 @@ pub(crate) struct Edits {
     /// be given several times
     #[arg(long, value_name = "LINK=MASS[@X,Y,Z[:XX,XY,XZ,YY,YZ,ZZ]]", value_parser = payload)]
     pub(crate) payload: Vec<Payload>,
+    /// Let a joint follow others: its coordinate is the sum of coefficient times coordinate of each, and the
+    /// offset; may be given several times
+    #[arg(long, value_name = "JOINT=LEADER:COEFFICIENT[,…][,OFFSET]", value_parser = coupling)]
+    pub(crate) coupling: Vec<Coupling>,
     /// Lock a joint at its coordinates (rad or m; a quaternion as x,y,z,w); may be given several
     /// times. Links that nothing moves any more count as the base's: energy and centre of mass are
     /// of the links that move
@@ -65,6 +69,24 @@ fn lock(text: &str) -> Result<Lock, String> {
     // The last: a name may have one too, a number has none.
     let (joint, at) = text.rsplit_once('=').ok_or("expected JOINT=VALUE, as elbow=0.5")?;
     Ok(Lock { joint: joint.to_owned(), at: numbers(at)? })
+}
+
+fn coupling(text: &str) -> Result<Coupling, String> {
+    const EXPECTED: &str =
+        "expected JOINT=LEADER:COEFFICIENT,LEADER:COEFFICIENT, as pitch=m1:0.5,m2:-0.5, with an offset at the end if there is one";
+    let (joint, rest) = text.split_once('=').ok_or(EXPECTED)?;
+    let mut coupling = Coupling { joint: joint.to_owned(), ..Coupling::default() };
+    let mut terms: Vec<&str> = rest.split(',').collect();
+    if let Some(last) = terms.last().filter(|last| !last.contains(':')) {
+        [coupling.offset] = exactly(last, "one number for the offset")?;
+        terms.pop();
+    }
+    for term in terms {
+        let (leader, coefficient) = term.rsplit_once(':').ok_or(EXPECTED)?;
+        let [coefficient] = exactly(coefficient, "one number for the coefficient")?;
+        coupling.leaders.push((leader.to_owned(), coefficient));
+    }
+    if coupling.leaders.is_empty() { Err(EXPECTED.to_owned()) } else { Ok(coupling) }
 }
 
 fn payload(text: &str) -> Result<Payload, String> {
@@ -126,6 +148,15 @@ fn numbers(text: &str) -> Result<Vec<f64>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_coupling_is_a_name_and_leaders_with_coefficients() {
+        let leaders = vec![("m1".to_owned(), 0.5), ("m:2".to_owned(), -0.5)];
+        let expected = Coupling { joint: "pitch".into(), leaders, offset: 0.1 };
+        assert_eq!(coupling("pitch=m1:0.5,m:2:-0.5,0.1"), Ok(expected.clone()));
+        assert_eq!(coupling("pitch=m1:0.5,m:2:-0.5"), Ok(Coupling { offset: 0.0, ..expected }));
+        assert!(["pitch", "pitch=", "pitch=0.1", "pitch=m1:x", "pitch=m1,m2:1"].into_iter().all(|text| coupling(text).is_err()));
+    }
 
     #[test]
     fn a_lock_is_a_name_and_numbers() {

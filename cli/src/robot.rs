@@ -210,6 +210,7 @@ fn edit(options: &mut Options, edits: &Edits) -> Result<(), Failure> {
         options.robot.append.push(Appended { document, file, at, prefix: other.prefix.clone(), origin: other.origin });
     }
     options.robot.payloads.extend(edits.payload.iter().cloned().map(Into::into));
+    options.robot.coupling.extend(edits.coupling.iter().cloned().map(Into::into));
     options.robot.lock.extend(edits.lock.iter().map(|lock| (lock.joint.clone(), lock.at.clone()).into()));
     Ok(())
 }

@@ -9,7 +9,7 @@ use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Spa
 use articulated_scene::{Loader, Robot, beside};
 
 use crate::cache::Cache;
-use crate::{Appended, Base, Generated, Origin, Payload, Real, Reference, Request, Target, check_words, generate, scene};
+use crate::{Appended, Base, Coupling, Generated, Origin, Payload, Real, Reference, Request, Target, check_words, generate, scene};
 
 /// Generates a robot's code from a build script.
 ///
@@ -186,6 +186,13 @@ impl Build {
     #[must_use]
     pub fn wrenches_in(mut self, reference: Reference) -> Self {
         self.request.options.robot.wrench_reference = reference;
+        self
+    }
+
+    /// Lets a joint follow others: differential and tendon drives.
+    #[must_use]
+    pub fn coupling(mut self, coupling: Coupling) -> Self {
+        self.request.options.robot.coupling.push(coupling.into());
         self
     }
 

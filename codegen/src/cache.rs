@@ -123,13 +123,14 @@ mod tests {
 
     #[test]
     fn whatever_changes_the_output_changes_the_key() {
-        let changes: [fn(&mut Request); 10] = [
+        let changes: [fn(&mut Request); 11] = [
             |r| r.document.push(b' '),
             |r| r.file.push('2'),
             |r| r.options.robot.base = Base::Floating,
             |r| r.options.robot.gravity[0] = -0.0,
             |r| r.options.functions.push("mass_matrix".into()),
             |r| r.options.robot.payloads.push(Payload { link: "tool".into(), mass: 1.0, ..Payload::default() }.into()),
+            |r| r.options.robot.coupling.push(crate::Coupling { joint: "elbow".into(), ..crate::Coupling::default() }.into()),
             |r| r.options.robot.lock.push(("elbow".to_owned(), vec![0.1]).into()),
             |r| r.options.robot.append[1].document.push(b'd'),
             |r| r.options.robot.append[1].document[0] = b'd',

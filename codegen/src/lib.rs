@@ -67,7 +67,7 @@ use function_groups::Group;
 use plan::Plan;
 
 pub use articulated_core as core;
-pub use articulated_core::description::{Base, Origin, Payload, Shaft};
+pub use articulated_core::description::{Base, Coupling, Origin, Payload, Shaft};
 pub use articulated_core::diagnostic;
 pub use articulated_core::effect::Applied;
 pub use articulated_core::lanes::Real;

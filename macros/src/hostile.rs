@@ -34,6 +34,7 @@ const WORDS: [&str; 24] = [
     "::",
     "functions",
     "urdf",
+    "coupling",
     "lock",
     "99999999999999999999",
 ];

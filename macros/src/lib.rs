@@ -57,6 +57,7 @@ mod tree;
 ///         parameters = [payload(tool), inertia(fore), origin(wrist)], // default: none. Constants that become inputs
 ///         frames = [tool, "left foot"], // default: all. The links whose frames are computed
 ///         wrenches_in = body, // the reference of wrench arguments; or world, world_aligned
+///         coupling = { pitch = { joint = [m1, m2], coefficients = [0.5, -0.5], offset = 0.0 } }, // default: none. A joint that follows others
 ///         lock = { elbow = 0.5, ball = [0.0, 0.0, 0.0, 1.0] }, // default: none. rad or m; a quaternion as x, y, z, w
 ///         payload = { link = tool, mass = 1.2, center_of_mass = [0.0, 0.0, 0.1] }, // default: none. One or a list; also `inertia` (six numbers), `name`
 ///         append = { urdf = "gripper.urdf", at = tool, prefix = "left_" }, // default: none. Another robot, or a list; also `xyz`, `rpy`

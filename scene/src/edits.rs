@@ -1,7 +1,7 @@
 //! What a scene does to the robot before a model is made of it: joints locked, loads attached,
 //! robots appended, links renamed.
 
-use articulated_core::description::{Origin, Payload, Rotation};
+use articulated_core::description::{Coupling, Origin, Payload, Rotation};
 use articulated_core::diagnostic::{At, Code, Diagnostics};
 
 use crate::table::{Row, Spot};
@@ -16,6 +16,17 @@ pub struct Lock {
     pub at: Vec<f64>,
     /// Its place in the scene.
     pub place: At,
+}
+
+/// A joint that follows others.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Follower {
+    /// How it follows.
+    pub coupling: Coupling,
+    /// Its place in the scene.
+    pub place: At,
+    /// Joints and coefficients as the scene lists them.
+    lists: (Vec<String>, Vec<f64>),
 }
 
 /// A load on a link.
@@ -53,6 +64,51 @@ pub(crate) fn locks(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Lock> {
     };
     entries.iter().filter_map(lock).collect()
 }
+
+/// `{ joint = { joint = […], coefficients = […], offset = 0 }, … }`.
+pub(crate) fn followers(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Follower> {
+    let entries = spot.entries(log, "a table of joints, as { pitch = { joint = [\"m1\", \"m2\"], coefficients = [0.5, -0.5] } }");
+    let follower = |entry| {
+        let (value, mut one) = (spot.of(entry), Follower { place: entry.at, ..Follower::default() });
+        let before = log.count();
+        value.read(FOLLOWER, &mut one, log);
+        let (joints, coefficients) = std::mem::take(&mut one.lists);
+        if log.count() == before && joints.len() != coefficients.len() {
+            value.bad(log, format!("{} joints and {} coefficients", joints.len(), coefficients.len()), "as many coefficients as joints");
+        }
+        one.coupling.joint.clone_from(&entry.name);
+        one.coupling.leaders = joints.into_iter().zip(coefficients).collect();
+        (log.count() == before).then_some(one)
+    };
+    entries.iter().filter_map(follower).collect()
+}
+
+const FOLLOWER: &[Row<Follower>] = &[
+    Row {
+        name: "joint",
+        required: true,
+        value: "texts",
+        default: "",
+        what: "the joints that are followed",
+        read: |f, s, log| f.lists.0 = s.texts(log, "a list of joints, as [\"m1\", \"m2\"]").unwrap_or_default(),
+    },
+    Row {
+        name: "coefficients",
+        required: true,
+        value: "numbers",
+        default: "",
+        what: "d(own coordinate)/d(coordinate) of each of them",
+        read: |f, s, log| f.lists.1 = s.some_numbers(log, "a list of finite numbers").unwrap_or_default(),
+    },
+    Row {
+        name: "offset",
+        required: false,
+        value: "number, rad or m",
+        default: "0",
+        what: "own coordinate where theirs are zero",
+        read: |f, s, log| f.coupling.offset = s.number(log).unwrap_or_default(),
+    },
+];
 
 /// One number or several.
 pub(crate) fn coordinates(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Vec<f64>> {

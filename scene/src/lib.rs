@@ -56,7 +56,7 @@ pub use articulated_core::control::{Aim, Controller, Series};
 pub use articulated_core::settings::{Output, Settings, Stiffness};
 pub use calls::Calls;
 pub use control::{Control, Drive, PerJoint, Target};
-pub use edits::{Append, Load, Lock};
+pub use edits::{Append, Follower, Load, Lock};
 pub use effects::{Edited, EffectRequest, Numbers, Resolved, Selector, still};
 pub use impact::{Impact, When};
 pub use initial::{BaseState, Coordinates, Initial, Named};

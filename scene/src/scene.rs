@@ -12,7 +12,7 @@ use articulated_formats::{SNAP_EXPECTED, can_snap};
 
 use crate::control::{self, Control};
 use crate::document;
-use crate::edits::{self, APPEND, Append, LOAD, Load, Lock};
+use crate::edits::{self, APPEND, Append, Follower, LOAD, Load, Lock};
 use crate::effects::{self, EffectRequest};
 use crate::impact::{self, Impact};
 use crate::initial::{self, Initial};
@@ -74,6 +74,8 @@ pub struct CodeOptions {
     pub frames: Option<Vec<String>>,
     /// What the wrenches that functions take refer to.
     pub wrenches_in: Option<Reference>,
+    /// Joints that follow others.
+    pub coupling: Vec<Follower>,
     /// Joints to lock.
     pub lock: Vec<Lock>,
     /// Loads.
@@ -308,6 +310,14 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         default: "`\"body\"`",
         what: "what the wrenches that functions take refer to",
         read: |s, spot, log| s.code.wrenches_in = spot.word(log, REFERENCES),
+    },
+    Row {
+        name: "coupling",
+        required: false,
+        value: "table: joint = { joint, coefficients, offset }",
+        default: "none",
+        what: "joints that follow others: q = Σ coefficient · q of each + offset",
+        read: |s, spot, log| s.code.coupling = edits::followers(spot, log),
     },
     Row {
         name: "lock",

@@ -189,18 +189,18 @@ fn batches(text: &mut String, robot: &str, name: &str, shape: Shape, generated: 
                 );
                 at += n;
             }
-            let _ = writeln!(text, "        {ty} *y = malloc(blocks * {per} * {} * sizeof({ty}));", results.max(1));
-            let _ = writeln!(text, "        for (size_t k = 0; k < blocks * {per} * {results}; k++) {{ y[k] = ({ty})NAN; }}");
+            let _ = writeln!(text, "        {ty} *found = malloc(blocks * {per} * {} * sizeof({ty}));", results.max(1));
+            let _ = writeln!(text, "        for (size_t k = 0; k < blocks * {per} * {results}; k++) {{ found[k] = ({ty})NAN; }}");
             let list: String = (0..lengths.len()).map(|k| format!("a{k}, ")).collect();
             let count = if per == 1 { "(size_t)states" } else { "blocks" };
-            let _ = writeln!(text, "        {robot}_{name}_{form}_{real}({count}, {list}y);");
+            let _ = writeln!(text, "        {robot}_{name}_{form}_{real}({count}, {list}found);");
             let _ = writeln!(
                 text,
-                "        for (size_t s = 0; s < (size_t)states; s++) {{\n            for (size_t k = 0; k < {results}; k++) {{ out[k] = (double)y[(s / {per} * {results} + k) * {per} + s % {per}]; }}\n            \
+                "        for (size_t s = 0; s < (size_t)states; s++) {{\n            for (size_t k = 0; k < {results}; k++) {{ out[k] = (double)found[(s / {per} * {results} + k) * {per} + s % {per}]; }}\n            \
                  fwrite(out, sizeof(double), {results}, stdout);\n        }}"
             );
             (0..lengths.len()).for_each(|k| _ = writeln!(text, "        free(a{k});"));
-            let _ = writeln!(text, "        free(y);\n        return 0;\n    }}");
+            let _ = writeln!(text, "        free(found);\n        return 0;\n    }}");
         }
     }
 }

@@ -37,7 +37,7 @@ pub(crate) fn program(spec: FunctionSpec, model: &Model<f64>, parameters: &[Para
     let candidate = Candidate { model, parameters, stages: options.stages, alike: None };
     let reduced = spec.reduced();
     let columns = columns::columns(&reduced, model, can);
-    let whole = (columns.is_none() || can.states).then(|| candidate.build(&reduced, None));
+    let whole = (columns.is_none() || can.states || can.scalar_too).then(|| candidate.build(&reduced, None));
     let unsolved = columns.as_ref().and(reduced.parts[0].function.unsolved.as_ref());
     let mut best = match &whole {
         Some(whole) if unsolved.is_none() => whole.clone(),

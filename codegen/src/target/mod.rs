@@ -84,7 +84,7 @@ impl Target {
     pub(crate) fn capabilities(&self, options: &Options) -> Capabilities {
         match self {
             Self::Rust(rust) => rust::capabilities(options, rust),
-            Self::C(_) => c::capabilities(options),
+            Self::C(c) => c::capabilities(options, c),
         }
     }
 

@@ -233,6 +233,10 @@ impl Editing<'_> {
             self.springs.push(result.as_ref().ok().cloned());
             self.take(&at, result.map(drop), log);
         }
+        for coupling in &options.coupling {
+            let at = Entry::named(coupling, format!("coupling.{}", coupling.joint), "coupling");
+            self.take(&at, editor.couple(coupling), log);
+        }
         for lock in &options.lock {
             let (joint, coordinates) = &lock.value;
             let at = Entry::named(lock, format!("lock.{joint}"), "lock");

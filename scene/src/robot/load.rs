@@ -263,6 +263,7 @@ impl Scene {
             .collect();
         options.payloads = code.payload.into_iter().map(|load| self.span(load.payload, load.place)).collect();
         options.shafts = self.shafts.iter().map(|asked| self.span(asked.shaft.clone(), asked.place)).collect();
+        options.coupling = code.coupling.into_iter().map(|follower| self.span(follower.coupling, follower.place)).collect();
         options.lock = code.lock.into_iter().map(|lock| self.span((lock.joint, lock.at), lock.place)).collect();
         options.allow_unphysical_inertia = code.allow_unphysical_inertia.unwrap_or(options.allow_unphysical_inertia);
         options.snap_angles = code.snap_angles;

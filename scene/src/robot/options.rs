@@ -1,6 +1,6 @@
 //! What is requested of a robot before anything is computed.
 
-use articulated_core::description::{Base, Origin, Payload, Shaft};
+use articulated_core::description::{Base, Coupling, Origin, Payload, Shaft};
 use articulated_core::diagnostic::Spanned;
 use articulated_core::effect::Applied;
 use articulated_core::model::GRAVITY;
@@ -30,6 +30,9 @@ pub struct RobotOptions {
     /// [`shaft`](articulated_core::description::Description::shaft). Their springs and dampings
     /// have to be among the effects. Those of the scene come first.
     pub shafts: Vec<Spanned<Shaft>>,
+    /// Joints that follow others, see
+    /// [`couple`](articulated_core::description::Description::couple).
+    pub coupling: Vec<Spanned<Coupling>>,
     /// Joints to lock and their coordinates, see
     /// [`lock`](articulated_core::description::Description::lock); also joints of appended robots.
     pub lock: Vec<Spanned<(String, Vec<f64>)>>,
@@ -92,6 +95,7 @@ impl Default for RobotOptions {
             append: Vec::new(),
             payloads: Vec::new(),
             shafts: Vec::new(),
+            coupling: Vec::new(),
             lock: Vec::new(),
             effects: Vec::new(),
             allow_unphysical_inertia: false,

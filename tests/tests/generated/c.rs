@@ -77,7 +77,10 @@ static MANY: LazyLock<Vec<Robot>> = LazyLock::new(|| {
         robot("tree", &tree, Base::Floating, "f64", false, &short),
         robot("gripper_arm", bundled("gripper_arm"), Base::Fixed, "f64", false, &short),
         robot("quadruped", bundled("quadruped"), Base::Floating, "f64", false, &|name| ["inverse_dynamics", "mass_matrix"].contains(&name)),
-        robot("strider", include_str!("../../robots/strider.urdf"), Base::Floating, "f64", false, &short),
+        robot("strider", include_str!("../../robots/strider.urdf"), Base::Floating, "f64", false, &|name| {
+            short(name) || name == "forward_dynamics_derivatives"
+        }),
+        robot("seven_axes", bundled("panda_like"), Base::Fixed, "f64", false, &|name| name == "forward_dynamics_derivatives"),
         robot("stone", "<robot name='stone'><link name='stone'/></robot>", Base::Fixed, "f64", false, &|_| true),
     ]
 });
@@ -120,6 +123,8 @@ fn c_of_many_states_gives_what_the_generic_library_gives() {
 fn c_with_and_without_vectors_gives_what_the_generic_library_gives() {
     let in_lanes = MANY.iter().filter(|r| r.generated.source.contains("_LIMBS\n")).count();
     assert!(in_lanes >= 2, "{in_lanes} robots have limbs in lanes");
+    let solves = MANY.iter().filter(|r| r.generated.source.contains("_columns(out);")).count();
+    assert!(solves >= 2, "{solves} robots solve for many columns in a loop");
     for (vectors, program) in WAYS.iter() {
         for robot in MANY.iter() {
             let unit = if robot.generated.level.is_single() { f64::from(f32::EPSILON) / f64::EPSILON } else { 1.0 };

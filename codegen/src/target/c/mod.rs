@@ -5,6 +5,7 @@
 
 mod batch;
 mod casadi;
+mod columns;
 mod constants;
 mod lanes;
 mod limbs;
@@ -38,9 +39,11 @@ pub struct COptions {
 }
 
 /// Numbers, and vectors where compilers have them; in pieces where a function is long. The compiler decides what waits in memory.
-pub(super) fn capabilities(options: &Options) -> Capabilities {
+pub(super) fn capabilities(options: &Options, c: &COptions) -> Capabilities {
     let (vectors, states) = (options.level.has_lanes(), !options.batch.is_empty());
-    Capabilities { level: options.level, vectors, raw_memory: true, scalar_too: true, loops: false, spills: false, states }
+    // CasADi needs to know which numbers are zero, which loops hide.
+    let loops = vectors && !c.casadi;
+    Capabilities { level: options.level, vectors, raw_memory: true, scalar_too: true, loops, spills: false, states }
 }
 
 /// Reports a level that C does not have, and a prefix that is not a name.
@@ -182,9 +185,13 @@ impl Source<'_> {
         };
     }
 
-    /// Functions, behind the vectors and the mathematical functions of the module's own that they
-    /// call.
+    /// Functions, behind the loop, the vectors and the mathematical functions of the module's own
+    /// that they call.
     fn with_math(&self, functions: &str) -> String {
+        let solved =
+            self.module.functions.iter().find_map(|f| f.columns).filter(|_| functions.contains(&format!("{}_columns(", self.prefix)));
+        let linkage = if self.header_only { "static inline" } else { "static" };
+        let functions = &(solved.map_or(String::new(), |columns| columns::text(&self.prefix, linkage, columns)) + functions);
         let batch = if functions.contains("_lanes_f") { self.module.request.options.batch.as_slice() } else { &[] };
         let vectors: String = batch.iter().map(|real| lanes::text(&self.prefix, *real, self.no_libm, functions)).collect();
         let text = vectors + &lanes::of_limbs(&self.prefix, self.no_libm, functions) + functions;
@@ -268,16 +275,17 @@ impl Source<'_> {
 
     /// The function, with vectors where compilers have them and without where they have not.
     fn function(&self, out: &mut String, function: &Function) {
-        let body = (&function.body, function.ending);
+        let body = (&function.body, function.ending, function.columns.is_some());
         let Some((scalar, ending)) = &function.scalar else { return self.of_body(out, function, body) };
         let _ = writeln!(out, "#if {}_LIMBS", self.upper);
         self.of_body(out, function, body);
         let _ = writeln!(out, "#else");
-        self.of_body(out, function, (scalar, *ending));
+        self.of_body(out, function, (scalar, *ending, false));
         let _ = writeln!(out, "#endif\n");
     }
 
-    fn of_body(&self, out: &mut String, function: &Function, (body, ending): (&Body, Ending)) {
+    /// `solves`: the loop over columns follows, for what the body leaves out.
+    fn of_body(&self, out: &mut String, function: &Function, (body, ending, solves): (&Body, Ending, bool)) {
         let names = self.names(function);
         if body.pieces.len() > 1 {
             self.pieces(out, function, body);
@@ -293,6 +301,9 @@ impl Source<'_> {
                 let _ = writeln!(out, "    {} m[{}];", self.value(body), body.kept);
                 (0..pieces.len()).for_each(|c| _ = writeln!(out, "    {}({}, m);", self.piece(function, c), names.join(", ")));
             }
+        }
+        if solves {
+            let _ = writeln!(out, "    {}_columns(out);", self.prefix);
         }
         let _ = writeln!(out, "}}\n");
     }

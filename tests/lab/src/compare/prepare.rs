@@ -116,9 +116,9 @@ impl Plan {
 
     /// Which compilers of C there are, if they were `requested`.
     pub(super) fn note_of_c(&self, requested: bool) -> Option<String> {
-        let all: Vec<&str> = self.compilers.iter().map(|cc| cc.version.as_str()).collect();
-        let found = if all.is_empty() { "no compiler of C was found".to_owned() } else { format!("C by {}", all.join(" and by ")) };
-        requested.then(|| format!("{found}, with {}", Cc::flags().join(" ")))
+        let all: Vec<String> = self.compilers.iter().map(|cc| format!("{} {}", cc.version, cc.flags().join(" "))).collect();
+        let found = if all.is_empty() { "no compiler of C was found".to_owned() } else { format!("C by {}", all.join("; by ")) };
+        requested.then_some(found)
     }
 
     /// The function of many states.

@@ -73,6 +73,9 @@ fn edits(module: &Module<'_>) -> Vec<String> {
     for shaft in &o.robot.shafts {
         lines.push(format!("Bends: {} of fixed joint {:?}.", pieces(shaft.segments), shaft.joint));
     }
+    for c in values(&o.robot.coupling) {
+        lines.push(format!("Follows: joint {:?}: {:?}, offset {:?}.", c.joint, c.leaders, c.offset));
+    }
     for (joint, at) in values(&o.robot.lock) {
         lines.push(format!("Locked: joint {joint:?} at {at:?}."));
     }
