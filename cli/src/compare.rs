@@ -6,7 +6,7 @@ use articulated_core::lanes::Real;
 use articulated_lab::compare::{Settings, measure};
 use clap::Args;
 
-use crate::arguments::{Format, RobotArguments, real, types_of_batch};
+use crate::arguments::{Format, Language, RobotArguments, real, types_of_batch};
 use crate::edits::FrameArguments;
 use crate::failure::{Failure, OK};
 use crate::names::{self, Names, known};
@@ -29,6 +29,9 @@ pub(crate) struct CompareArguments {
     /// Also compare batches of many states, with these number types: f64, f32
     #[arg(long, value_name = "TYPES", value_delimiter = ',', value_parser = real)]
     pub(crate) batch: Vec<Real>,
+    /// Also compare the same functions in this language, by each of its compilers that is installed: c
+    #[arg(long, value_enum, default_value = "rust")]
+    pub(crate) language: Language,
     /// A peer library to time beside them; may be given several times. It is run: name only
     /// libraries that you trust
     #[arg(long, value_name = "LIBRARY")]
@@ -76,6 +79,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
     let settings = Settings {
         functions: names::flat(&arguments.functions),
         batch: arguments.batch.clone(),
+        c: arguments.language == Language::C,
         peer: arguments.peer.clone(),
         peers_manifest: arguments.peers_manifest.clone(),
         repetitions: arguments.repetitions,

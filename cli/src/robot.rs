@@ -9,7 +9,7 @@ use articulated_codegen::{Appended, Generated, MOST_FREEDOMS, Options, Request, 
 use articulated_core::description::Base;
 use articulated_core::diagnostic::{Diagnostic, Diagnostics, summary, values};
 use articulated_core::model::Model;
-use articulated_formats::{MOST_BYTES, nearest_file, read_at_most};
+use articulated_formats::{Disk, Included, MOST_BYTES, nearest_file, read_at_most};
 use articulated_scene::BuiltRobot;
 
 use crate::arguments::{RobotArguments, names_in_rust};
@@ -62,8 +62,9 @@ impl Robot {
         options.robot.snap_angles = arguments.snap_angles;
         options.rename = arguments.rename.iter().cloned().map(Into::into).collect();
         options.max_code_size = arguments.max_code_size.unwrap_or(options.max_code_size);
+        options.robot.included = included(&file, &document);
         edit(&mut options, &arguments.edits)?;
-        let files = path.iter().cloned().chain(appended(&arguments.edits)).collect();
+        let files = files(path.iter().cloned(), &arguments.edits, &options);
         Ok(Self { file, scene: None, document, options, effects: None, path, bundled: bundled.is_some(), files })
     }
 
@@ -87,7 +88,7 @@ impl Robot {
         edit(options, &arguments.edits)?;
         // The scene's effects on all joints are those of the robot as it is now.
         let Request { document, file, options, scene } = request;
-        let files = prepared.files.into_iter().chain(appended(&arguments.edits)).collect();
+        let files = files(prepared.files.into_iter(), &arguments.edits, &options);
         Ok(Self { file, scene: Some(name.display().to_string()), document, options, effects: scene, path: None, bundled, files })
     }
 
@@ -204,6 +205,7 @@ pub(crate) fn has_room(file: &str, nv: usize) -> Result<(), Failure> {
 fn edit(options: &mut Options, edits: &Edits) -> Result<(), Failure> {
     for other in &edits.append {
         let (file, document) = document(&other.file, &[])?;
+        options.robot.included.extend(included(&file, &document));
         let (file, at) = (file.into(), other.at.clone().into());
         options.robot.append.push(Appended { document, file, at, prefix: other.prefix.clone(), origin: other.origin });
     }
@@ -212,9 +214,16 @@ fn edit(options: &mut Options, edits: &Edits) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The files of the robots to append.
-fn appended(edits: &Edits) -> impl Iterator<Item = PathBuf> + '_ {
-    edits.append.iter().map(|other| other.file.clone()).filter(|file| file.is_file())
+/// All files that a robot is read from: these, those of the robots to append, and included ones.
+fn files(own: impl Iterator<Item = PathBuf>, edits: &Edits, options: &Options) -> Vec<PathBuf> {
+    let appended = edits.append.iter().map(|other| other.file.clone()).filter(|file| file.is_file());
+    own.chain(appended).chain(options.robot.included.files().map(|(path, _)| path.to_owned())).collect()
+}
+
+/// The files that a document includes.
+fn included(file: &str, document: &[u8]) -> Included {
+    let options = articulated_formats::Options { file: file.to_owned(), ..articulated_formats::Options::default() };
+    articulated_formats::included(&Disk, Path::new(""), document, &options)
 }
 
 /// A file's name for messages, and its bytes: of a bundled robot by its name, the standard input,

@@ -9,7 +9,7 @@ use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Spa
 use articulated_scene::{Loader, Robot, beside};
 
 use crate::cache::Cache;
-use crate::{Appended, Base, Generated, Origin, Payload, Real, Reference, Request, check_words, generate, scene};
+use crate::{Appended, Base, Generated, Origin, Payload, Real, Reference, Request, Target, check_words, generate, scene};
 
 /// Generates a robot's code from a build script.
 ///
@@ -64,7 +64,7 @@ impl From<String> for BatchType {
 /// What a build script wrote.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
-    /// The file.
+    /// The file; of C the header.
     pub path: PathBuf,
     /// What looks wrong in the document and was used as written: a line for each sort of warning.
     pub warnings: Vec<String>,
@@ -214,6 +214,24 @@ impl Build {
         self
     }
 
+    /// Another language than Rust, for a build script that also compiles it. `write("arm")` writes
+    /// `$OUT_DIR/arm.h`, and `arm.c` unless one header is requested; the prefix of all names is
+    /// `arm`, or that of the options. Calls for Rust alone, as [`Build::no_std`], make the language
+    /// Rust again.
+    ///
+    /// ```no_run
+    /// // build.rs, beside the crate `cc`
+    /// use articulated_codegen::{Build, COptions, Target};
+    ///
+    /// Build::new("robots/arm.urdf").functions(["inverse_dynamics"]).language(Target::C(COptions::default())).write("arm");
+    /// // cc::Build::new().file(format!("{}/arm.c", std::env::var("OUT_DIR").unwrap())).compile("arm");
+    /// ```
+    #[must_use]
+    pub fn language(mut self, target: Target) -> Self {
+        self.request.options.target = target;
+        self
+    }
+
     /// Code that depends on nothing but `core` and `std`: no implementation of the trait
     /// `Dynamics`.
     #[must_use]
@@ -319,8 +337,15 @@ impl Build {
 
     fn write_in(&self, folder: &Path, name: &str) -> Result<Written, Diagnostics> {
         let mut request = self.request()?;
+        for (included, _) in request.options.robot.included.files() {
+            println!("cargo::rerun-if-changed={}", from_root(included).display());
+        }
         request.options.stages = false;
         let path = file_in(folder, name)?;
+        if let Target::C(c) = &mut request.options.target {
+            c.prefix.get_or_insert_with(|| name.to_owned());
+            return write_c(folder, &request);
+        }
         let cache = Cache::new(&path, &request);
         if let Some(warnings) = cache.as_ref().and_then(Cache::warnings) {
             return Ok(Written { path, warnings, generated: false });
@@ -328,10 +353,7 @@ impl Build {
         let generated = generate(&request)?;
         let warnings = summary(&generated.warnings);
         cache.iter().for_each(Cache::forget);
-        // An unchanged file keeps its date, so that nothing is compiled again.
-        if !fs::read_to_string(&path).is_ok_and(|old| old == generated.source) {
-            fs::write(&path, &generated.source).map_err(|e| file_error(&path.display().to_string(), e.to_string()))?;
-        }
+        write_changed(&path, &generated.source)?;
         cache.iter().for_each(|cache| cache.remember(&warnings));
         Ok(Written { path, warnings, generated: true })
     }
@@ -344,12 +366,17 @@ impl Build {
                 scene.without_robot("no URDF", "urdf; a bundled robot is known to the command line alone: give its URDF with Build::urdf"),
             ),
             (None, "") => {}
-            (_, file) => request.document = loader.read(file.as_ref(), &self.robot, "urdf", &mut log).unwrap_or_default(),
+            (_, file) => {
+                request.document = loader.read(file.as_ref(), &self.robot, "urdf", &mut log).unwrap_or_default();
+                loader.include(file, &request.document, request.options.robot.formats);
+            }
         }
         for other in &mut request.options.robot.append {
             let span = other.file.span.clone().unwrap_or_default();
             other.document = loader.read(other.file.value.as_ref(), &span, "append.urdf", &mut log).unwrap_or_default();
+            loader.include(&other.file.value, &other.document, request.options.robot.formats);
         }
+        request.options.robot.included = loader.included.clone();
         if !log.is_ok() {
             // Mistakes in the words of the request are mistakes without the robot too.
             check_words(&request, &mut log);
@@ -365,6 +392,24 @@ impl Build {
             std::process::exit(1);
         }
     }
+}
+
+/// Generates C and writes its files.
+fn write_c(folder: &Path, request: &Request) -> Result<Written, Diagnostics> {
+    let generated = generate(request)?;
+    for file in &generated.files {
+        write_changed(&folder.join(&file.name), &file.text)?;
+    }
+    let path = folder.join(&generated.files[0].name);
+    Ok(Written { path, warnings: summary(&generated.warnings), generated: true })
+}
+
+/// An unchanged file keeps its date, so that nothing is compiled again.
+fn write_changed(path: &Path, text: &str) -> Result<(), Diagnostics> {
+    if fs::read_to_string(path).is_ok_and(|old| old == text) {
+        return Ok(());
+    }
+    fs::write(path, text).map_err(|e| file_error(&path.display().to_string(), e.to_string()).into())
 }
 
 /// What this build script has written, to keep a second robot from taking the place of a first.

@@ -62,6 +62,7 @@ impl Cache {
 fn key(request: &Request, generator: &str) -> Vec<u8> {
     let (mut options, mut documents) = (request.options.clone(), vec![request.document.clone()]);
     documents.extend(options.robot.append.iter_mut().map(|other| std::mem::take(&mut other.document)));
+    documents.extend(options.robot.included.files().map(|(_, bytes)| bytes.to_vec()));
     let lengths: Vec<usize> = documents.iter().map(Vec::len).collect();
     let mut head = format!("articulated {}, {generator}\n", env!("CARGO_PKG_VERSION"));
     // Of the scene only what code follows from.

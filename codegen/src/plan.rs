@@ -107,7 +107,9 @@ fn fitting(request: &Request, model: &Model<f64>, massless: &[String], entries: 
 fn own_name(function: &FunctionSpec, others: &[Entry]) -> Result<(), Diagnostic> {
     let same_type = |f: &FunctionSpec| f.group().is_some() && f.group() == function.group();
     let is_form = |f: &FunctionSpec, other: &FunctionSpec| {
-        ["_into", "_blocks", "_batch_f64", "_batch_f32", "_blocks_f64", "_blocks_f32"].iter().any(|form| f.name.strip_suffix(form) == Some(other.name.as_str()))
+        ["_into", "_blocks", "_batch_f64", "_batch_f32", "_blocks_f64", "_blocks_f32"]
+            .iter()
+            .any(|form| f.name.strip_suffix(form) == Some(other.name.as_str()))
     };
     let clash = others.iter().find_map(|(_, f)| {
         let is_same = f.name == function.name || same_type(f) || is_form(function, f);

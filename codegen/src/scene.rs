@@ -8,7 +8,7 @@ use articulated_scene::{BuiltRobot, Opened, open as open_files, open_in as open_
 
 pub use articulated_scene::{self, Bundled, Loader, Scene, beside};
 
-use crate::{Options, Request, check_names};
+use crate::{Options, Request, Target, check_names};
 
 /// A scene and its request.
 #[derive(Clone, Debug)]
@@ -88,7 +88,10 @@ pub fn fill(options: &mut Options, scene: &Scene) {
     put(code.limbs, &mut options.limbs);
     options.batch = code.batch.unwrap_or_default();
     options.level = code.level.unwrap_or(options.level);
-    put(code.forbid_unsafe, &mut options.rust_mut().forbid_unsafe);
+    // It concerns Rust alone.
+    if let Target::Rust(rust) = &mut options.target {
+        put(code.forbid_unsafe, &mut rust.forbid_unsafe);
+    }
     options.max_code_size = code.max_code_size.unwrap_or(options.max_code_size);
 }
 

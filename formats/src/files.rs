@@ -1,9 +1,13 @@
 //! Files: regular ones only, of bounded size. A device never ends, and opening a pipe waits for a
 //! writer.
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::fmt;
 use std::fs::{File, FileType};
 use std::io::{Error, ErrorKind, Read, Result};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use articulated_core::suggest::nearest;
 
@@ -45,6 +49,70 @@ pub struct NoFiles;
 impl Sources for NoFiles {
     fn read(&self, _path: &Path) -> Result<Vec<u8>> {
         Err(Error::new(ErrorKind::NotFound, "found a document that includes another file, expected one without"))
+    }
+}
+
+/// The files that a document includes, read before it is: the document can be read again, without
+/// the file system. Cheap to clone.
+#[derive(Clone, Default, PartialEq)]
+pub struct Included(Arc<BTreeMap<PathBuf, Found>>);
+
+/// The bytes of a file, or why there are none.
+type Found = std::result::Result<Vec<u8>, (ErrorKind, String)>;
+
+impl Included {
+    /// Names and bytes of the files, in the order of their names.
+    pub fn files(&self) -> impl Iterator<Item = (&Path, &[u8])> {
+        self.0.iter().filter_map(|(path, found)| Some((path.as_path(), found.as_deref().ok()?)))
+    }
+
+    /// These files and others.
+    pub fn extend(&mut self, other: Self) {
+        if self.0.is_empty() {
+            *self = other;
+        } else if !other.0.is_empty() {
+            let others = Arc::unwrap_or_clone(other.0);
+            Arc::make_mut(&mut self.0).extend(others);
+        }
+    }
+}
+
+impl fmt::Debug for Included {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(self.0.keys()).finish()
+    }
+}
+
+impl Sources for Included {
+    fn read(&self, path: &Path) -> Result<Vec<u8>> {
+        match self.0.get(path) {
+            Some(Ok(bytes)) => Ok(bytes.clone()),
+            Some(Err((kind, message))) => Err(Error::new(*kind, message.clone())),
+            None => NoFiles.read(path),
+        }
+    }
+}
+
+/// Reads from other sources, and keeps what it reads.
+pub(crate) struct Recorder<'a> {
+    pub(crate) sources: &'a dyn Sources,
+    /// The folder that names start from.
+    pub(crate) root: &'a Path,
+    pub(crate) found: RefCell<BTreeMap<PathBuf, Found>>,
+}
+
+impl Recorder<'_> {
+    pub(crate) fn included(self) -> Included {
+        Included(Arc::new(self.found.into_inner()))
+    }
+}
+
+impl Sources for Recorder<'_> {
+    fn read(&self, path: &Path) -> Result<Vec<u8>> {
+        let result = self.sources.read(&self.root.join(path));
+        let kept = result.as_ref().map(Clone::clone).map_err(|error| (error.kind(), error.to_string()));
+        self.found.borrow_mut().insert(path.to_owned(), kept);
+        result
     }
 }
 

@@ -5,7 +5,7 @@ use std::fmt;
 use articulated_core::description::Description;
 use articulated_core::diagnostic::Diagnostics;
 
-use crate::{Options, Sources, urdf};
+use crate::{Options, Sources, mjcf, urdf};
 
 /// A format of robot files. Each has one row in [`FORMATS`].
 pub trait Format: Sync + std::panic::RefUnwindSafe {
@@ -17,6 +17,11 @@ pub trait Format: Sync + std::panic::RefUnwindSafe {
 
     /// Whether a document looks like one of this format.
     fn recognizes(&self, bytes: &[u8]) -> bool;
+
+    /// Whether a document may include other files.
+    fn includes_files(&self) -> bool {
+        false
+    }
 
     /// The robot of a document. Reports all findings; `None` if there is an error, or no robot.
     fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Description>;
@@ -34,7 +39,7 @@ pub struct Input<'a> {
 }
 
 /// All formats. A document of which none is recognized is read as the first.
-pub const FORMATS: &[&dyn Format] = &[&urdf::Urdf];
+pub const FORMATS: &[&dyn Format] = &[&urdf::Urdf, &mjcf::Mjcf];
 
 /// The formats that a reader chooses from.
 #[derive(Clone, Copy)]

@@ -41,18 +41,21 @@
 //! * A reader reports all findings to one [`Diagnostics`] and continues as far as it can.
 //! * Only [`Sources`] open files. [`read`] opens none.
 
+mod cycles;
 mod files;
 mod format;
+pub mod mjcf;
 mod reading;
 mod snap;
 pub mod urdf;
+mod xml;
 
 #[cfg(doc)]
 use articulated_core::description::Description;
 #[cfg(doc)]
 use articulated_core::diagnostic::Diagnostics;
 
-pub use files::{AtMost, Disk, MOST_BYTES, NoFiles, Sources, nearest_file, open_file, read_at_most, read_file};
+pub use files::{AtMost, Disk, Included, MOST_BYTES, NoFiles, Sources, nearest_file, open_file, read_at_most, read_file};
 pub use format::{FORMATS, Format, Formats, Input};
-pub use reading::{Options, Reading, read, read_with};
+pub use reading::{Options, Reading, included, read, read_with};
 pub use snap::{MOST_SNAPPED, SNAP_EXPECTED, can_snap, nearly_right_angles};

@@ -1,9 +1,13 @@
 //! How to read a document, and what comes of it.
 
+use std::cell::RefCell;
+use std::path::Path;
+
 use articulated_core::description::{Base, Description};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Subject, Unused, quote};
 
-use crate::{Formats, Input, NoFiles, Sources, snap};
+use crate::files::Recorder;
+use crate::{Format, Formats, Included, Input, NoFiles, Sources, snap};
 
 /// How to read.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,6 +66,17 @@ pub(crate) const HELD: &str = "the base is fixed, and this link with it";
 /// All of the file's at once, at most 1000.
 pub fn read(bytes: &[u8], options: &Options) -> Result<Reading, Diagnostics> {
     read_with(&NoFiles, bytes, options)
+}
+
+/// The files that a document includes, for reading it again with [`read_with`]. Their names are as
+/// the document and `options.file` make them; `root` is the folder that they start from.
+pub fn included(sources: &dyn Sources, root: &Path, bytes: &[u8], options: &Options) -> Included {
+    let recorder = Recorder { sources, root, found: RefCell::default() };
+    if options.formats.of(&options.file, bytes).is_some_and(Format::includes_files) {
+        // What is wrong with the document is reported when it is read.
+        drop(read_with(&recorder, bytes, options));
+    }
+    recorder.included()
 }
 
 /// As [`read()`], with the files that the document includes.

@@ -109,6 +109,7 @@ impl Reader<'_> {
         }
         let robot = self.robot(folder, &scene);
         let appended = self.loader.append(folder, &mut options.robot.append, &mut self.log);
+        options.robot.included = self.loader.included.clone();
         let is_complete = robot.is_some() && appended;
         let (file, document) = robot.unwrap_or_default();
         let request = Request { document, file, scene: Some(scene.clone()), options };
@@ -126,7 +127,7 @@ impl Reader<'_> {
             return self.loader.robot(folder, scene, &mut self.log).map(|(file, document, _)| (file, document));
         }
         // A value that is wrong is reported already.
-        if !settings.has("urdf") {
+        if !settings.has("urdf") && !settings.has("file") {
             self.log.push(match &settings.macro_keys.scene {
                 Some(_) => scene.without_robot("no robot", "urdf, here or in the scene"),
                 None if settings.has("scene") => return None,

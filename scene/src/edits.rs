@@ -147,6 +147,20 @@ pub(crate) const APPEND: &[Row<Append>] = &[
         },
     },
     Row {
+        name: "file",
+        required: false,
+        value: "text",
+        default: "",
+        what: "its file in any format, as `urdf`: both keys are one",
+        read: |a, s, log| {
+            if !a.file.is_empty() {
+                s.clash(log, "urdf and file", "one of them");
+            }
+            a.place = s.node.at;
+            a.file = name(s, log, "the path of a robot's file").unwrap_or_default();
+        },
+    },
+    Row {
         name: "at",
         required: true,
         value: "text",

@@ -155,6 +155,9 @@ impl Scene {
                 None => value.unknown_key(&mut log, own.iter().copied().chain(rows.iter().map(|row| row.name))),
             }
         }
+        if let (Some(file), Some(_)) = (spot.get("file"), spot.get("urdf")) {
+            file.clash(&mut log, "urdf and file", "one of them");
+        }
         self.choose_integrator();
         let wrong = log.result(()).err().map(|all| all.errors).unwrap_or_default();
         (self, wrong)
@@ -183,8 +186,10 @@ impl Scene {
         let spot = Spot::root(root);
         spot.read(KEYS, self, log);
         self.choose_integrator();
-        if let (Some(robot), Some(_)) = (spot.get("robot"), spot.get("urdf")) {
-            robot.clash(log, "robot and urdf", "one of them");
+        for [one, other] in [["robot", "urdf"], ["robot", "file"], ["urdf", "file"]] {
+            if let (Some(robot), Some(_)) = (spot.get(one), spot.get(other)) {
+                robot.clash(log, format!("{one} and {other}"), "one of them");
+            }
         }
         let period = spot.get("control").and_then(|control| control.get("period"));
         if let (Some(simulation), Some(period), Some(spot)) = (&self.simulation, self.control.period, period)
@@ -233,6 +238,17 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         what: "a URDF, seen from the scene's folder; instead of `robot`",
         read: |s, spot, log| {
             s.robot = edits::name(spot, log, "the path of a URDF").map_or(Robot::Given, Robot::File);
+            s.code.places.robot = spot.node.at;
+        },
+    },
+    Row {
+        name: "file",
+        required: false,
+        value: "text",
+        default: "given by who uses the scene",
+        what: "a file of a robot in any format, as `urdf`: both keys are one",
+        read: |s, spot, log| {
+            s.robot = edits::name(spot, log, "the path of a robot's file").map_or(Robot::Given, Robot::File);
             s.code.places.robot = spot.node.at;
         },
     },

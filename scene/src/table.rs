@@ -243,7 +243,9 @@ impl<'a> Spot<'a> {
                 None => spot.unknown_key(log, rows.iter().map(|row| row.name)),
             }
         }
-        for row in rows.iter().filter(|row| row.required && !entries.iter().any(|e| e.name == row.name)) {
+        // The file of a robot has two keys.
+        let is_given = |name: &str| entries.iter().any(|e| e.name == name || (name == "urdf" && e.name == "file"));
+        for row in rows.iter().filter(|row| row.required && !is_given(row.name)) {
             log.error(
                 (self.at, &self.key),
                 Code::MissingKey,

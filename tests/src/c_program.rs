@@ -41,12 +41,23 @@ pub fn check_header(compiler: &str, standard: &str, header: &File) {
     assert!(answer.status.success(), "{compiler} refused {}: {}", header.name, String::from_utf8_lossy(&answer.stderr));
 }
 
+/// Which vectors generated C uses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Vectors {
+    /// Those of any processor of this kind.
+    Any,
+    /// Those of this processor.
+    Own,
+    /// None: as by a compiler that has none.
+    None,
+}
+
 /// Compiles the C of several robots, whose names are their prefixes, as one program.
 ///
 /// # Panics
 /// If the compiler refuses the program: its message is printed.
 #[must_use]
-pub fn build(robots: &[(&str, Shape, &Generated)]) -> Program {
+pub fn build(robots: &[(&str, Shape, &Generated)], vectors: Vectors) -> Program {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("a folder that can be written");
     let start = Instant::now();
@@ -59,13 +70,38 @@ pub fn build(robots: &[(&str, Shape, &Generated)]) -> Program {
     }
     write("main.c", &main(robots));
     let program = folder.path().join(format!("program{}", std::env::consts::EXE_SUFFIX));
-    compile(folder.path(), &sources, &program);
+    let flags: Vec<String> = match vectors {
+        Vectors::Any => Vec::new(),
+        Vectors::Own => vec!["-march=native".to_owned()],
+        Vectors::None => robots.iter().map(|(name, ..)| format!("-D{}_NO_VECTORS", name.to_uppercase())).collect(),
+    };
+    compile(folder.path(), &flags, &sources, &program);
     Program::compiled(program, start.elapsed(), folder)
 }
 
-fn compile(folder: &Path, sources: &[String], program: &Path) {
+/// What a program prints that is compiled with generated files.
+///
+/// # Panics
+/// If the compiler refuses it, or it fails.
+#[must_use]
+pub fn run_program(main: &str, files: &[File]) -> String {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut sources = vec!["main.c".to_owned()];
+    std::fs::write(folder.path().join("main.c"), main).expect("a folder that can be written");
+    for file in files {
+        std::fs::write(folder.path().join(&file.name), &file.text).expect("as above");
+        sources.extend(file.name.ends_with(".c").then(|| file.name.clone()));
+    }
+    let program = folder.path().join("program");
+    compile(folder.path(), &[], &sources, &program);
+    let answer = Command::new(program).output().expect("a program that was compiled");
+    assert!(answer.status.success(), "{answer:?}");
+    String::from_utf8(answer.stdout).expect("text")
+}
+
+fn compile(folder: &Path, flags: &[String], sources: &[String], program: &Path) {
     let mut command = compiler();
-    command.current_dir(folder).args(FLAGS).arg("-o").arg(program).args(sources).arg("-lm");
+    command.current_dir(folder).args(FLAGS).args(flags).arg("-o").arg(program).args(sources).arg("-lm");
     let answer = command.output().expect("a compiler of C");
     assert!(answer.status.success(), "refused: {}", String::from_utf8_lossy(&answer.stderr));
 }
@@ -120,7 +156,51 @@ fn main(robots: &[(&str, Shape, &Generated)]) -> String {
                  for (int j = 0; j < {results}; j++) {{ {to}[j] = NAN; }}\n            {robot}_{name}({list}{to});\n{widen}            \
                  fwrite(out, sizeof(double), {results}, stdout);\n            {from} += {at};\n        }}\n        return 0;\n    }}"
             );
+            batches(&mut text, robot, name, *shape, generated);
         }
     }
     text + "    return 1;\n}\n"
+}
+
+/// Calls of a function for all states at once: one after the other, and in blocks. Numbers of
+/// results that no function writes are not numbers.
+fn batches(text: &mut String, robot: &str, name: &str, shape: Shape, generated: &Generated) {
+    let row = function::<f64>(name).expect("a function of the registry");
+    let lengths: Vec<usize> = row.takes.iter().map(|a| a.len(shape)).collect();
+    let (taken, results): (usize, usize) = (lengths.iter().sum(), row.len(shape));
+    for (real, ty, block) in [("f64", "double", 8), ("f32", "float", 16)] {
+        for (form, per) in [("batch", 1), ("blocks", block)] {
+            if !generated.source.contains(&format!("{robot}_{name}_{form}_{real}(")) {
+                continue;
+            }
+            let _ = writeln!(text, "    if (!strcmp(argv[1], \"{robot}\") && !strcmp(argv[2], \"{name} {form} {real}\")) {{");
+            // A state after the last would be found out of bounds by a sanitizer.
+            let _ = writeln!(text, "        const size_t blocks = ((size_t)states + {per} - 1) / {per};");
+            let mut at = 0;
+            for (k, n) in lengths.iter().enumerate() {
+                let _ = writeln!(text, "        {ty} *a{k} = malloc(blocks * {per} * {} * sizeof({ty}));", n.max(&1));
+                let _ = writeln!(
+                    text,
+                    "        for (size_t s = 0; s < blocks * {per}; s++) {{\n            const size_t from = s < (size_t)states ? s : (size_t)states - 1;"
+                );
+                let _ = writeln!(
+                    text,
+                    "            for (size_t j = 0; j < {n}; j++) {{ a{k}[(s / {per} * {n} + j) * {per} + s % {per}] = ({ty})x[from * {taken} + {at} + j]; }}\n        }}"
+                );
+                at += n;
+            }
+            let _ = writeln!(text, "        {ty} *y = malloc(blocks * {per} * {} * sizeof({ty}));", results.max(1));
+            let _ = writeln!(text, "        for (size_t k = 0; k < blocks * {per} * {results}; k++) {{ y[k] = ({ty})NAN; }}");
+            let list: String = (0..lengths.len()).map(|k| format!("a{k}, ")).collect();
+            let count = if per == 1 { "(size_t)states" } else { "blocks" };
+            let _ = writeln!(text, "        {robot}_{name}_{form}_{real}({count}, {list}y);");
+            let _ = writeln!(
+                text,
+                "        for (size_t s = 0; s < (size_t)states; s++) {{\n            for (size_t k = 0; k < {results}; k++) {{ out[k] = (double)y[(s / {per} * {results} + k) * {per} + s % {per}]; }}\n            \
+                 fwrite(out, sizeof(double), {results}, stdout);\n        }}"
+            );
+            (0..lengths.len()).for_each(|k| _ = writeln!(text, "        free(a{k});"));
+            let _ = writeln!(text, "        free(y);\n        return 0;\n    }}");
+        }
+    }
 }

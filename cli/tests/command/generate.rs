@@ -55,7 +55,7 @@ fn c_is_a_header_and_a_source_in_a_folder() {
     assert!(renamed.out.contains("CART_POLE_JOINT_CART = 0"), "{}{}", renamed.out, renamed.err);
     assert!(run(&[&words[..], &["--prefix", "my"]].concat()).out.contains("void my_inverse_dynamics("));
     for (more, told) in [
-        (&["--no-std", "--batch", "f64"][..], "--language c: found --batch, or `batch` in the scene, --no-std, which are for Rust alone"),
+        (&["--no-std", "--standalone"][..], "--language c: found --standalone, --no-std, which are for Rust alone"),
         (&["--rename", "slyde=S"], "rename: found \"slyde\", expected the name of a joint or of a link"),
         (&["--level", "double_double"], "level: found double_double, expected for target \"c\": f64, f32 or f32_f64"),
         (&["--prefix", "1st"], "prefix: found \"1st\""),

@@ -45,6 +45,19 @@ fn a_second_robot_does_not_take_the_place_of_a_first() {
 }
 
 #[test]
+fn a_build_script_writes_c_with_its_name_as_the_prefix() {
+    let folder = folder("c");
+    let build = Build::new(folder.join("arm.urdf")).functions(["gravity_torque"]);
+    let written = build.clone().language(Target::C(crate::COptions::default())).write_in(&folder, "our_arm").unwrap();
+    assert_eq!(written.path, folder.join("our_arm.h"));
+    assert!(fs::read_to_string(folder.join("our_arm.c")).unwrap().contains("void our_arm_gravity_torque(const double q[OUR_ARM_NQ]"));
+    let header = crate::COptions { header_only: true, prefix: Some("a".into()), ..crate::COptions::default() };
+    build.language(Target::C(header)).write_in(&folder, "our_arm").unwrap();
+    assert!(folder.join("a.h").exists() && !folder.join("a.c").exists());
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
 fn each_choice_arrives_in_the_request() {
     let folder = folder("choices");
     let hand = folder.join("hand.urdf");

@@ -61,6 +61,9 @@ pub(crate) struct Function<'a> {
     pub(crate) is_outlined: bool,
     /// The body with spill slots, for x86-64 without AVX-512.
     pub(crate) few_registers: Option<Body>,
+    /// The body with plain numbers of a function whose values are vectors, and how its result
+    /// leaves it.
+    pub(crate) scalar: Option<(Body, Ending)>,
     /// The solution for many right-hand sides, which is left a loop behind the body.
     pub(crate) columns: Option<&'a MultiRhsSolve>,
     /// Operations of the body, and its sines and cosines.
@@ -123,6 +126,12 @@ impl<'a> Function<'a> {
             body: plan.body(ending, plan.is_outlined, false),
             is_outlined: plan.is_outlined,
             few_registers: plan.few_registers(ending),
+            scalar: (can.scalar_too && plan.in_lanes()).then(|| {
+                let can = Capabilities { vectors: false, ..can };
+                let graph = &program.plain;
+                let plan = Plan { graph, can, columns: None, is_outlined: is_long(graph, false, can.level), ..plan };
+                (plan.body(plan.ending(), plan.is_outlined, false), plan.ending())
+            }),
             columns,
             operations: (counts.instructions(), counts.trigonometric()),
             states: can.states.then(|| plan.states(&program.plain)),
@@ -197,6 +206,10 @@ struct Plan<'a> {
 }
 
 impl Plan<'_> {
+    fn in_lanes(&self) -> bool {
+        self.graph.lanes().width > 1
+    }
+
     fn ending(&self) -> Ending {
         let (graph, raw_memory) = (self.graph, self.can.raw_memory);
         let (results, nodes) = (graph.outputs.len(), graph.nodes().len());
@@ -276,7 +289,7 @@ impl Plan<'_> {
     fn few_registers(&self, ending: Ending) -> Option<Body> {
         let nodes = self.graph.nodes().len();
         let fits = (spill::FROM..CUT_FROM).contains(&nodes);
-        let can = self.can.raw_memory && !self.can.level.of_two() && self.can.level.fused;
+        let can = self.can.spills && !self.can.level.of_two() && self.can.level.fused;
         let body = (fits && can).then(|| self.body(ending, false, true))?;
         spill::pays(&body.pieces[0], matches!(body.ty, Ty::Vector(_))).then_some(body)
     }
@@ -294,7 +307,7 @@ impl Plan<'_> {
             verified(Body { ty: Ty::States, lanes, results, pieces, kept, slots, barrier: false, is_partial: false })
         };
         let spilled = match pieces.as_slice() {
-            [piece] if self.can.raw_memory && nodes >= spill::FROM => Some(spill(piece.clone(), Ty::States)),
+            [piece] if self.can.spills && nodes >= spill::FROM => Some(spill(piece.clone(), Ty::States)),
             _ => None,
         };
         let few_registers = spilled.filter(|(piece, _)| spill::pays(piece, true)).map(|(piece, slots)| body(vec![piece], Some(slots)));

@@ -44,6 +44,8 @@ pub(crate) struct DraftJoint {
     /// Of a helical joint, m per revolution; zero otherwise.
     pub(crate) pitch: f64,
     pub(crate) mimic: Option<DraftMimic>,
+    /// Further joints that it follows.
+    pub(crate) also: Vec<DraftMimic>,
     pub(crate) limit: Option<Limit>,
     pub(crate) dynamics: JointDynamics,
 }

@@ -21,7 +21,10 @@ pub(crate) fn compare(found: &Description, draft: &Draft, tree: &Tree, leaders: 
             return internal("a robot of another shape read by urdf-rs".to_owned(), log);
         }
     }
-    if with_angles(description) != with_angles(found.clone()) {
+    // It reads one leader of a joint.
+    let mut found = found.clone();
+    found.joints.iter_mut().for_each(|joint| joint.also.clear());
+    if with_angles(description) != with_angles(found) {
         internal("another robot read by urdf-rs".to_owned(), log);
     }
 }
@@ -84,6 +87,7 @@ fn read_joint(joint: &urdf_rs::Joint, index: usize, draft: &Draft) -> Option<Joi
         pitch: found.pitch,
         locked: None,
         mimic,
+        also: Vec::new(),
         // Nor a missing limit from zeros.
         limit: found.limit.is_some().then(|| read_limit(&joint.limit)),
         dynamics: joint.dynamics.as_ref().map_or_else(JointDynamics::default, |d| JointDynamics {

@@ -4,9 +4,10 @@
 use articulated_core::description::{Collision, CollisionShape};
 use articulated_core::diagnostic::{Code, Diagnostics, quote};
 
-use super::element::Tag;
 use super::robot::Context;
-use super::{frame, number, unused};
+use super::{frame, unused};
+use crate::xml::element::Tag;
+use crate::xml::number;
 
 /// The shapes that are read, and their attributes.
 const SHAPES: [(&str, &[&str]); 6] = [

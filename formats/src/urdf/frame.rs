@@ -5,10 +5,10 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use articulated_core::description::{Origin, Rotation};
 
-use super::element::Tag;
-use super::number::{attribute_list, silently};
 use super::robot::{Context, Version};
 use super::unused;
+use crate::xml::element::Tag;
+use crate::xml::number::{attribute_list, silently};
 
 /// The `<origin>` inside a tag; no tag or attribute stands for zero.
 pub(crate) fn origin(parent: &Tag<'_>, context: &Context<'_>, log: &mut Diagnostics) -> Origin {

@@ -1,15 +1,15 @@
 //! The tag `<joint>`.
 
-use super::markup::hint;
+use crate::xml::markup::hint;
 use articulated_core::description::{JointDynamics, JointKind};
 use articulated_core::diagnostic::{Code, Diagnostics, Place, Subject, quote};
 use articulated_core::suggest::nearest;
 
 use super::ast::{DraftJoint, DraftMimic, Reference, has_one_coordinate};
-use super::element::Tag;
-use super::number::{self, attribute, attribute_list};
 use super::robot::{Context, Version};
 use super::{frame, limits, unused, xacro};
+use crate::xml::element::Tag;
+use crate::xml::number::{self, attribute, attribute_list};
 
 const TAGS: [&str; 9] = ["origin", "parent", "child", "axis", "axis2", "thread", "limit", "dynamics", "mimic"];
 
@@ -27,6 +27,7 @@ pub(crate) fn joint(tag: &Tag<'_>, context: &Context<'_>, log: &mut Diagnostics)
     name.iter().for_each(|name| unused::warn_of_blanks(&tag, name, log));
     unused::rest(&tag, &TAGS, &["name", "type"], log);
     let kind = kind(&tag, log);
+    let mut mimics = if kind.is_some_and(JointKind::is_fixed) { Vec::new() } else { mimics(&tag, log) }.into_iter();
     let mut joint = DraftJoint {
         name,
         at: tag.at(),
@@ -37,7 +38,8 @@ pub(crate) fn joint(tag: &Tag<'_>, context: &Context<'_>, log: &mut Diagnostics)
         axis: DEFAULT_AXIS,
         second_axis: [0.0; 3],
         pitch: 0.0,
-        mimic: if kind.is_some_and(JointKind::is_fixed) { None } else { mimic(&tag, log) },
+        mimic: mimics.next(),
+        also: mimics.collect(),
         limit: None,
         dynamics: JointDynamics::default(),
     };
@@ -217,11 +219,21 @@ fn pitch(joint: &Tag<'_>, log: &mut Diagnostics) -> Option<f64> {
     Some(pitch)
 }
 
-fn mimic(joint: &Tag<'_>, log: &mut Diagnostics) -> Option<DraftMimic> {
-    let tag = joint.only("mimic", log)?;
-    unused::rest(&tag, &[], &["joint", "multiplier", "offset"], log);
-    let multiplier = attribute(&tag, "multiplier", log);
-    let offset = attribute(&tag, "offset", log);
+/// The joints that a joint follows. Two tags for one leader are one too many.
+fn mimics(joint: &Tag<'_>, log: &mut Diagnostics) -> Vec<DraftMimic> {
+    let all: Vec<Tag<'_>> = joint.children().filter(|tag| tag.is("mimic")).collect();
+    let leaders: Vec<_> = all.iter().map(|tag| tag.attribute("joint")).collect();
+    let is_twice = |(k, leader): (usize, &Option<_>)| leaders[..k].contains(leader);
+    if leaders.iter().enumerate().any(is_twice) {
+        return joint.only("mimic", log).and_then(|tag| mimic(&tag, log)).into_iter().collect();
+    }
+    all.iter().filter_map(|tag| mimic(tag, log)).collect()
+}
+
+fn mimic(tag: &Tag<'_>, log: &mut Diagnostics) -> Option<DraftMimic> {
+    unused::rest(tag, &[], &["joint", "multiplier", "offset"], log);
+    let multiplier = attribute(tag, "multiplier", log);
+    let offset = attribute(tag, "offset", log);
     let name = tag.required_name("joint", log)?;
     Some(DraftMimic { leader: Reference { name, at: tag.at() }, multiplier, offset })
 }

@@ -6,10 +6,10 @@ use std::ops::RangeInclusive;
 
 use articulated_core::description::{JointDynamics, JointKind, Limit};
 
-use super::element::Tag;
-use super::number::attribute;
 use super::robot::Version;
 use super::unused;
+use crate::xml::element::Tag;
+use crate::xml::number::attribute;
 
 const BOUNDS: [&str; 2] = ["lower", "upper"];
 

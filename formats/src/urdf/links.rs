@@ -4,9 +4,10 @@ use articulated_core::description::Inertial;
 use articulated_core::diagnostic::{Code, Diagnostics, Subject};
 
 use super::ast::DraftLink;
-use super::element::Tag;
 use super::robot::Context;
-use super::{collision, frame, inertia, number, unused, visual};
+use super::{collision, frame, inertia, unused, visual};
+use crate::xml::element::Tag;
+use crate::xml::number;
 
 /// A link with its mass properties, its collision geometry and its appearance.
 pub(crate) fn link(tag: &Tag<'_>, context: &Context<'_>, log: &mut Diagnostics) -> DraftLink {

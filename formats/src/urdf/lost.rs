@@ -1,8 +1,8 @@
 //! Dynamics that a file states where they are not read: inside `<gazebo>`, under a prefix, in tags
 //! that the format does not have.
 
-use super::element::Tag;
-use super::markup;
+use crate::xml::element::Tag;
+use crate::xml::markup;
 use articulated_core::diagnostic::{Code, Diagnostics, quote};
 
 /// Known tags of other programs that may state dynamics.

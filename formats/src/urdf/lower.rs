@@ -2,22 +2,25 @@
 
 use articulated_core::description::{Description, Joint, Link, Mimic};
 
-use super::ast::Draft;
+use super::ast::{Draft, DraftMimic};
+use super::mimic::Leaders;
 use super::tree::Tree;
 
 /// The description that the draft amounts to; `None` where something of it is missing, which is an
 /// error already.
-pub(crate) fn lower(draft: &Draft, tree: &Tree, leaders: &[Option<usize>]) -> Option<Description> {
+pub(crate) fn lower(draft: &Draft, tree: &Tree, leaders: &Leaders) -> Option<Description> {
     let links = draft.links.iter().map(|link| {
         let (name, collision, visual) = (link.name.clone()?, link.collision.clone(), link.visual.clone());
         Some(Link { name, inertial: link.inertial, collision, visual, ..Link::default() })
     });
     let joints = draft.joints.iter().enumerate().map(|(i, joint)| {
-        let mimic = joint.mimic.as_ref().zip(leaders[i]).map(|(mimic, leader)| Mimic {
+        let follow = |mimic: &DraftMimic, leader: usize| Mimic {
             joint: leader,
             multiplier: mimic.multiplier.unwrap_or(1.0),
             offset: mimic.offset.unwrap_or(0.0),
-        });
+        };
+        let mimic = joint.mimic.as_ref().zip(leaders.first[i]).map(|(mimic, leader)| follow(mimic, leader));
+        let also = joint.also.iter().zip(&leaders.also[i]).map(|(mimic, leader)| Some(follow(mimic, (*leader)?)));
         Some(Joint {
             name: joint.name.clone()?,
             kind: joint.kind?,
@@ -29,6 +32,7 @@ pub(crate) fn lower(draft: &Draft, tree: &Tree, leaders: &[Option<usize>]) -> Op
             pitch: joint.pitch,
             locked: None,
             mimic,
+            also: also.collect::<Option<_>>()?,
             limit: joint.limit,
             dynamics: joint.dynamics,
         })

@@ -1,6 +1,6 @@
 //! Which joint follows which.
 
-use super::markup::hint;
+use crate::xml::markup::hint;
 use articulated_core::diagnostic::{Code, Diagnostics, Place, quote};
 use std::collections::HashMap;
 
@@ -8,36 +8,70 @@ use articulated_core::listed;
 use articulated_core::suggest::Suggester;
 
 use super::ast::{DraftJoint, DraftMimic, has_one_coordinate};
-use super::cycles::{around, cycles};
 use super::joints::kinds_with;
 use super::xacro::is_expression;
+use crate::cycles::{around, cycles};
 
-/// For each joint, the joint that it follows.
-pub(crate) fn leaders(joints: &[DraftJoint], log: &mut Diagnostics) -> Vec<Option<usize>> {
+/// For each joint, the joints that it follows.
+pub(crate) struct Leaders {
+    pub(crate) first: Vec<Option<usize>>,
+    /// Those of [`DraftJoint::also`]; none where there is no such joint, which has been reported.
+    pub(crate) also: Vec<Vec<Option<usize>>>,
+}
+
+/// For each joint, the joints that it follows.
+pub(crate) fn leaders(joints: &[DraftJoint], log: &mut Diagnostics) -> Leaders {
     let mut index = HashMap::new();
     for (i, joint) in joints.iter().enumerate() {
         joint.name.as_deref().into_iter().for_each(|name| *index.entry(name).or_insert(i) = i);
     }
     let mut suggester = Suggester::default();
     let mut leaders = Vec::with_capacity(joints.len());
+    let mut also = Vec::with_capacity(joints.len());
     for follower in joints {
-        let leader = follower.mimic.as_ref().and_then(|mimic| {
+        let mut leader_of = |mimic: &DraftMimic| {
             report_follower(follower, mimic, log);
             let leader = index.get(mimic.leader.name.as_str()).copied();
             match leader {
                 Some(leader) => {
                     report_leader(follower, mimic, &joints[leader], log);
-                    warn_of_motion(follower, mimic, &joints[leader], log);
+                    // Of several leaders no range is known before their limits are added up.
+                    if follower.also.is_empty() {
+                        warn_of_motion(follower, mimic, &joints[leader], log);
+                    }
                 }
                 None if is_expression(&mimic.leader.name) => {}
                 None => report_unknown(follower, mimic, joints, &mut suggester, log),
             }
             leader
-        });
-        leaders.push(leader);
+        };
+        leaders.push(follower.mimic.as_ref().and_then(&mut leader_of));
+        also.push(follower.also.iter().map(&mut leader_of).collect());
     }
     report_rings(joints, &leaders, log);
-    leaders
+    let all = Leaders { first: leaders, also };
+    report_chains(joints, &all, log);
+    all
+}
+
+/// Reports leaders that follow several joints, and followers of several joints that lead
+/// themselves.
+fn report_chains(joints: &[DraftJoint], leaders: &Leaders, log: &mut Diagnostics) {
+    for (start, follower) in joints.iter().enumerate() {
+        let own = leaders.first[start].iter().zip(&follower.mimic);
+        let further = leaders.also[start].iter().zip(&follower.also).filter_map(|(leader, mimic)| Some((leader.as_ref()?, mimic)));
+        for (&leader, mimic) in own.chain(further) {
+            // Along the chain of single leaders; a ring of these has been reported.
+            let chain = std::iter::successors(Some(leader), |&j| leaders.first[j]).take(joints.len());
+            let Some(end) = chain.into_iter().find(|&j| !joints[j].also.is_empty()) else { continue };
+            let found = if end == start {
+                "a joint that leads itself".to_owned()
+            } else {
+                format!("{}, which follows several joints", joints[end].subject())
+            };
+            error(follower, mimic, Code::LeaderCannotLead, found, "a joint to follow that moves by itself, or follows one that does", log);
+        }
+    }
 }
 
 fn error(follower: &DraftJoint, mimic: &DraftMimic, kind: Code, found: String, expected: &str, log: &mut Diagnostics) {

@@ -45,20 +45,14 @@ mod bridge;
 mod collision;
 #[cfg(feature = "urdf-rs")]
 mod conversion;
-mod cycles;
-mod document;
-mod element;
 mod frame;
 mod inertia;
 mod joints;
 mod limits;
-mod lines;
 mod links;
 mod lost;
 mod lower;
-mod markup;
 mod mimic;
-mod number;
 #[cfg(feature = "second-reader")]
 mod plain;
 mod robot;
@@ -69,15 +63,19 @@ mod write;
 mod xacro;
 
 use articulated_core::description::{Base, Description};
-#[cfg(doc)]
 use articulated_core::diagnostic::Code;
-use articulated_core::diagnostic::Diagnostics;
+use articulated_core::diagnostic::{Diagnostics, Subject, quote};
+use roxmltree::Document;
 
 #[cfg(feature = "urdf-rs")]
 pub use conversion::{ConversionError, from_urdf_rs, to_urdf_rs};
 pub(crate) use frame::right_angle;
 pub use write::write;
 
+use crate::xml::document;
+use crate::xml::element::Tag;
+use crate::xml::lines::Lines;
+use crate::xml::markup;
 use crate::{Format, Input, Options};
 
 /// The format of URDF files.
@@ -94,7 +92,7 @@ impl Format for Urdf {
     }
 
     fn recognizes(&self, bytes: &[u8]) -> bool {
-        bytes.windows(6).any(|window| window == b"<robot")
+        markup::root(bytes) == Some(b"robot")
     }
 
     fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Description> {
@@ -107,18 +105,30 @@ impl Format for Urdf {
         }
         let description = lower::lower(&draft, &tree, &leaders)?;
         #[cfg(feature = "second-reader")]
-        bridge::compare(&description, &draft, &tree, &leaders, diagnostics);
+        bridge::compare(&description, &draft, &tree, &leaders.first, diagnostics);
         Some(description)
     }
 }
 
 fn draft(bytes: &[u8], options: &Options, log: &mut Diagnostics) -> Option<ast::Draft> {
     let text = document::text(bytes, log)?;
-    let lines = lines::Lines::of(&text);
+    let lines = Lines::of(&text).with_expressions_reported();
     let document = document::parse(&text, &lines, log)?;
-    let robot = document::robot(&document, &lines, log)?;
+    let robot = robot_tag(&document, &lines, log)?;
     if xacro::report(&robot, log) {
         return None;
     }
     Some(robot::draft(&robot, options, log))
+}
+
+/// The root element, if it is `<robot>`.
+fn robot_tag<'a>(document: &'a Document<'a>, lines: &'a Lines<'a>, log: &mut Diagnostics) -> Option<Tag<'a>> {
+    let root = Tag::new(document.root_element(), lines, &Subject::Document);
+    if root.is("robot") {
+        return Some(root);
+    }
+    let place = root.place("");
+    let found = format!("the root element {}", quote(&root.name()));
+    log.error(place, Code::NotARobot, found, "the root element <robot>");
+    None
 }

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::ast::{Draft, DraftLink, PassedOver};
-use super::element::Tag;
 use super::{frame, joints, links, lost, unused, visual};
 use crate::Options;
+use crate::xml::element::Tag;
 use articulated_core::diagnostic::{Code, Diagnostics, Place, quote};
 
 /// The version of the format that a file names.

@@ -1,7 +1,7 @@
 //! Names become indices, and joints a tree. Nothing here recurses: chains may be as long as they
 //! like.
 
-use super::markup::hint;
+use crate::xml::markup::hint;
 use articulated_core::diagnostic::{At, Code, Diagnostics, Place, Subject, quote};
 use std::collections::HashMap;
 
@@ -9,8 +9,8 @@ use articulated_core::listed;
 use articulated_core::suggest::Suggester;
 
 use super::ast::{Draft, DraftJoint, Reference};
-use super::cycles::{around, cycles};
 use super::xacro::is_expression;
+use crate::cycles::{around, cycles};
 
 /// Which links each joint connects.
 pub(crate) struct Tree {

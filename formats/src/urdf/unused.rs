@@ -4,8 +4,9 @@ use articulated_core::diagnostic::{Code, Diagnostics, Place, is_invisible, quote
 
 use articulated_core::suggest::Suggester;
 
-use super::element::Tag;
-use super::{lost, markup};
+use super::lost;
+use crate::xml::element::Tag;
+use crate::xml::markup;
 
 const APPEARANCE: &str = "appearance plays no part in the dynamics";
 

@@ -6,9 +6,10 @@ use std::collections::BTreeMap;
 use articulated_core::description::{CollisionShape, Visual};
 use articulated_core::diagnostic::Diagnostics;
 
-use super::element::Tag;
 use super::robot::Context;
-use super::{collision, frame, number};
+use super::{collision, frame};
+use crate::xml::element::Tag;
+use crate::xml::number;
 
 /// The whole appearance of a link.
 pub(crate) fn all(link: &Tag<'_>, context: &Context<'_>, log: &Diagnostics) -> Vec<Visual> {

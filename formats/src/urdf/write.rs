@@ -67,7 +67,7 @@ fn joint(out: &mut String, description: &Description, j: &Joint) {
         let [damping, friction] = [j.dynamics.damping, j.dynamics.friction].map(Option::unwrap_or_default);
         let _ = writeln!(out, "    <dynamics damping=\"{damping:?}\" friction=\"{friction:?}\"/>");
     }
-    if let Some(m) = &j.mimic {
+    for m in j.mimic.iter().chain(&j.also) {
         let leader = escaped(&description.joints[m.joint].name);
         let _ = writeln!(out, "    <mimic joint=\"{leader}\" multiplier=\"{:?}\" offset=\"{:?}\"/>", m.multiplier, m.offset);
     }

@@ -1,6 +1,8 @@
 //! What xacro should have replaced.
 
-use super::element::Tag;
+pub(crate) use crate::xml::number::is_expression;
+
+use crate::xml::element::Tag;
 use articulated_core::diagnostic::{Code, Diagnostics, Place, Subject, quote};
 
 const EXPECTED: &str = "an expanded file: run xacro first";
@@ -26,11 +28,6 @@ pub(crate) fn report(robot: &Tag<'_>, log: &mut Diagnostics) -> bool {
         }
     }
     macros
-}
-
-/// Whether a value holds an expression, which has an error of its own.
-pub(crate) fn is_expression(value: &str) -> bool {
-    value.contains("${") || value.contains("$(")
 }
 
 fn is_macro(tag: &Tag<'_>) -> bool {

@@ -109,7 +109,7 @@ fn on(row: &'static Effect, selector: &Selector, spot: &Spot<'_>, log: &mut Diag
     let before = log.count();
     let says = match &spot.node.value {
         Value::Text(word) if word == "off" => vec![asked(None, spot)],
-        Value::Text(word) if word == "urdf" && urdf::offers(row) => {
+        Value::Text(word) if urdf::source(word) == "urdf" && urdf::offers(row) => {
             vec![asked(Some(Numbers { from_urdf: true, ..empty(row) }), spot)]
         }
         Value::Text(word) if word == collision::WORD && collision::offers(row) => {
@@ -210,7 +210,7 @@ fn from(row: &Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<&'static
         spot.wrong(log, expected);
         return None;
     };
-    let source = sources(row).find(|source| *source == word.as_str());
+    let source = sources(row).find(|source| *source == urdf::source(word));
     if source.is_none() {
         log.error((spot.node.at, &spot.key), Code::Word, quoted_with_reason(word), expected);
     }
@@ -219,7 +219,7 @@ fn from(row: &Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<&'static
 
 /// A word for a source of numbers that an effect does not have.
 fn quoted_with_reason(word: &str) -> String {
-    let why = match word {
+    let why = match urdf::source(word) {
         "urdf" => ", which has no numbers for it",
         collision::WORD => ", which has no geometry for it",
         _ => "",

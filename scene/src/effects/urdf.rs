@@ -1,4 +1,4 @@
-//! What a URDF says of effects: `<dynamics>` and `<limit>`.
+//! What a file of a robot says of effects: in a URDF, `<dynamics>` and `<limit>`.
 
 use articulated_core::description::Joint;
 
@@ -10,6 +10,11 @@ use super::resolve::Filled;
 /// Whether the format has numbers for this effect.
 pub(crate) fn offers(row: &Effect) -> bool {
     row.fields.iter().any(|field| tag(row.id, field.name).is_some())
+}
+
+/// The word for the file of the robot, for which others stand.
+pub(super) fn source(word: &str) -> &str {
+    if word == "file" { "urdf" } else { word }
 }
 
 /// The words for what an effect may take from the URDF.
@@ -24,6 +29,9 @@ pub(crate) fn tag(effect: EffectId, field: &str) -> Option<&'static str> {
     match (effect, field) {
         (EffectId::damping, "damping") => Some("dynamics damping"),
         (EffectId::friction, "friction") => Some("dynamics friction"),
+        (EffectId::armature, "inertia") => Some("joint armature"),
+        (EffectId::spring, "stiffness") => Some("joint stiffness"),
+        (EffectId::spring, "rest") => Some("joint springref"),
         (EffectId::limit, "lower") => Some("limit lower"),
         (EffectId::limit, "upper") => Some("limit upper"),
         (EffectId::motor, "torque") => Some("limit effort"),
@@ -46,6 +54,9 @@ pub(crate) fn number(joint: &Joint, tag: &str) -> Option<f64> {
     let number = match tag {
         "dynamics damping" => joint.dynamics.damping?,
         "dynamics friction" => joint.dynamics.friction?,
+        "joint armature" => joint.dynamics.armature?,
+        "joint stiffness" => joint.dynamics.stiffness?,
+        "joint springref" => joint.dynamics.rest?,
         "limit lower" => joint.limit?.lower,
         "limit upper" => joint.limit?.upper,
         "limit effort" => joint.limit?.effort,

@@ -11,7 +11,7 @@ use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Span, S
 use articulated_core::effect::Applied;
 use articulated_core::model::{Model, ModelError};
 use articulated_core::suggest::Suggester;
-use articulated_formats::{Options, Reading, SNAP_EXPECTED, can_snap, read};
+use articulated_formats::{Options, Reading, SNAP_EXPECTED, can_snap, read_with};
 
 use super::options::{Appended, RobotOptions, RobotRequest};
 use crate::effects::{Edited, Resolved};
@@ -99,7 +99,8 @@ impl RobotRequest<'_> {
 
     /// The document, with all edits that can be made.
     fn edit(&self, log: &mut Diagnostics) -> Option<Editing<'_>> {
-        let reading = read(self.document, &self.reader_options()).map_err(|findings| log.take(findings)).ok()?;
+        let reading =
+            read_with(&self.options.included, self.document, &self.reader_options()).map_err(|findings| log.take(findings)).ok()?;
         let mut editing = Editing { request: *self, reading, springs: Vec::new(), frames: None };
         let mut refused = log.apart();
         let appended = editing.edit(&mut refused);
@@ -262,7 +263,7 @@ impl Editing<'_> {
     fn append(&mut self, other: &Appended, editor: &mut Editor<'_>, log: &mut Diagnostics) {
         // Its root moves with the link that carries it.
         let options = Options { file: other.file.value.clone(), base: Base::Floating, ..self.request.reader_options() };
-        let reading = match read(&other.document, &options) {
+        let reading = match read_with(&self.request.options.included, &other.document, &options) {
             Ok(reading) => reading,
             Err(findings) => return log.take(findings),
         };

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use articulated_core::description::Base;
 use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Span, Spanned};
 use articulated_core::suggest::nearest;
-use articulated_formats::{Disk, Sources};
+use articulated_formats::{Disk, Formats, Included, Options, Sources, included};
 
 use super::build::BuiltRobot;
 use super::options::{Appended, RobotOptions, RobotRequest};
@@ -37,6 +37,8 @@ pub struct Loader<'a> {
     pub bundled: &'a [Bundled<'a>],
     /// The files that were read.
     pub files: Vec<PathBuf>,
+    /// The files that documents of robots include.
+    pub included: Included,
 }
 
 /// A scene with the documents that it names.
@@ -82,7 +84,7 @@ pub fn open_in(scene: Scene, folder: &Path, bundled: &[Bundled<'_>]) -> Result<O
 impl Default for Loader<'_> {
     /// Of the file system, from the folder in which the program runs; no bundled robots.
     fn default() -> Self {
-        Self { sources: &Disk, root: PathBuf::new(), seen_from: "", bundled: &[], files: Vec::new() }
+        Self { sources: &Disk, root: PathBuf::new(), seen_from: "", bundled: &[], files: Vec::new(), included: Included::default() }
     }
 }
 
@@ -114,6 +116,14 @@ impl Loader<'_> {
         }
     }
 
+    /// Reads the files that a robot's document includes; `name`: the document's.
+    pub fn include(&mut self, name: &str, document: &[u8], formats: Formats) {
+        let options = Options { file: name.to_owned(), formats, ..Options::default() };
+        let found = included(self.sources, &self.root, document, &options);
+        self.files.extend(found.files().map(|(path, _)| self.root.join(path)));
+        self.included.extend(found);
+    }
+
     /// The scene of this name, which `span` names.
     pub fn scene(&mut self, name: &Path, span: &Span, log: &mut Diagnostics) -> Option<Scene> {
         let bytes = self.read(name, span, "scene", log)?;
@@ -128,6 +138,7 @@ impl Loader<'_> {
         scene.fill_robot(&mut options);
         let appended = self.append(folder, &mut options.append, log);
         let (file, document, _) = robot.filter(|_| appended)?;
+        options.included = self.included.clone();
         Some(Opened { scene, file, document, options, files: self.files.clone() })
     }
 
@@ -138,7 +149,9 @@ impl Loader<'_> {
                 let at = scene.code.places.robot;
                 let name = seen_from(at, folder, name);
                 let document = self.read(&name, &Span { file: scene.file.clone(), at }, "urdf", log)?;
-                Some((name.display().to_string(), document, Base::Fixed))
+                let name = name.display().to_string();
+                self.include(&name, &document, Formats::default());
+                Some((name, document, Base::Fixed))
             }
             Robot::Bundled(name) => match self.bundled.iter().find(|one| one.name == name) {
                 Some(one) => Some((format!("{name}.urdf"), one.document.as_bytes().to_vec(), one.base)),
@@ -161,7 +174,10 @@ impl Loader<'_> {
             let span = other.file.span.clone().unwrap_or_default();
             let name = seen_from(span.at, folder, &other.file);
             match self.read(&name, &span, "append.urdf", log) {
-                Some(document) => (other.document, other.file.value) = (document, name.display().to_string()),
+                Some(document) => {
+                    (other.document, other.file.value) = (document, name.display().to_string());
+                    self.include(&other.file.value, &other.document, Formats::default());
+                }
                 None => all = false,
             }
         }

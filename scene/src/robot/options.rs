@@ -5,7 +5,7 @@ use articulated_core::diagnostic::Spanned;
 use articulated_core::effect::Applied;
 use articulated_core::model::GRAVITY;
 use articulated_core::spatial::Reference;
-use articulated_formats::Formats;
+use articulated_formats::{Formats, Included};
 
 use crate::scene::Scene;
 
@@ -45,6 +45,8 @@ pub struct RobotOptions {
     pub snap_angles: Option<f64>,
     /// The formats of robot files.
     pub formats: Formats,
+    /// The files that the documents of the robot and of appended robots include.
+    pub included: Included,
 }
 
 /// Another robot, such as a gripper, to be fixed to a link. Its links and joints get a prefix
@@ -95,6 +97,7 @@ impl Default for RobotOptions {
             allow_unphysical_inertia: false,
             snap_angles: None,
             formats: Formats::default(),
+            included: Included::default(),
         }
     }
 }

@@ -76,6 +76,7 @@ pub(crate) fn joint(random: &mut Random, flavour: Flavour, parent: usize, child:
         pitch: if kind == Helical { *random.choose(&[0.2, -0.05, 1.5]) } else { 0.0 },
         locked: (flavour.locked && kind != Fixed && random.chance(0.12)).then(|| locked(random, kind)),
         mimic: None,
+        also: Vec::new(),
         limit: matches!(kind, Revolute | Prismatic | Helical).then_some(Limit { lower: -2.5, upper: 2.5, effort: 100.0, velocity: 10.0 }),
         dynamics: JointDynamics::default(),
     }

@@ -39,7 +39,8 @@ const LONG: [&str; 2] = ["coriolis_matrix", "inverse_dynamics_derivatives"];
 fn robots(forbid_unsafe: bool) -> Vec<Robot> {
     let robot = |name: &str, urdf: &str, base: Base, functions: &[&str]| {
         let options = Options {
-            target: Target::Rust(RustOptions { batch: vec![Real::F64, Real::F32], forbid_unsafe, ..RustOptions::default() }),
+            target: Target::Rust(RustOptions { forbid_unsafe, ..RustOptions::default() }),
+            batch: vec![Real::F64, Real::F32],
             ..Options::default()
         };
         with(name.into(), urdf, base, false, options, |name| functions.contains(&name))

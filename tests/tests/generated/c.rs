@@ -2,10 +2,10 @@
 
 use std::sync::LazyLock;
 
-use articulated_codegen::{COptions, Options, Target, generate};
+use articulated_codegen::{COptions, Options, Real, Target, generate};
 use articulated_core::algorithm::{Shape, functions};
 use articulated_core::description::Base;
-use articulated_tests::c_program;
+use articulated_tests::c_program::{self, Vectors};
 use articulated_tests::measure::{arguments, error};
 use articulated_tests::program::Program;
 use articulated_tests::random_tree::{Flavour, random_tree};
@@ -28,7 +28,9 @@ fn robots(header_only: bool) -> Vec<Robot> {
             casadi: false,
             no_libm: header_only || name.contains("own_math"),
         });
-        let options = Options { target, level: level.parse().expect("a level"), ..Options::default() };
+        // Headers are checked for warnings with all that they can have.
+        let batch = if header_only { vec![Real::F64, Real::F32] } else { Vec::new() };
+        let options = Options { target, batch, level: level.parse().expect("a level"), ..Options::default() };
         with(name.into(), urdf, base, false, options, wanted)
     };
     let bundled = |name: &str| articulated_models::robot(name).expect("a bundled robot").urdf;
@@ -52,10 +54,119 @@ fn robots(header_only: bool) -> Vec<Robot> {
 static PROGRAM: LazyLock<Program> = LazyLock::new(|| {
     let shape = |robot: &Robot| robot.case.model.shape();
     let all: Vec<(&str, Shape, _)> = ROBOTS.iter().map(|r| (r.name.as_str(), shape(r), &r.generated)).collect();
-    let program = c_program::build(&all);
+    let program = c_program::build(&all, Vectors::Any);
     println!("compiled {} robots in {:.1?}", all.len(), program.time);
     program
 });
+
+/// Robots with functions of many states and limbs in lanes, in each way in which their C can be
+/// compiled on this machine.
+static MANY: LazyLock<Vec<Robot>> = LazyLock::new(|| {
+    let robot = |name: &str, urdf: &str, base: Base, level: &str, own_math: bool, wanted: &dyn Fn(&str) -> bool| {
+        let target = Target::C(COptions { prefix: Some(name.to_owned()), no_libm: own_math, ..COptions::default() });
+        let batch = vec![Real::F64, Real::F32];
+        let options = Options { target, batch, level: level.parse().expect("a level"), ..Options::default() };
+        with(name.into(), urdf, base, false, options, wanted)
+    };
+    let bundled = |name: &str| articulated_models::robot(name).expect("a bundled robot").urdf;
+    let tree = urdf_text(&random_tree(102, Flavour { massless: false, ..Flavour::WRITTEN }));
+    let short = |name: &str| !name.contains("derivatives") && name != "coriolis_matrix";
+    vec![
+        robot("arm", include_str!("../../robots/arm.urdf"), Base::Fixed, "f64", false, &|_| true),
+        robot("arm_own_math", include_str!("../../robots/arm.urdf"), Base::Fixed, "f32_f64", true, &short),
+        robot("tree", &tree, Base::Floating, "f64", false, &short),
+        robot("gripper_arm", bundled("gripper_arm"), Base::Fixed, "f64", false, &short),
+        robot("quadruped", bundled("quadruped"), Base::Floating, "f64", false, &|name| ["inverse_dynamics", "mass_matrix"].contains(&name)),
+        robot("strider", include_str!("../../robots/strider.urdf"), Base::Floating, "f64", false, &short),
+        robot("stone", "<robot name='stone'><link name='stone'/></robot>", Base::Fixed, "f64", false, &|_| true),
+    ]
+});
+
+static WAYS: LazyLock<Vec<(Vectors, Program)>> = LazyLock::new(|| {
+    let all: Vec<(&str, Shape, _)> = MANY.iter().map(|r| (r.name.as_str(), r.case.model.shape(), &r.generated)).collect();
+    let ways = [Vectors::Any, Vectors::Own, Vectors::None];
+    ways.into_iter().map(|vectors| (vectors, c_program::build(&all, vectors))).collect()
+});
+
+/// States one after the other, and in blocks of which the last is not full.
+#[test]
+fn c_of_many_states_gives_what_the_generic_library_gives() {
+    // In units of roundoff of the type; 3.4 were seen in Rust.
+    const ALLOWED: f64 = 8.0;
+    for (vectors, program) in WAYS.iter() {
+        for (robot, real) in MANY.iter().flat_map(|r| [(r, Real::F64), (r, Real::F32)]) {
+            let unit = if real == Real::F32 { f64::from(f32::EPSILON) / f64::EPSILON } else { 1.0 };
+            let states = single_states(robot, 37);
+            for form in ["batch", "blocks"] {
+                let mut worst = (0.0, "");
+                for name in robot.functions() {
+                    let given: Vec<Vec<&[f64]>> = states.iter().map(|s| arguments(name, s)).collect();
+                    let call = format!("{name} {form} {}", real.name());
+                    for (state, found) in states.iter().zip(program.run(&robot.name, &call, &given)) {
+                        let far = error(&robot.case, name, state, &found) / unit;
+                        worst = if far > worst.0 { (far, name) } else { worst };
+                    }
+                }
+                println!("{vectors:?} {} {real:?} {form}: {:.1} units of roundoff in {}", robot.name, worst.0, worst.1);
+                assert!(worst.0 <= ALLOWED, "{vectors:?} {} {real:?} {form}: {} units of roundoff in {}", robot.name, worst.0, worst.1);
+            }
+        }
+    }
+}
+
+/// The single functions of the same robots, with limbs in lanes, with the processor's own vectors
+/// and without any.
+#[test]
+fn c_with_and_without_vectors_gives_what_the_generic_library_gives() {
+    let in_lanes = MANY.iter().filter(|r| r.generated.source.contains("_LIMBS\n")).count();
+    assert!(in_lanes >= 2, "{in_lanes} robots have limbs in lanes");
+    for (vectors, program) in WAYS.iter() {
+        for robot in MANY.iter() {
+            let unit = if robot.generated.level.is_single() { f64::from(f32::EPSILON) / f64::EPSILON } else { 1.0 };
+            let states = single_states(robot, STATES);
+            for name in robot.functions() {
+                let given: Vec<Vec<&[f64]>> = states.iter().map(|s| arguments(name, s)).collect();
+                for (state, found) in states.iter().zip(program.run(&robot.name, name, &given)) {
+                    let far = error(&robot.case, name, state, &found) / unit;
+                    assert!(far <= 64.0, "{vectors:?} {name} of {}: {far} units of roundoff", robot.name);
+                }
+            }
+        }
+    }
+}
+
+/// Angles beyond the fast reduction, and numbers that are none, change no other state.
+#[test]
+fn a_state_in_c_ignores_its_neighbours() {
+    let robot = &MANY[0];
+    let good = single_states(robot, 37);
+    for (vectors, program) in WAYS.iter() {
+        for real in ["f64", "f32"] {
+            let mut mixed = good.clone();
+            for (state, x) in mixed.iter_mut().step_by(3).zip([f64::NAN, f64::INFINITY, 1e15, -3e5].into_iter().cycle()) {
+                state.q[1] = x;
+            }
+            let run = |states: &[articulated_tests::case::State]| {
+                let given: Vec<Vec<&[f64]>> = states.iter().map(|s| arguments("inverse_dynamics", s)).collect();
+                program.run("arm", &format!("inverse_dynamics batch {real}"), &given)
+            };
+            for (k, (expected, found)) in run(&good).iter().zip(&run(&mixed)).enumerate() {
+                let q = mixed[k].q[1];
+                match k % 3 {
+                    0 if q.is_finite() => {
+                        let mut state = mixed[k].clone();
+                        state.q[1] = if real == "f32" { f64::from(q as f32) } else { q };
+                        let unit = if real == "f32" { f64::from(f32::EPSILON) / f64::EPSILON } else { 1.0 };
+                        let far = error(&robot.case, "inverse_dynamics", &state, found) / unit;
+                        assert!(far <= 8.0, "{vectors:?} {real} at {q} rad: {far} units of roundoff");
+                    }
+                    0 => assert!(found[0].is_nan() || found[1].is_nan(), "{vectors:?} {real} at {q}"),
+                    _ => assert_eq!(expected, found, "state {k}, {vectors:?} {real}"),
+                }
+            }
+        }
+    }
+}
 
 const STATES: usize = 8;
 
@@ -110,6 +221,29 @@ fn headers_compile_without_a_warning_as_c_and_as_cplusplus() {
         }
     }
     assert!(compilers > 0, "a compiler of C is there");
+}
+
+/// The first program of docs/embedded.md, as printed, with the robot of the README.
+#[test]
+fn the_program_of_the_documentation_compiles_and_prints_what_the_library_computes() {
+    let page = include_str!("../../../docs/embedded.md");
+    let (_, rest) = page.split_once("```c\n").expect("a program");
+    let (program, _) = rest.split_once("```").expect("its end");
+    let mut request = articulated_codegen::Request::new("robots/arm.urdf", include_str!("../../robots/arm.urdf"));
+    request.options.functions = vec!["inverse_dynamics".into(), "mass_matrix".into()];
+    request.options.target = Target::C(COptions { prefix: Some("arm".into()), ..COptions::default() });
+    let generated = generate(&request).expect("a robot");
+    let printed = c_program::run_program(program, &generated.files);
+    let mut q = vec![0.0; generated.model.nq()];
+    q[generated.model.joints().iter().find(|j| j.name == "elbow").expect("a joint").q.0] = 0.5;
+    let zeros = vec![0.0; generated.model.nv()];
+    let mut tau = zeros.clone();
+    let function = articulated_core::algorithm::function::<f64>("inverse_dynamics").expect("a function");
+    let mut workspace = articulated_core::algorithm::Workspace::new(&generated.model);
+    function.call(&generated.model, &mut workspace, &[&q, &zeros, &zeros], &mut tau).expect("lengths that fit");
+    let expected: String = tau.iter().map(|x| format!("{x:.3}\n")).collect();
+    assert_eq!(printed, expected);
+    assert!(tau.iter().any(|x| x.abs() > 0.1), "{tau:?}");
 }
 
 #[test]

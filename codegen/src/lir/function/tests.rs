@@ -51,11 +51,13 @@ fn every_body_computes_what_its_graph_does() {
                 [(true, Precision::default(), true), (false, "f32".parse().unwrap(), true), (false, "compensated".parse().unwrap(), false)]
             {
                 let options = Options { limbs, level, stages: false, ..Options::default() };
-                let can = Capabilities { level, vectors: raw_memory && level.has_lanes(), raw_memory, states: true };
+                let vectors = raw_memory && level.has_lanes();
+                let can = Capabilities { level, vectors, raw_memory, scalar_too: true, loops: vectors, spills: raw_memory, states: true };
                 let program = program::program(FunctionSpec::plain(function), &model, &[], &options, can);
                 let lowered = Function::of(&program, model.shape(), false, can);
                 let mut all = vec![(&lowered.body, &program.graph)];
                 all.extend(lowered.few_registers.as_ref().map(|body| (body, &program.graph)));
+                all.extend(lowered.scalar.as_ref().map(|(body, _)| (body, &program.plain)));
                 let states = lowered.states.as_ref().unwrap();
                 all.extend([Some(&states.body), states.few_registers.as_ref()].into_iter().flatten().map(|body| (body, &program.plain)));
                 for (body, graph) in all {

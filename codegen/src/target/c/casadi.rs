@@ -110,7 +110,8 @@ fn zeros(function: &Function) -> Vec<bool> {
     let count: usize = function.results.iter().map(|array| array.numbers()).sum();
     let mut zeros = vec![true; count];
     let mut set = |at: usize, operand: &Operand| zeros[at] = matches!(operand, Operand::Constant(x) if *x == 0.0);
-    for statement in function.body.pieces.iter().flatten() {
+    let body = function.scalar.as_ref().map_or(&function.body, |(body, _)| body);
+    for statement in body.pieces.iter().flatten() {
         match statement {
             Stmt::Store(Store::Fill(at, n, x)) => (*at..at + n).for_each(|at| set(at, &Operand::Constant(*x))),
             Stmt::Store(Store::One(at, number)) | Stmt::Result(at, number) => set(*at, &number.of),

@@ -33,13 +33,20 @@ pub(super) fn text(prefix: &str, real: Real, own_math: bool, source: &str) -> St
     filled(&out, prefix, (real, &tag, &lanes), own_math)
 }
 
-/// Sines and cosines of four angles of one state, if `source` calls them.
-pub(super) fn of_four(prefix: &str, own_math: bool, source: &str) -> String {
-    if !source.contains(&format!("{prefix}_sin_cos_of_four(")) {
-        return String::new();
+/// Vectors of limbs, and sines and cosines of four angles of one state, if `source` has them.
+pub(super) fn of_limbs(prefix: &str, own_math: bool, source: &str) -> String {
+    let of_state = source.contains(&format!("{prefix}_sin_cos_of_four("));
+    let of_limbs = source.contains(&format!("{prefix}_x4_sin_cos("));
+    let types: Vec<usize> = [4, 2].into_iter().filter(|n| source.contains(&format!("{prefix}_x{n}_")) || *n == 4 && of_state).collect();
+    let mut out = String::new();
+    for (k, width) in types.iter().enumerate() {
+        let text = if k == 0 { WIDTH.to_owned() } else { String::new() } + LIMB_TYPES;
+        let text = text.replace("@SIZE", &(8 * width).to_string());
+        out += &filled(&text, prefix, (Real::F64, &format!("{prefix}_x{width}_"), "4"), own_math);
     }
-    let text = [WIDTH, FOUR_TYPES, OF_FOUR[0], SINES, TURN, OF_FOUR[1]].concat();
-    filled(&text, prefix, (Real::F64, &format!("{prefix}_four_"), "4"), own_math)
+    let sines = if of_state || of_limbs { [OF_LIMBS[0], SINES, TURN, OF_LIMBS[1]].concat() } else { String::new() };
+    let text = sines + if of_state { OF_FOUR } else { "" };
+    out + &filled(&text, prefix, (Real::F64, &format!("{prefix}_x4_"), "4"), own_math)
 }
 
 /// A text with its words: `@P_` is the prefix of the robot and `@U_` the same in upper case; `@T_`
@@ -85,6 +92,12 @@ const WIDTH: &str = "\
 #define @U_VECTOR 32
 #else
 #define @U_VECTOR 16
+#endif
+/* Limbs in lanes need shuffles too. */
+#if @U_VECTOR && (defined(__clang__) || __GNUC__ >= 12)
+#define @U_LIMBS 1
+#else
+#define @U_LIMBS 0
 #endif
 #if defined(__GNUC__)
 #define @U_ALIGNED __attribute__((aligned(64)))
@@ -278,44 +291,61 @@ static inline @T_v @T_sin_cos(@T_v x, @T_v *cosine) {
 ",
 ];
 
-/// The types of the sines of single states, by vectors of four.
-const FOUR_TYPES: &str = "\
+/// A vector of so many doubles of one state.
+const LIMB_TYPES: &str = "\
 #if @U_VECTOR
-typedef double @T_v __attribute__((vector_size(32)));
-typedef long long @T_m __attribute__((vector_size(32)));
-typedef unsigned long long @T_b __attribute__((vector_size(32)));
+typedef double @T_v __attribute__((vector_size(@SIZE)));
+typedef long long @T_m __attribute__((vector_size(@SIZE)));
+typedef unsigned long long @T_b __attribute__((vector_size(@SIZE)));
+typedef double @T_u __attribute__((vector_size(@SIZE), aligned(8), may_alias));
 #endif
+
 ";
 
-/// The function of four angles of one state, around the sines.
-const OF_FOUR: [&str; 2] = [
+/// The function of a vector of angles of one state, around the sines.
+const OF_LIMBS: [&str; 2] = [
     "\
-/* Sines and cosines of n angles, at most four, rad: any; at most 1 ulp off up to @LIMIT, beyond as the mathematical library. */
-static inline void @P_sin_cos_of_four(double a, double b, double c1, double d, int n1, double *sines, double *cosines) {
 #if @U_VECTOR
-    const @T_v x = {a, b, c1, d};
-    (void)n1;
+/* Sines and cosines of four angles, rad: any; at most 1 ulp off up to @LIMIT, beyond as the mathematical library. */
+static inline void @T_sin_cos(const @T_v *angles, @T_v *sines, @T_v *cosines) {
+    const @T_v x = *angles;
 ",
     "\
+    *sines = s;
+    *cosines = t;
+}
+#endif
+
+",
+];
+
+/// The same of n angles that are no vector.
+const OF_FOUR: &str = "\
+/* Sines and cosines of n angles, at most four, rad. */
+static inline void @P_sin_cos_of_four(double a, double b, double c, double d, int n, double *sines, double *cosines) {
+#if @U_VECTOR
+    const @T_v x = {a, b, c, d};
+    @T_v s, t;
+    (void)n;
+    @T_sin_cos(&x, &s, &t);
     for (int i = 0; i < 4; i++) {
         sines[i] = s[i];
         cosines[i] = t[i];
     }
 #else
-    const double x[4] = {a, b, c1, d};
-    for (int i = 0; i < n1; i++) {
+    const double x[4] = {a, b, c, d};
+    for (int i = 0; i < n; i++) {
         sines[i] = @MATH_SIN(x[i]);
         cosines[i] = @MATH_COS(x[i]);
     }
 #endif
 }
 
-",
-];
+";
 
 /// States one after the other, and a block with each number of all its states together.
 const TILES: &str = "\
-#if @U_VECTOR && (defined(__clang__) || __GNUC__ >= 12)
+#if @U_LIMBS
 typedef @REAL @T_t __attribute__((vector_size(@TILE)));
 typedef @REAL @T_tu __attribute__((vector_size(@TILE), aligned(@BYTES), may_alias));
 /* Four numbers of four states: rows become columns. */

@@ -7,6 +7,7 @@ mod batch;
 mod casadi;
 mod constants;
 mod lanes;
+mod limbs;
 mod math;
 mod statements;
 
@@ -16,8 +17,8 @@ use articulated_core::algorithm::Dim;
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 
 use crate::capabilities::Capabilities;
-use crate::lir::Stmt;
 use crate::lir::function::{Argument, Ending, Function};
+use crate::lir::{Body, Stmt, Ty};
 use crate::target::{File, Module};
 use crate::{Arithmetic, Options, Precision, TrigAccuracy};
 pub(in crate::target) use constants::check_names;
@@ -36,9 +37,10 @@ pub struct COptions {
     pub no_libm: bool,
 }
 
-/// Numbers, in pieces where a function is long. The compiler decides what waits in memory.
+/// Numbers, and vectors where compilers have them; in pieces where a function is long. The compiler decides what waits in memory.
 pub(super) fn capabilities(options: &Options) -> Capabilities {
-    Capabilities { level: options.level, vectors: false, raw_memory: false, states: !options.batch.is_empty() }
+    let (vectors, states) = (options.level.has_lanes(), !options.batch.is_empty());
+    Capabilities { level: options.level, vectors, raw_memory: true, scalar_too: true, loops: false, spills: false, states }
 }
 
 /// Reports a level that C does not have, and a prefix that is not a name.
@@ -127,13 +129,10 @@ impl Source<'_> {
         constants::declare(&mut out, self.module, &self.prefix, &infinity(self.own_math()), self.header_only);
         let mut functions = String::new();
         for function in &self.module.functions {
-            if self.header_only && function.body.pieces.len() > 1 {
-                self.pieces(&mut functions, function);
-            }
-            self.document(&mut functions, function);
             if self.header_only {
                 self.function(&mut functions, function);
             } else {
+                self.document(&mut functions, function);
                 let _ = writeln!(functions, "{};\n", self.declaration(function));
             }
         }
@@ -155,9 +154,6 @@ impl Source<'_> {
         constants::define(&mut out, self.module, &self.prefix, &infinity(self.own_math()));
         let mut functions = String::new();
         for function in &self.module.functions {
-            if function.body.pieces.len() > 1 {
-                self.pieces(&mut functions, function);
-            }
             self.function(&mut functions, function);
         }
         self.batches(&mut functions);
@@ -191,7 +187,7 @@ impl Source<'_> {
     fn with_math(&self, functions: &str) -> String {
         let batch = if functions.contains("_lanes_f") { self.module.request.options.batch.as_slice() } else { &[] };
         let vectors: String = batch.iter().map(|real| lanes::text(&self.prefix, *real, self.no_libm, functions)).collect();
-        let text = vectors + &lanes::of_four(&self.prefix, self.no_libm, functions) + functions;
+        let text = vectors + &lanes::of_limbs(&self.prefix, self.no_libm, functions) + functions;
         let own = self.own_math().map(|prefix| math::text(prefix, &text));
         own.unwrap_or_default() + &text
     }
@@ -270,15 +266,31 @@ impl Source<'_> {
         if numbers == 0 { format!("{ty} *{name}") } else { format!("{ty} {name}[{}]", self.lengths(dims)) }
     }
 
+    /// The function, with vectors where compilers have them and without where they have not.
     fn function(&self, out: &mut String, function: &Function) {
-        let (body, results) = (&function.body, self.results(function));
+        let body = (&function.body, function.ending);
+        let Some((scalar, ending)) = &function.scalar else { return self.of_body(out, function, body) };
+        let _ = writeln!(out, "#if {}_LIMBS", self.upper);
+        self.of_body(out, function, body);
+        let _ = writeln!(out, "#else");
+        self.of_body(out, function, (scalar, *ending));
+        let _ = writeln!(out, "#endif\n");
+    }
+
+    fn of_body(&self, out: &mut String, function: &Function, (body, ending): (&Body, Ending)) {
         let names = self.names(function);
+        if body.pieces.len() > 1 {
+            self.pieces(out, function, body);
+        }
+        if self.header_only {
+            self.document(out, function);
+        }
         let _ = writeln!(out, "{} {{\n{}", self.declaration(function), unused(&names));
-        self.zeros(out, function, &results);
+        self.zeros(out, function, body, ending);
         match body.pieces.as_slice() {
-            [piece] => self.statements(out, function, piece),
+            [piece] => self.statements(out, function, body, piece),
             pieces => {
-                let _ = writeln!(out, "    {} m[{}];", self.numbers().computed, body.kept);
+                let _ = writeln!(out, "    {} m[{}];", self.value(body), body.kept);
                 (0..pieces.len()).for_each(|c| _ = writeln!(out, "    {}({}, m);", self.piece(function, c), names.join(", ")));
             }
         }
@@ -290,9 +302,19 @@ impl Source<'_> {
         function.arguments.iter().map(|a| a.name).chain(self.results(function)).collect()
     }
 
-    fn statements(&self, out: &mut String, function: &Function, statements: &[Stmt]) {
+    /// The type of the values of a body.
+    fn value(&self, body: &Body) -> String {
+        if let Ty::Vector(width) = body.ty { format!("{}_x{width}_v", self.prefix) } else { self.numbers().computed }
+    }
+
+    fn statements(&self, out: &mut String, function: &Function, body: &Body, statements: &[Stmt]) {
         let results = self.results(function);
         let place = |at: usize| place(function, &results, at);
+        if let Ty::Vector(_) = body.ty {
+            let math = self.own_math().map_or(String::new(), |prefix| format!("{prefix}_"));
+            let printer = limbs::Printer { body, arguments: &function.arguments, prefix: &self.prefix, math: &math, places: &place };
+            return printer.statements(out, statements);
+        }
         Printer { arguments: &function.arguments, numbers: &self.numbers(), places: &place }.statements(out, statements);
     }
 
@@ -300,23 +322,23 @@ impl Source<'_> {
         format!("{}_{}_piece_{c}", self.prefix, function.spec.name)
     }
 
-    fn pieces(&self, out: &mut String, function: &Function) {
+    fn pieces(&self, out: &mut String, function: &Function, body: &Body) {
         let parameters = self.parameters(function, &self.results(function)).join(", ");
         let (linkage, unused) = (if self.header_only { "static inline" } else { "static" }, unused(&self.names(function)));
-        for (c, piece) in function.body.pieces.iter().enumerate() {
+        for (c, piece) in body.pieces.iter().enumerate() {
             let name = self.piece(function, c);
-            let _ = writeln!(out, "{linkage} void {name}({parameters}, {} *m) {{\n{unused}    (void)m;", self.numbers().computed);
-            self.statements(out, function, piece);
+            let _ = writeln!(out, "{linkage} void {name}({parameters}, {} *m) {{\n{unused}    (void)m;", self.value(body));
+            self.statements(out, function, body, piece);
             let _ = writeln!(out, "}}\n");
         }
     }
 
     /// Zeros that no statement stores.
-    fn zeros(&self, out: &mut String, function: &Function, results: &[&str]) {
-        if !function.body.is_partial || function.ending == Ending::Filled {
+    fn zeros(&self, out: &mut String, function: &Function, body: &Body, ending: Ending) {
+        if !body.is_partial || ending == Ending::Filled {
             return;
         }
-        for (name, array) in results.iter().zip(&function.results).filter(|(_, array)| array.numbers() > 0) {
+        for (name, array) in self.results(function).iter().zip(&function.results).filter(|(_, array)| array.numbers() > 0) {
             let _ = writeln!(out, "    for (int k = 0; k < {}; k++) {{\n        {name}[k] = 0;\n    }}", array.numbers());
         }
     }

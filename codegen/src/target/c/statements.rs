@@ -188,11 +188,6 @@ impl Printer<'_> {
             }
         }
         match op {
-            Op::Add => format!("{a} + {b}"),
-            Op::Sub => format!("{a} - {b}"),
-            Op::Mul => format!("{a} * {b}"),
-            Op::Div => format!("{a} / {b}"),
-            Op::Neg => format!("-{a}"),
             Op::Sqrt => self.call("sqrt", &a),
             Op::Sin => self.call("sin", &a),
             Op::Cos => self.call("cos", &a),
@@ -200,12 +195,7 @@ impl Printer<'_> {
             Op::Positive => format!("{a} > {}", self.vector(&Operand::Constant(0.0))),
             Op::Select if self.numbers.lanes.is_some() => self.call("select", &format!("{a}, {b}, {c}")),
             Op::Select => format!("{a} ? {b} : {c}"),
-            // Compilers contract these where the processor has the instruction, and are allowed to.
-            Op::MulAdd => format!("{a} * {b} + {c}"),
-            Op::MulSub => format!("{a} * {b} - {c}"),
-            Op::NegMulAdd => format!("{c} - {a} * {b}"),
-            Op::NegMulSub => format!("-({a} * {b}) - {c}"),
-            Op::Constant | Op::Input | Op::LaneConstant | Op::LaneInput | Op::Broadcast | Op::ReduceAdd => a,
+            _ => operator(op, &a, &b, &c).unwrap_or(a),
         }
     }
 
@@ -228,6 +218,23 @@ impl Printer<'_> {
             _ => text,
         }
     }
+}
+
+/// Operations that C has operators for, of numbers and of vectors.
+pub(super) fn operator(op: Op, a: &str, b: &str, c: &str) -> Option<String> {
+    Some(match op {
+        Op::Add => format!("{a} + {b}"),
+        Op::Sub => format!("{a} - {b}"),
+        Op::Mul => format!("{a} * {b}"),
+        Op::Div => format!("{a} / {b}"),
+        Op::Neg => format!("-{a}"),
+        // Compilers contract these where the processor has the instruction, and are allowed to.
+        Op::MulAdd => format!("{a} * {b} + {c}"),
+        Op::MulSub => format!("{a} * {b} - {c}"),
+        Op::NegMulAdd => format!("{c} - {a} * {b}"),
+        Op::NegMulSub => format!("-({a} * {b}) - {c}"),
+        _ => return None,
+    })
 }
 
 /// The macro for infinity: of `math.h`, or the module's own.

@@ -59,7 +59,9 @@ impl Options {
 /// Vectors and raw memory, unless `unsafe` is forbidden.
 pub(super) fn capabilities(options: &Options, rust: &RustOptions) -> Capabilities {
     let raw_memory = !rust.forbid_unsafe;
-    Capabilities { level: options.level, vectors: raw_memory && options.level.has_lanes(), raw_memory, states: !options.batch.is_empty() }
+    let vectors = raw_memory && options.level.has_lanes();
+    let states = !options.batch.is_empty();
+    Capabilities { level: options.level, vectors, raw_memory, scalar_too: false, loops: vectors, spills: raw_memory, states }
 }
 
 /// One file.

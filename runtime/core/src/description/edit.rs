@@ -150,6 +150,7 @@ impl<'a> Editor<'a> {
                 parent: joint.parent + first_link,
                 child: joint.child + first_link,
                 mimic: joint.mimic.map(|m| Mimic { joint: m.joint + first_joint, ..m }),
+                also: joint.also.iter().map(|m| Mimic { joint: m.joint + first_joint, ..*m }).collect(),
                 ..joint.clone()
             });
         }

@@ -104,6 +104,13 @@ pub enum EditError {
         /// What would be right.
         expected: &'static str,
     },
+    /// A joint cannot follow others as requested.
+    Coupling {
+        /// The joint that was to follow.
+        joint: String,
+        /// What was found, and what would be right.
+        what: String,
+    },
     /// The robot to be appended has no root.
     NoRoot {
         /// Its name.
@@ -120,6 +127,7 @@ impl fmt::Display for EditError {
             Self::LockedBase => f.write_str("the floating base cannot be locked: say that the base is fixed"),
             Self::LockedFixed { joint } => write!(f, "joint {joint:?} is fixed: there is nothing to lock"),
             Self::LockedFollower { joint, leader } => write!(f, "joint {joint:?} follows {leader:?}: lock that one"),
+            Self::Coupling { joint, what } => write!(f, "joint {joint:?} cannot follow others: {what}"),
             Self::LockedTwice { joint } => write!(f, "joint {joint:?} is locked already"),
             Self::Coordinates { joint, kind, found } => {
                 let (name, n) = (kind.name(), kind.sizes().0);

@@ -10,10 +10,11 @@
 //!   two of them.
 //! * A [`Frame`] is a frame that coincides with no link.
 //!
-//! [`Description::lock`], [`Description::attach`], [`Description::append`] and
-//! [`Description::shaft`] edit it; an [`Editor`] makes many edits.
+//! [`Description::lock`], [`Description::couple`], [`Description::attach`],
+//! [`Description::append`] and [`Description::shaft`] edit it; an [`Editor`] makes many edits.
 
 mod collision;
+mod couple;
 mod edit;
 mod error;
 mod moments;
@@ -26,6 +27,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 pub use collision::{Collision, CollisionShape, ContactSphere, RIM_POINTS, Visual};
+pub use couple::Coupling;
 pub use edit::{Editor, Payload};
 pub use error::EditError;
 pub use moments::PrincipalMoments;
@@ -259,6 +261,9 @@ pub struct Joint {
     pub locked: Option<Vec<f64>>,
     /// The joint that this one follows.
     pub mimic: Option<Mimic>,
+    /// Further joints that it follows: q is the sum of what each of them gives. Empty without
+    /// `mimic`.
+    pub also: Vec<Mimic>,
     /// Limits, where the file gives them.
     pub limit: Option<Limit>,
     /// Forces that the file gives to the joint. The dynamics do not use them, unless effects are

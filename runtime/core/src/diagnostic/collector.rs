@@ -92,7 +92,8 @@ impl Diagnostics {
         self.push_unused(Unused { line: at.line(), subject: subject.clone(), tag, why: why.into() });
     }
 
-    fn push_unused(&mut self, unused: Unused) {
+    /// Takes content that is not used, of any file.
+    pub fn push_unused(&mut self, unused: Unused) {
         if self.unused.len() < MOST_UNUSED {
             self.unused.push(unused);
         } else {

@@ -38,6 +38,8 @@ pub enum Fault {
     Twice,
     /// A motor drives a joint that others follow, not one that follows.
     Follows,
+    /// The joint follows several others.
+    FollowsSeveral,
     /// The link is fixed to the base: nothing feels it.
     Still,
     /// A floating base has no joint to be damped, sprung or driven.
@@ -81,6 +83,9 @@ impl fmt::Display for EffectError {
                 nearest.iter().try_for_each(|n| write!(f, "; the nearest is {n:?}"))
             }
             Fault::Twice => write!(f, "given twice: expected one for a joint"),
+            Fault::FollowsSeveral => {
+                f.write_str("the joint follows several others: expected the joints that it follows, or a joint that moves by itself")
+            }
             Fault::Follows => write!(f, "the joint follows another: expected the joint that it follows, which is what a motor drives"),
             Fault::Still => write!(f, "the link is fixed to the base, nothing would feel it: expected a link that moves"),
             Fault::Base => {
@@ -167,6 +172,9 @@ impl Model<f64> {
         for body in bodies.iter().map(|&i| &self.bodies[i]) {
             if body.effects.joint.iter().any(|e| e.effect == one.effect) {
                 return Err(Fault::Twice);
+            }
+            if bodies.len() > 1 && body.coordinates.mimic.is_some() {
+                return Err(Fault::FollowsSeveral);
             }
             if body.joint.quaternion().is_some() && one.effect.row().needs_coordinate() {
                 return Err(Fault::NoCoordinate);

@@ -8,7 +8,7 @@ use core::fmt;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::leaders::leads;
+use super::leaders::{leads, others};
 use super::{Body, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model};
 use crate::description::{self, Base, Description, Inertial, JointKind, Mimic};
 use crate::effect::Effects;
@@ -74,7 +74,10 @@ impl fmt::Display for ModelError {
                 write!(f, "joint {FLOATING_BASE:?}: found the name of the joint by which a floating base moves, expected another")
             }
             Self::BadMimic { joint } => {
-                write!(f, "joint {joint:?}: mimic: expected a leader with one degree of freedom that does not follow this joint")
+                write!(
+                    f,
+                    "joint {joint:?}: mimic: expected a leader with one degree of freedom that follows neither this joint nor several"
+                )
             }
             Self::TooLarge { names } => {
                 write!(
@@ -133,6 +136,8 @@ struct Builder<'a> {
     body_of: Vec<Option<usize>>,
     /// For each joint that follows another, what it moves by.
     leads: Vec<Option<Mimic>>,
+    /// The bodies of joints that follow several: the joint, and what each body moves by.
+    followers: Vec<(usize, usize, Mimic)>,
     model: Model<f64>,
 }
 
@@ -166,7 +171,15 @@ impl<'a> Builder<'a> {
             nv: 0,
         };
         let (links, joints) = (description.links.len(), description.joints.len());
-        Self { description, children, seats: vec![None; links], body_of: vec![None; joints], leads: leads(&description.joints), model }
+        Self {
+            description,
+            children,
+            seats: vec![None; links],
+            body_of: vec![None; joints],
+            leads: leads(&description.joints),
+            followers: Vec::new(),
+            model,
+        }
     }
 
     fn add_root(&mut self, root: usize, base: Base) {
@@ -202,6 +215,9 @@ impl<'a> Builder<'a> {
         let (mut parent, x_parent) = self.seats[joint.parent].expect("a parent is seated before its children");
         let mut x_joint = x_parent.compose(&joint.origin.placement());
         let stages = stages(joint);
+        if let ([stage], false, None) = (stages.as_slice(), joint.also.is_empty(), &joint.locked) {
+            return self.add_coupled(index, joint, (parent, x_joint), stage);
+        }
         if let Some(coordinates) = self.locked_at(index)? {
             let x = stages.iter().fold(x_joint, |x, stage| stage.locked(x, &coordinates, joint));
             self.seat(joint.child, parent, x);
@@ -227,6 +243,36 @@ impl<'a> Builder<'a> {
         }
         self.body_of[index] = Some(parent);
         self.seat(joint.child, parent, x_joint);
+        Ok(())
+    }
+
+    /// A joint that follows several: for each of them a body, all on one axis, since
+    /// R(Σ qᵢ) = Π R(qᵢ), and so for slides and screws. All have the joint's name.
+    fn add_coupled(&mut self, index: usize, joint: &description::Joint, seat: Seat, stage: &Stage) -> Result<(), ModelError> {
+        let joints = &self.description.joints;
+        let terms: Option<Vec<Mimic>> = core::iter::once(self.leads[index]).chain(others(joints, &self.leads, joint)).collect();
+        let terms = terms.ok_or_else(|| ModelError::BadMimic { joint: joint.name.clone() })?;
+        let (mut parent, mut x) = seat;
+        for lead in &terms {
+            let leader = &joints[lead.joint];
+            if let Some(at) = &leader.locked {
+                let [at] = at.as_slice() else {
+                    return Err(ModelError::BadLock { joint: leader.name.clone(), kind: leader.kind, found: at.len() });
+                };
+                x = stage.locked(x, &[lead.multiplier * at + lead.offset], joint);
+            }
+        }
+        for lead in terms.into_iter().filter(|lead| joints[lead.joint].locked.is_none()) {
+            let coordinates = Coordinates { pitch: per_radian(joint), ..AT_ZERO };
+            parent = self.push_body(joint.name.clone(), parent, x.compose(&turned(stage.turn)), stage.joint, coordinates);
+            x = turned_back(stage.turn);
+            self.followers.push((parent, index, lead));
+            self.body_of[index] = Some(parent);
+        }
+        if self.body_of[index].is_some() && !self.description.links[joint.child].intermediate {
+            self.model.bodies[parent].link = Some(stage.turn.transpose());
+        }
+        self.seat(joint.child, parent, x);
         Ok(())
     }
 
@@ -272,10 +318,18 @@ impl<'a> Builder<'a> {
             return Err(self.not_a_tree());
         }
         for (index, joint) in self.description.joints.iter().enumerate() {
-            if let (Some(mimic), Some(body)) = (&joint.mimic, self.body_of[index]) {
-                let follow = self.follow(index, mimic).ok_or_else(|| ModelError::BadMimic { joint: joint.name.clone() })?;
+            if let (Some(mimic), Some(body), true) = (&joint.mimic, self.body_of[index], joint.also.is_empty()) {
+                let lead = self.leads[index];
+                let follow = lead
+                    .and_then(|lead| self.follow(index, mimic, lead))
+                    .ok_or_else(|| ModelError::BadMimic { joint: joint.name.clone() })?;
                 self.model.bodies[body].coordinates = follow;
             }
+        }
+        for (body, index, lead) in core::mem::take(&mut self.followers) {
+            let joint = &self.description.joints[index];
+            let follow = self.follow(index, &lead, lead).ok_or_else(|| ModelError::BadMimic { joint: joint.name.clone() })?;
+            self.model.bodies[body].coordinates = follow;
         }
         self.model.frames = self.frames();
         self.sharpen();
@@ -307,9 +361,8 @@ impl<'a> Builder<'a> {
 
     /// The coordinate that a follower moves by. The joint that it follows has to move, and so, as
     /// each follower is asked, do all down to the last.
-    fn follow(&self, follower: usize, mimic: &Mimic) -> Option<Coordinates<f64>> {
+    fn follow(&self, follower: usize, mimic: &Mimic, lead: Mimic) -> Option<Coordinates<f64>> {
         let joints = &self.description.joints;
-        let lead = self.leads[follower]?;
         self.body_of[mimic.joint]?;
         let body = self.body_of[lead.joint].filter(|_| joints[lead.joint].kind.sizes() == (1, 1))?;
         let Coordinates { q, v, .. } = self.model.bodies[body].coordinates;

@@ -28,11 +28,20 @@ pub(super) fn leads(joints: &[Joint]) -> Vec<Option<Mimic>> {
     leads
 }
 
+/// What each further term of a joint that follows several moves by: `None` as in [`leads`].
+pub(super) fn others(joints: &[Joint], leads: &[Option<Mimic>], joint: &Joint) -> Vec<Option<Mimic>> {
+    joint.also.iter().map(|term| lead(joints, leads, *term)).collect()
+}
+
 /// What is moved by at the end of the chain that begins with `first`; of its joints beyond the
 /// first few, `known` says it already.
 fn lead(joints: &[Joint], known: &[Option<Mimic>], first: Mimic) -> Option<Mimic> {
     let (mut lead, mut walked) = (first, 0);
     while let Some(own) = followed(joints.get(lead.joint)?) {
+        // A joint that follows several has no single leader.
+        if !joints[lead.joint].also.is_empty() {
+            return None;
+        }
         let next = if walked < WALKED { own } else { known[lead.joint]? };
         // multiplier · (m q + o) + offset
         let (multiplier, offset) = (lead.multiplier * next.multiplier, lead.multiplier * next.offset + lead.offset);

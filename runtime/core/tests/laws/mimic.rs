@@ -1,8 +1,8 @@
 //! Joints that follow others: q_full = G·q + c, so v_full = G·v and τ = Gᵀ·τ_full.
 
-use articulated_core::description::Description;
+use articulated_core::description::{Base, Coupling, Description};
 use articulated_core::model::JointInfo;
-use articulated_test_support::case::{Case, State, for_each_tree, inverse_dynamics, placements};
+use articulated_test_support::case::{Case, State, for_each_tree, inverse_dynamics, placements, read};
 use articulated_test_support::measure::{distance, scale, torque_scale};
 use articulated_test_support::random_tree::Flavour;
 
@@ -81,3 +81,104 @@ fn a_follower_that_turns_back_keeps_the_tip_level() {
     let placed = placements(&case.model, &state.q);
     assert!((placed[24] - 1.0).abs() < 1e-15 && placed[26].abs() < 1e-15);
 }
+
+/// q = Σ cᵢ qᵢ + o: each leader has its part of the torque, and nothing else moves otherwise.
+#[test]
+fn torque_on_each_of_several_leaders_is_that_of_equal_power() {
+    let mut met = std::cell::Cell::new(0);
+    for_each_tree(120, Flavour { mimic: false, locked: false, ..Flavour::ANY }, |free, random| {
+        let joints = &free.description.joints;
+        let single: Vec<usize> = (0..joints.len()).filter(|&j| joints[j].kind.sizes() == (1, 1)).collect();
+        let [.., a, b, c, follower] = single[..] else { return };
+        met.set(met.get() + 1);
+        let terms = [(a, 0.5), (b, -1.25), (c, 2.0)];
+        let mut tree = free.description.clone();
+        let leaders = terms.iter().map(|(j, coefficient)| (joints[*j].name.clone(), *coefficient)).collect();
+        tree.couple(&Coupling { joint: joints[follower].name.clone(), leaders, offset: 0.3 }).unwrap();
+        let reduced = Case::new("", tree, free.base);
+        assert_eq!(reduced.model.nv() + 1, free.model.nv());
+        let state = reduced.state(random);
+        let info = |case: &Case, name: &str| case.model.joints().iter().find(|j| j.name == name).unwrap().clone();
+        let led = |x: &[f64], of: fn(&JointInfo) -> usize| -> f64 {
+            terms.iter().map(|(j, coefficient)| coefficient * x[of(&info(&reduced, &joints[*j].name))]).sum()
+        };
+        let (mut q, mut v, mut acceleration) = (vec![], vec![], vec![]);
+        for own in free.model.joints() {
+            if own.name == joints[follower].name {
+                q.push(led(&state.q, |j| j.q.0) + 0.3);
+                v.push(led(&state.v, |j| j.v.0));
+                acceleration.push(led(&state.a, |j| j.v.0));
+                continue;
+            }
+            let at = info(&reduced, &own.name);
+            q.extend(&state.q[at.q.0..][..at.q.1]);
+            v.extend(&state.v[at.v.0..][..at.v.1]);
+            acceleration.extend(&state.a[at.v.0..][..at.v.1]);
+        }
+        let full = inverse_dynamics(&free.model, &q, &v, &acceleration);
+        let mut expected = vec![0.0; reduced.model.nv()];
+        for own in free.model.joints() {
+            if own.name == joints[follower].name {
+                for (j, coefficient) in terms {
+                    expected[info(&reduced, &joints[j].name).v.0] += coefficient * full[own.v.0];
+                }
+            } else {
+                let at = info(&reduced, &own.name);
+                (0..own.v.1).for_each(|k| expected[at.v.0 + k] += full[own.v.0 + k]);
+            }
+        }
+        let far = distance(&reduced.inverse_dynamics(&state), &expected, &torque_scale(&reduced, &state));
+        assert!(far <= FEW, "torques: {far} units of roundoff");
+        let far = distance(&placements(&reduced.model, &state.q), &placements(&free.model, &q), &scale(&reduced, "placements", &state));
+        assert!(far <= FEW, "placements: {far} units of roundoff");
+        crate::reference::textbook_holds(&reduced, random);
+    });
+    assert!(*met.get_mut() > 30, "only {} trees", met.get());
+}
+
+/// A differential drive, by hand: M = 1e-4 + 0.05²·0.01 on the diagonal, −0.05²·0.01 beside it.
+#[test]
+fn the_mass_matrix_of_a_differential_drive_couples_its_motors() {
+    let mut tree = read(DIFFERENTIAL);
+    let check = |tree: &Description| {
+        let case = Case::new("differential", tree.clone(), Base::Fixed);
+        let mass = case.call::<f64>("mass_matrix", &[&[0.4, -0.2]]);
+        for (found, expected) in mass.iter().zip([1.25e-4, -2.5e-5, -2.5e-5, 1.25e-4]) {
+            assert!((found - expected).abs() < 1e-18, "{mass:?}");
+        }
+    };
+    check(&tree);
+    // The same by an edit.
+    let pitch = tree.joint("pitch").unwrap();
+    (tree.joints[pitch].mimic, tree.joints[pitch].also) = (None, Vec::new());
+    let leaders = vec![("m1".to_owned(), 0.05), ("m2".to_owned(), -0.05)];
+    let coupling = Coupling { joint: "pitch".into(), leaders, offset: 0.0 };
+    tree.couple(&coupling).unwrap();
+    check(&tree);
+    // A locked leader is a constant.
+    tree.lock("m2", &[0.5]).unwrap();
+    let case = Case::new("differential", tree.clone(), Base::Fixed);
+    let placed = placements(&case.model, &[1.0]);
+    let angle = (0.05_f64 * 1.0 - 0.05 * 0.5).sin();
+    assert!(placed.iter().any(|x| (x - angle).abs() < 1e-15), "{placed:?}");
+    for (change, what) in [
+        (Coupling { joint: "pich".into(), ..coupling.clone() }, "pitch"),
+        (coupling.clone(), "follows another already"),
+        (Coupling { joint: "m1".into(), leaders: vec![("m1".into(), 1.0)], offset: 0.0 }, "expected another joint"),
+        (Coupling { joint: "m1".into(), leaders: vec![("pitch".into(), 1.0)], offset: 0.0 }, "which does not follow several"),
+        (Coupling { joint: "m1".into(), leaders: vec![("m2".into(), f64::NAN)], offset: 0.0 }, "expected a finite number"),
+        (Coupling { joint: "m1".into(), leaders: vec![], offset: 0.0 }, "follows this joint"),
+    ] {
+        let told = tree.couple(&change).unwrap_err().to_string();
+        assert!(told.contains(what), "{told}");
+    }
+}
+
+const DIFFERENTIAL: &str = "<robot name='differential'><link name='base'/>
+    <joint name='m1' type='continuous'><parent link='base'/><child link='r1'/><axis xyz='0 0 1'/></joint>
+    <link name='r1'><inertial><mass value='0.1'/><inertia ixx='1e-4' ixy='0' ixz='0' iyy='1e-4' iyz='0' izz='1e-4'/></inertial></link>
+    <joint name='m2' type='continuous'><parent link='base'/><child link='r2'/><axis xyz='0 0 1'/></joint>
+    <link name='r2'><inertial><mass value='0.1'/><inertia ixx='1e-4' ixy='0' ixz='0' iyy='1e-4' iyz='0' izz='1e-4'/></inertial></link>
+    <joint name='pitch' type='continuous'><parent link='base'/><child link='p'/><axis xyz='0 1 0'/>
+      <mimic joint='m1' multiplier='0.05'/><mimic joint='m2' multiplier='-0.05'/></joint>
+    <link name='p'><inertial><mass value='1'/><inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' iyz='0' izz='0.01'/></inertial></link></robot>";

@@ -15,7 +15,7 @@ const FEW: f64 = 16.0;
 /// Functions that have a scale which shares nothing with the library.
 const MEASURED: [&str; 5] = ["placements", "inverse_dynamics", "bias_forces", "gravity_torque", "mass_matrix"];
 
-fn textbook_holds(case: &Case, random: &mut Random) {
+pub(crate) fn textbook_holds(case: &Case, random: &mut Random) {
     let state = case.state(random);
     for name in MEASURED {
         let given = arguments(name, &state);

@@ -20,7 +20,7 @@ use articulated_core::algorithm::{Function, function};
 use articulated_core::description::Description;
 use articulated_core::model::Model;
 
-use crate::compiled::Rustc;
+use crate::compiled::{Cc, Rustc};
 use crate::console::Progress;
 use crate::error::Error;
 use crate::parallel;
@@ -42,9 +42,6 @@ pub use report::{Report, Settings};
 /// terms.
 const VARIANT_BOUND: f64 = 1e-9;
 
-/// The name of code compiled without options for this machine.
-const DEFAULT_BUILD: &str = "any processor";
-
 /// Measures a robot. `whole`: its model with a frame for each link.
 pub fn measure(robot: Robot, description: &Description, whole: &Model<f64>, settings: &Settings) -> Result<Report, Error> {
     let tips = robot.options.robot.frames.is_none().then(|| Tips::of(description, whole));
@@ -60,9 +57,11 @@ pub fn measure(robot: Robot, description: &Description, whole: &Model<f64>, sett
         states: settings.states as usize,
         seed: settings.seed,
         batch: settings.batch.clone(),
+        compilers: if settings.c { Cc::all() } else { Vec::new() },
         named: !settings.functions.is_empty(),
     };
     report.notes.extend(plan.reference.note());
+    report.notes.extend(plan.note_of_c(settings.c));
     let prepared = prepare_all(&plan, settings, &mut report)?;
     measure_all(&prepared, &peers, settings.repetitions as usize, &mut report);
     report.making = Making::all(&plan, &prepared, &peers)?;
@@ -134,7 +133,7 @@ fn function_report(ready: &Prepared, peers: &[Peer], repetitions: usize) -> Func
     let (f, model) = (ready.function, &ready.model);
     let arguments = prepare::arguments(&ready.states, f);
     let (generated, generic) = (Contender::generated(&ready.compiled, f), Contender::generic(model, f));
-    let variants: Vec<Contender> = ready.anywhere.iter().map(|compiled| Contender::generated(compiled, f)).collect();
+    let variants: Vec<Contender> = ready.variants.iter().map(|(_, compiled)| Contender::generated(compiled, f)).collect();
     let out = f.len(model.shape());
     let batches: Vec<Many> = ready.batches.as_ref().map_or_else(Vec::new, |compiled| Many::all(compiled, &arguments, out));
     let known: Vec<(&Peer, Contender)> = peers.iter().filter_map(|p| Some((p, p.contender(f, model)?))).collect();
@@ -176,10 +175,10 @@ fn function_report(ready: &Prepared, peers: &[Peer], repetitions: usize) -> Func
         regular,
     };
     let batches = batches.iter().zip(of_many).map(|(many, time)| beside.report(many, time)).collect();
-    let variants = ready.anywhere.iter().zip(&variants).zip(other).map(|((compiled, contender), time)| {
+    let variants = ready.variants.iter().zip(&variants).zip(other).map(|(((variant, compiled), contender), time)| {
         let difference = || peer::difference(f, model, &arguments, &generic, |k, _| Some(contender.call(&arguments[k])));
         VariantReport {
-            variant: DEFAULT_BUILD,
+            variant: variant.clone(),
             time: timing::summary(time),
             over_generated: timing::ratio(time, &own[0]),
             code_bytes: compiled.code_bytes(f.name),

@@ -11,7 +11,7 @@ use articulated_core::model::Model;
 
 use super::accuracy::{self, Errors, Reference};
 use super::contender::Contender;
-use crate::compiled::{Compiled, CompiledBatches, Rustc, Target};
+use crate::compiled::{Cc, Compiled, CompiledBatches, Rustc, Target};
 use crate::console::Progress;
 use crate::error::{Error, undefined};
 use crate::robot::Robot;
@@ -29,6 +29,8 @@ pub(super) struct Plan {
     pub(super) seed: u64,
     /// The types in which many states at once are compared too.
     pub(super) batch: Vec<Real>,
+    /// The compilers of the same functions in C.
+    pub(super) compilers: Vec<Cc>,
     /// Whether the user named the functions: otherwise those that rustc needs minutes for are left
     /// out.
     pub(super) named: bool,
@@ -38,6 +40,9 @@ pub(super) struct Plan {
 /// than all others together.
 const MOST: u64 = 20_000;
 
+/// The name of code compiled without options for this machine.
+const DEFAULT_BUILD: &str = "any processor";
+
 /// A function that is ready to run.
 pub(super) struct Prepared {
     pub(super) function: &'static Function<f64>,
@@ -45,8 +50,9 @@ pub(super) struct Prepared {
     pub(super) model: Model<f64>,
     pub(super) states: Vec<State>,
     pub(super) compiled: Compiled,
-    /// The same source compiled for any processor, where that is something else.
-    pub(super) anywhere: Option<Compiled>,
+    /// Other code of ours, with its name: the same source for any processor where that is
+    /// something else, and C.
+    pub(super) variants: Vec<(String, Compiled)>,
     /// Of many states at once.
     pub(super) batches: Option<CompiledBatches>,
     pub(super) entry: Entry,
@@ -77,7 +83,11 @@ impl Plan {
         progress.doing(format!("{}: rustc", function.name));
         let build = |target| Compiled::build_for(target, &self.rustc, &generated).map_err(|e| Error::tool(&e));
         let compiled = build(Target::Own)?;
-        let anywhere = Target::differ().then(|| build(Target::Any)).transpose()?;
+        let mut variants = Vec::new();
+        if Target::differ() {
+            variants.push((DEFAULT_BUILD.to_owned(), build(Target::Any)?));
+        }
+        variants.extend(self.in_c(&robot, function, progress)?);
         let batches = (!self.batch.is_empty()).then(|| self.batches(&robot, function)).transpose()?;
         let (model, source_bytes, entry) = (generated.model, generated.source.len(), generated.ledger.functions.into_iter().next());
         let entry = entry.ok_or_else(|| Error::tool(&"the generator kept no account"))?;
@@ -86,7 +96,29 @@ impl Plan {
         let ours = Contender::generated(&compiled, function);
         let errors = accuracy::errors(&self.reference, &model, function, &arguments(&states, function), &ours);
         progress.step();
-        Ok(Prepared { function, model, states, compiled, anywhere, batches, entry, source_bytes, generation, errors })
+        Ok(Prepared { function, model, states, compiled, variants, batches, entry, source_bytes, generation, errors })
+    }
+
+    /// The function in C, by each compiler.
+    fn in_c(&self, robot: &Robot, function: &Function<f64>, progress: &Progress) -> Result<Vec<(String, Compiled)>, PrepareError> {
+        if self.compilers.is_empty() {
+            return Ok(Vec::new());
+        }
+        let mut robot = robot.clone();
+        robot.options.target = Compiled::c_target();
+        let generated = robot.generate(&[function.name.to_owned()])?;
+        let one = |cc: &Cc| {
+            progress.doing(format!("{}: {}", function.name, cc.name()));
+            Ok((cc.name(), Compiled::build_c(cc, &generated).map_err(|e| Error::tool(&e))?))
+        };
+        self.compilers.iter().map(one).collect()
+    }
+
+    /// Which compilers of C there are, if they were `requested`.
+    pub(super) fn note_of_c(&self, requested: bool) -> Option<String> {
+        let all: Vec<&str> = self.compilers.iter().map(|cc| cc.version.as_str()).collect();
+        let found = if all.is_empty() { "no compiler of C was found".to_owned() } else { format!("C by {}", all.join(" and by ")) };
+        requested.then(|| format!("{found}, with {}", Cc::flags().join(" ")))
     }
 
     /// The function of many states.

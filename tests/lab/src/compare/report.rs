@@ -69,6 +69,8 @@ pub struct Settings {
     pub functions: Vec<String>,
     /// The types in which many states at once are compared too.
     pub batch: Vec<Real>,
+    /// Whether the same functions in C, by each compiler that is installed, are compared too.
+    pub c: bool,
     /// Peer libraries, and a list of them.
     pub peer: Vec<PathBuf>,
     /// The list.
@@ -166,7 +168,7 @@ pub(super) struct FunctionReport {
 /// The generated function in another form.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct VariantReport {
-    pub(super) variant: &'static str,
+    pub(super) variant: String,
     /// ns per state.
     pub(super) time: Summary,
     pub(super) over_generated: Summary,
@@ -321,7 +323,7 @@ impl Report {
             let sides = f.errors.map(|e| [("generated", e.generated), ("generic", e.generic)]).into_iter().flatten();
             let wrong = sides.into_iter().find(|(_, e)| beyond(*e, bound));
             let ours = wrong.map(|(side, e)| format!("{}: the error of {side} code is {e:.1} units, more than {bound}", f.function));
-            let variants = f.variants.iter().map(|v| (format!("code for {}", v.variant), v.largest_difference, other_bound));
+            let variants = f.variants.iter().map(|v| (format!("the code of \"{}\"", v.variant), v.largest_difference, other_bound));
             let peers = f.peers.iter().map(|p| (format!("peer {}", p.peer), p.largest_difference, p.bound));
             let lanes = f.peers_in_lanes.iter().map(|p| (format!("peer {}", p.peer), p.largest_difference, p.bound));
             let batches = f.batches.iter().map(|b| (format!("batch of {} in {}", b.numbers, b.layout), b.largest_difference, b.bound));

@@ -1,6 +1,7 @@
 //! Generated source, compiled and loaded: what a user's program would run.
 
 mod batch;
+mod cc;
 mod filler;
 mod rustc;
 mod symbols;
@@ -15,6 +16,7 @@ use articulated_core::algorithm::{FunctionError, Shape, check_count, check_lengt
 use crate::native::{Kernel, Native};
 use crate::process::Folder;
 pub(crate) use batch::{Batch, CompiledBatches};
+pub use cc::Cc;
 pub(crate) use filler::{Filler, INSTRUCTIONS as FILLER_INSTRUCTIONS};
 use rustc::Makes;
 pub use rustc::{CompileError, Rustc, Target};

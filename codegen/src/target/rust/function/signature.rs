@@ -270,7 +270,8 @@ mod tests {
         let zero = graph.constant(0.0);
         graph.outputs = vec![zero; spec.parts.iter().map(numbers).sum()];
         let program = Program { spec, graph, plain: Graph::default(), entry, columns: None };
-        let can = Capabilities { level: Precision::default(), vectors: true, raw_memory: true, states: false };
+        let level = Precision::default();
+        let can = Capabilities { level, vectors: true, raw_memory: true, scalar_too: false, loops: true, spills: true, states: false };
         let mut function = Function::of(&program, shape, false, can);
         function.ending = ending;
         work(&Signature::of(&function, "f64"))

@@ -20,6 +20,7 @@ impl<S: Scalar> Textbook<S> {
         // The order and the places of coordinates are the interface's, so they are taken from the
         // model; no number is.
         let model = Model::new(description, base)?;
+        let description = &description.in_sequence();
         let mut body_of_link = vec![0; description.links.len()];
         let mut bodies: Vec<Link<S>> = Vec::with_capacity(description.links.len());
         for (link, joint) in depth_first(description) {

@@ -203,7 +203,7 @@ fn times(report: &Report) -> Table {
     let variants: &[VariantReport] = report.functions.first().map_or(&[], |f| &f.variants);
     let mut columns: Vec<(String, &str)> =
         [("function", ""), ("generated", "ns"), ("IQR", "ns")].into_iter().map(|(t, u)| (t.to_owned(), u)).collect();
-    columns.extend(variants.iter().flat_map(|v| [(v.variant.to_owned(), "ns"), ("/generated".to_owned(), "ratio")]));
+    columns.extend(variants.iter().flat_map(|v| [(v.variant.clone(), "ns"), ("/generated".to_owned(), "ratio")]));
     let generic = [("generic", "ns"), ("IQR", "ns"), ("generic/generated", "ratio"), ("IQR", "ratio")];
     columns.extend(generic.into_iter().map(|(t, u)| (t.to_owned(), u)));
     let mut table = Table::new(columns);

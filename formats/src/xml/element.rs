@@ -29,6 +29,11 @@ impl<'a> Tag<'a> {
         Tag { node: self.node, lines: self.lines, subject }
     }
 
+    /// Whether expressions of xacro in this document have errors of their own.
+    pub(crate) fn reports_expressions(&self) -> bool {
+        self.lines.expressions_reported
+    }
+
     pub(crate) fn subject(&self) -> &'a Subject {
         self.subject
     }

@@ -6,12 +6,20 @@ use articulated_core::diagnostic::At;
 pub(crate) struct Lines<'a> {
     text: &'a str,
     starts: Vec<usize>,
+    /// Whether expressions of xacro in this text have errors of their own.
+    pub(super) expressions_reported: bool,
 }
 
 impl<'a> Lines<'a> {
     pub(crate) fn of(text: &'a str) -> Self {
         let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
-        Self { text, starts }
+        Self { text, starts, expressions_reported: false }
+    }
+
+    /// The same, where expressions of xacro have errors of their own: they are no second error as
+    /// numbers.
+    pub(crate) fn with_expressions_reported(self) -> Self {
+        Self { expressions_reported: true, ..self }
     }
 
     /// The place of a byte.

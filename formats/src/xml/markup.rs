@@ -23,6 +23,24 @@ pub(crate) fn hint(meant: Option<&str>) -> String {
     meant.map(|name| format!(" (did you mean {}?)", quote(name))).unwrap_or_default()
 }
 
+/// The name of the first tag, after comments and declarations.
+pub(crate) fn root(bytes: &[u8]) -> Option<&[u8]> {
+    let mut rest = bytes;
+    loop {
+        rest = &rest[rest.iter().position(|b| *b == b'<')? + 1..];
+        let after = |end: &[u8]| rest.windows(end.len()).position(|window| window == end);
+        let skip = match rest {
+            [b'!', b'-', b'-', ..] => after(b"-->")?,
+            [b'!' | b'?', ..] => 1,
+            _ => {
+                let length = rest.iter().position(|b| b.is_ascii_whitespace() || matches!(b, b'/' | b'>')).unwrap_or(rest.len());
+                return Some(&rest[..length]);
+            }
+        };
+        rest = &rest[skip..];
+    }
+}
+
 /// Why a text is refused at first sight.
 pub(crate) struct Fault {
     pub(crate) position: usize,

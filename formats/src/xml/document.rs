@@ -1,9 +1,8 @@
-//! From bytes to an XML document whose root is `<robot>`.
+//! From bytes to an XML document.
 
-use articulated_core::diagnostic::{At, Code, Diagnostics, Place, Subject, quote};
+use articulated_core::diagnostic::{At, Code, Diagnostics, Place};
 use roxmltree::{Document, Error};
 
-use super::element::Tag;
 use super::lines::{Lines, line_of};
 use super::markup;
 use crate::files::MOST_BYTES;
@@ -60,16 +59,4 @@ fn line_of_fault(fault: &Error, lines: &Lines<'_>) -> At {
         Error::UnclosedRootNode | Error::UnexpectedEndOfStream | Error::NoRootNode => lines.last(),
         _ => At::line_of(fault.pos().row),
     }
-}
-
-/// The root element, if it is `<robot>`.
-pub(crate) fn robot<'a>(document: &'a Document<'a>, lines: &'a Lines<'a>, log: &mut Diagnostics) -> Option<Tag<'a>> {
-    let root = Tag::new(document.root_element(), lines, &Subject::Document);
-    if root.is("robot") {
-        return Some(root);
-    }
-    let place = root.place("");
-    let found = format!("the root element {}", quote(&root.name()));
-    log.error(place, Code::NotARobot, found, "the root element <robot>");
-    None
 }

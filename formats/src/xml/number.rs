@@ -5,8 +5,12 @@
 //! the spelling.
 
 use super::element::Tag;
-use super::xacro::is_expression;
 use articulated_core::diagnostic::{At, Code, Diagnostics, Place, quote};
+
+/// Whether a value holds an expression of xacro.
+pub(crate) fn is_expression(value: &str) -> bool {
+    value.contains("${") || value.contains("$(")
+}
 
 /// Why a word is not a number that can be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +67,7 @@ fn checked<const N: usize>(value: &str, at: At, tag: &Tag<'_>, name: &str, log: 
         Err(wrong) => wrong,
     };
     // It has its own error.
-    if is_expression(value) {
+    if tag.reports_expressions() && is_expression(value) {
         return None;
     }
     let field = format!("{} {name}", tag.name());

@@ -1,0 +1,99 @@
+//! Reads a robot and prints its numbers and its dynamics in some states, for comparisons:
+//! `dynamics FILE GX GY GZ`.
+//!
+//! Standard input: states as little-endian doubles, q, v and a one after the other, until the end.
+//! Standard output: one line of JSON, which describes the robot, then for each state, as
+//! little-endian doubles: the mass matrix by rows, inverse dynamics at (q, v, a), and for each
+//! frame the rotation by rows and the position. If the file is refused, its errors go to standard
+//! error, and the status is 1.
+
+use std::fmt::Write as _;
+use std::io::{Read, Write};
+use std::process::ExitCode;
+
+use articulated_core::algorithm::{Workspace, function};
+use articulated_core::description::{Base, Description};
+use articulated_core::model::Model;
+use articulated_formats::{Disk, MOST_BYTES, Options, Reading, read_file, read_with};
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [file, gravity @ ..] = arguments.as_slice() else {
+        eprintln!("dynamics FILE GX GY GZ");
+        return ExitCode::from(2);
+    };
+    let gravity: Vec<f64> = gravity.iter().filter_map(|x| x.parse().ok()).collect();
+    match run(file, &gravity) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(file: &str, gravity: &[f64]) -> Result<(), String> {
+    let bytes = read_file(file.as_ref(), MOST_BYTES).map_err(|error| format!("{file}: {error}"))?;
+    let options = Options { file: file.to_owned(), ..Options::default() };
+    let reading = read_with(&Disk, &bytes, &options).map_err(|diagnostics| diagnostics.to_string())?;
+    let model: Model<f64> = Model::new(&reading.description, Base::Fixed).map_err(|error| format!("{file}: {error}"))?;
+    let model = match gravity {
+        [x, y, z] => model.with_gravity([*x, *y, *z]),
+        _ => model,
+    };
+    let mut out = std::io::stdout().lock();
+    let fail = |error: std::io::Error| error.to_string();
+    writeln!(out, "{}", header(&reading, &model)).map_err(fail)?;
+    let mut input = Vec::new();
+    std::io::stdin().read_to_end(&mut input).map_err(fail)?;
+    let numbers: Vec<f64> = input.chunks_exact(8).map(|b| f64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]])).collect();
+    let size = model.nq() + 2 * model.nv();
+    let mut workspace = Workspace::new(&model);
+    for state in numbers.chunks_exact(size.max(1)) {
+        let (q, rest) = state.split_at(model.nq());
+        let (v, a) = rest.split_at(model.nv());
+        for (name, arguments) in [("mass_matrix", &[q][..]), ("inverse_dynamics", &[q, v, a]), ("placements", &[q])] {
+            let row = function::<f64>(name).ok_or(name)?;
+            let mut result = vec![0.0; row.len(model.shape())];
+            row.call(&model, &mut workspace, arguments, &mut result).map_err(|error| error.to_string())?;
+            let bytes: Vec<u8> = result.iter().flat_map(|x| x.to_le_bytes()).collect();
+            out.write_all(&bytes).map_err(fail)?;
+        }
+    }
+    Ok(())
+}
+
+fn header(reading: &Reading, model: &Model<f64>) -> String {
+    let description = &reading.description;
+    let mut out = format!("{{\"nq\": {}, \"nv\": {}, \"frames\": {}", model.nq(), model.nv(), model.frames().len());
+    let _ = write!(out, ", \"warnings\": {}, \"unused\": {}, \"links\": [", reading.warnings.len(), reading.unused.len());
+    let links = description.links.iter().filter(|link| !link.intermediate);
+    let links: Vec<String> = links.map(|link| link_of(link)).collect();
+    let _ = write!(out, "{}], \"joints\": [", links.join(", "));
+    let _ = write!(out, "{}]}}", joints(description));
+    out
+}
+
+fn link_of(link: &articulated_core::description::Link) -> String {
+    let (mass, center, inertia) = link.inertial.map_or((0.0, [0.0; 3], [0.0; 9]), |inertial| {
+        let [xx, xy, xz, yy, yz, zz] = inertial.inertia;
+        let rotation = inertial.origin.rotation.matrix::<f64>();
+        let own = rotation * articulated_core::spatial::Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) * rotation.transpose();
+        (inertial.mass, inertial.origin.xyz, std::array::from_fn(|k| own[(k / 3, k % 3)]))
+    });
+    format!("{{\"name\": {:?}, \"mass\": {mass:?}, \"center\": {center:?}, \"inertia\": {inertia:?}}}", link.name)
+}
+
+fn joints(description: &Description) -> String {
+    let moving = description.joints.iter().filter(|joint| !joint.kind.is_fixed());
+    let number = |x: Option<f64>| x.filter(|x| x.is_finite()).map_or("null".to_owned(), |x| format!("{x:?}"));
+    let all = moving.map(|joint| {
+        let own = joint.dynamics;
+        let names = ["damping", "friction", "armature", "stiffness", "rest", "lower", "upper"];
+        let limit = joint.limit;
+        let values = [own.damping, own.friction, own.armature, own.stiffness, own.rest, limit.map(|l| l.lower), limit.map(|l| l.upper)];
+        let fields: Vec<String> = names.iter().zip(values).map(|(name, value)| format!("\"{name}\": {}", number(value))).collect();
+        format!("{{\"name\": {:?}, \"kind\": {:?}, {}}}", joint.name, joint.kind.name(), fields.join(", "))
+    });
+    all.collect::<Vec<_>>().join(", ")
+}

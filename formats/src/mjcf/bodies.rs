@@ -1,0 +1,466 @@
+//! From tags to bodies: frames, copies and attached models are gone, and classes are applied.
+
+use std::rc::Rc;
+
+use articulated_core::description::{JointDynamics, Limit};
+use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
+
+use super::documents::Documents;
+use super::element::Element;
+use super::geometry::{self, Geom};
+use super::grammar::subject;
+use super::inertia::{Explicit, explicit};
+use super::pose::{Pose, Vector, about, multiply, rotate, unit};
+use super::settings::Settings;
+use super::values::Values;
+
+/// A model may have so many bodies, joints, geoms and sites altogether.
+const MOST_ITEMS: usize = 400_000;
+/// Tags may be nested so deeply, those of attached models in those that attach them.
+const MOST_DEPTH: usize = 256;
+/// Attached models may attach others so many times.
+const MOST_ATTACHED: usize = 16;
+
+/// A body with its content, in its own frame. The first body of a model is the world.
+pub(crate) struct Body<'a> {
+    /// With prefixes and suffixes; `None` where it has none.
+    pub(crate) name: Option<String>,
+    pub(crate) element: &'a Element,
+    pub(crate) settings: Rc<Settings<'a>>,
+    /// Index of the parent, which is before it.
+    pub(crate) parent: usize,
+    /// In the parent's frame, where the joints have not moved it.
+    pub(crate) pose: Pose,
+    pub(crate) joints: Vec<Joint<'a>>,
+    pub(crate) geoms: Vec<Geom<'a>>,
+    pub(crate) sites: Vec<Site<'a>>,
+    pub(crate) inertial: Option<Explicit>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Free,
+    Ball,
+    Slide,
+    Hinge,
+}
+
+pub(crate) struct Joint<'a> {
+    pub(crate) name: Option<String>,
+    pub(crate) element: &'a Element,
+    pub(crate) kind: Kind,
+    /// In the body's frame.
+    pub(crate) anchor: Vector,
+    /// Of length 1, in the body's frame.
+    pub(crate) axis: Vector,
+    /// The coordinate at which the body is where its `pos` says, rad or m.
+    pub(crate) reference: f64,
+    /// Whether its range is a bound.
+    pub(crate) is_limited: bool,
+    pub(crate) limit: Option<Limit>,
+    pub(crate) dynamics: JointDynamics,
+}
+
+pub(crate) struct Site<'a> {
+    pub(crate) element: &'a Element,
+    pub(crate) name: Option<String>,
+    pub(crate) pose: Pose,
+}
+
+/// Where a tag is.
+#[derive(Clone)]
+struct Context<'a> {
+    settings: Rc<Settings<'a>>,
+    document: usize,
+    /// The frame of the tags in that of the body.
+    frame: Pose,
+    class: usize,
+    prefix: String,
+    suffix: String,
+    attached: usize,
+}
+
+impl Context<'_> {
+    fn name(&self, element: &Element) -> Option<String> {
+        let name = element.text("name").filter(|name| !name.is_empty())?;
+        Some(format!("{}{name}{}", self.prefix, self.suffix))
+    }
+}
+
+/// All bodies of a model, parents first.
+pub(crate) fn bodies<'a>(documents: &'a Documents, log: &mut Diagnostics) -> Vec<Body<'a>> {
+    let settings: Vec<Rc<Settings<'a>>> = documents.roots().map(|root| Rc::new(Settings::of(root, log))).collect();
+    let mut build = Build { documents, settings, bodies: Vec::new(), items: 0, depth: 0 };
+    let root = documents.root(0);
+    let context = build.context(0);
+    build.add(None, root, 0, Pose::default(), &context);
+    for section in root.all("worldbody") {
+        build.content(section, 0, &context, log);
+    }
+    build.bodies
+}
+
+struct Build<'a> {
+    documents: &'a Documents,
+    settings: Vec<Rc<Settings<'a>>>,
+    bodies: Vec<Body<'a>>,
+    items: usize,
+    depth: usize,
+}
+
+impl<'a> Build<'a> {
+    fn context(&self, document: usize) -> Context<'a> {
+        let settings = self.settings[document].clone();
+        Context { settings, document, frame: Pose::default(), class: 0, prefix: String::new(), suffix: String::new(), attached: 0 }
+    }
+
+    fn add(&mut self, name: Option<String>, element: &'a Element, parent: usize, pose: Pose, context: &Context<'a>) -> usize {
+        self.bodies.push(Body {
+            name,
+            element,
+            settings: context.settings.clone(),
+            parent,
+            pose,
+            joints: Vec::new(),
+            geoms: Vec::new(),
+            sites: Vec::new(),
+            inertial: None,
+        });
+        self.bodies.len() - 1
+    }
+
+    /// Whether there is room for one more of anything; an error where there is none.
+    fn has_room(&mut self, element: &Element, log: &mut Diagnostics) -> bool {
+        self.items += 1;
+        if self.items == MOST_ITEMS {
+            element.error((&Subject::Document, ""), Code::TooLarge, "very many bodies and geoms", format!("at most {MOST_ITEMS}"), log);
+        }
+        self.items < MOST_ITEMS
+    }
+
+    /// The tags inside a body, a frame or the world.
+    fn content(&mut self, section: &'a Element, body: usize, context: &Context<'a>, log: &mut Diagnostics) {
+        self.depth += 1;
+        if self.depth > MOST_DEPTH {
+            self.depth -= 1;
+            section.error((&Subject::Document, ""), Code::TooLarge, "tags nested very deeply", format!("at most {MOST_DEPTH}"), log);
+            return;
+        }
+        self.tags(section, body, context, log);
+        self.depth -= 1;
+    }
+
+    fn tags(&mut self, section: &'a Element, body: usize, context: &Context<'a>, log: &mut Diagnostics) {
+        for element in &section.children {
+            if !self.has_room(element, log) {
+                return;
+            }
+            let subject = subject(element);
+            let class = context.settings.classes.find(element, "class", log).unwrap_or(context.class);
+            let values = |name: &str| Values::new(element, context.settings.classes.tags(class, name), &subject);
+            match element.name.as_str() {
+                "inertial" | "joint" | "freejoint" if body == 0 => {
+                    let found = format!("<{}> in the world", element.name);
+                    element.error((&subject, ""), Code::Misplaced, found, "it in a body: the world does not move", log);
+                }
+                "inertial" => {
+                    let values = Values::alone(element, &subject);
+                    self.bodies[body].inertial = explicit(&values, &context.settings.compiler, log);
+                }
+                "joint" => {
+                    if let Some(joint) = joint(&values("joint"), context, log) {
+                        self.bodies[body].joints.push(joint);
+                    }
+                }
+                "freejoint" => {
+                    let free = Joint {
+                        name: context.name(element),
+                        element,
+                        kind: Kind::Free,
+                        anchor: [0.0; 3],
+                        axis: [0.0, 0.0, 1.0],
+                        reference: 0.0,
+                        is_limited: false,
+                        limit: None,
+                        dynamics: JointDynamics::default(),
+                    };
+                    self.bodies[body].joints.push(free);
+                }
+                "geom" => {
+                    if let Some(geom) = geometry::geom(&values("geom"), &context.settings, &context.frame, log) {
+                        self.bodies[body].geoms.push(geom);
+                    }
+                }
+                "site" => {
+                    let site = Site { element, name: context.name(element), pose: site(&values("site"), context, log) };
+                    self.bodies[body].sites.push(site);
+                }
+                "body" => self.body(element, body, context, log),
+                "frame" => {
+                    let values = Values::alone(element, &subject);
+                    let pose = values.pose(&context.settings.compiler.angles, log);
+                    let class = context.settings.classes.find(element, "childclass", log).unwrap_or(context.class);
+                    let context = Context { frame: context.frame.then(&pose), class, ..context.clone() };
+                    self.content(element, body, &context, log);
+                }
+                "replicate" => self.replicate(element, body, context, log),
+                "attach" => self.attach(element, body, context, log),
+                // What is not used has been reported.
+                _ => {}
+            }
+        }
+    }
+
+    fn body(&mut self, element: &'a Element, parent: usize, context: &Context<'a>, log: &mut Diagnostics) {
+        let subject = subject(element);
+        let values = Values::alone(element, &subject);
+        let pose = values.pose(&context.settings.compiler.angles, log);
+        let class = context.settings.classes.find(element, "childclass", log).unwrap_or(context.class);
+        if values.yes("mocap", log) == Some(true) {
+            let attribute = element.attribute("mocap");
+            element.unused(&subject, attribute, "the body is fixed at its place: nothing moves it", log);
+        }
+        if values.number("gravcomp", log).is_some_and(|part| part != 0.0) {
+            let expected = "gravity on all bodies: it is not compensated";
+            element.warning((&subject, "gravcomp"), Code::LostDynamics, "a body whose weight is compensated", expected, log);
+        }
+        let body = self.add(context.name(element), element, parent, context.frame.then(&pose), context);
+        let context = Context { frame: Pose::default(), class, ..context.clone() };
+        self.content(element, body, &context, log);
+    }
+
+    fn replicate(&mut self, element: &'a Element, body: usize, context: &Context<'a>, log: &mut Diagnostics) {
+        let values = Values::alone(element, &Subject::Document);
+        let angles = &context.settings.compiler.angles;
+        let Some(count) = values.integer("count", log).and_then(|count| usize::try_from(count).ok()) else {
+            element.error((&Subject::Document, "count"), Code::MissingAttribute, "no number", "how many copies there are", log);
+            return;
+        };
+        let offset = values.exactly::<3>("offset", log).unwrap_or_default();
+        let euler = values.exactly::<3>("euler", log).unwrap_or_default();
+        let class = context.settings.classes.find(element, "childclass", log).unwrap_or(context.class);
+        let separator = values.text("sep").unwrap_or_default();
+        let digits = count.to_string().len();
+        let mut position = [0.0; 3];
+        for copy in 0..count {
+            if !self.has_room(element, log) {
+                return;
+            }
+            let rotation = angles.euler(euler.map(|angle| angle * copy as f64));
+            let pose = Pose { position, rotation };
+            let suffix = format!("{separator}{copy:0digits$}{}", context.suffix);
+            let context = Context { frame: context.frame.then(&pose), class, suffix, ..context.clone() };
+            self.content(element, body, &context, log);
+            position = pose.then(&Pose::at(offset)).position;
+        }
+    }
+
+    fn attach(&mut self, element: &'a Element, body: usize, context: &Context<'a>, log: &mut Diagnostics) {
+        let text = |name: &str| element.text(name);
+        if context.attached >= MOST_ATTACHED {
+            let found = format!("models in models, {MOST_ATTACHED} deep");
+            element.error((&Subject::Document, "model"), Code::TooLarge, found, "a model that does not attach itself", log);
+            return;
+        }
+        let document = match text("model") {
+            None => context.document,
+            Some(name) => match self.documents.model(context.document, name) {
+                Some(document) => document,
+                None => {
+                    // A file that cannot be read has an error already.
+                    if !context.settings.models.contains_key(name) {
+                        element.error(
+                            (&Subject::Document, "model"),
+                            Code::UnknownName,
+                            quote(name),
+                            "the name of a <model> of <asset>",
+                            log,
+                        );
+                    }
+                    return;
+                }
+            },
+        };
+        let root = self.documents.root(document);
+        let settings = self.settings[document].clone();
+        let prefix = format!("{}{}", context.prefix, text("prefix").unwrap_or_default());
+        let mut inner = Context { settings, document, prefix, attached: context.attached + 1, ..context.clone() };
+        let (tag, name) = match (text("body"), text("frame")) {
+            (Some(name), _) => ("body", name),
+            (None, Some(name)) => ("frame", name),
+            (None, None) if text("model").is_some() => {
+                inner.class = 0;
+                for section in root.all("worldbody") {
+                    self.content(section, body, &inner, log);
+                }
+                return;
+            }
+            (None, None) => {
+                element.error((&Subject::Document, "body"), Code::MissingAttribute, "none", "the attribute model, body or frame", log);
+                return;
+            }
+        };
+        let Some((source, class)) = find(root, tag, name, &inner.settings, log) else {
+            element.error((&Subject::Document, tag), Code::UnknownName, quote(name), format!("the name of a {tag} of the model"), log);
+            return;
+        };
+        inner.class = class;
+        if tag == "body" {
+            self.body(source, body, &inner, log);
+            return;
+        }
+        let pose = Values::alone(source, &Subject::Document).pose(&inner.settings.compiler.angles, log);
+        inner.class = inner.settings.classes.find(source, "childclass", log).unwrap_or(class);
+        inner.frame = inner.frame.then(&pose);
+        self.content(source, body, &inner, log);
+    }
+}
+
+/// The body or frame of a name, and the default class of what is around it.
+fn find<'a>(root: &'a Element, tag: &str, name: &str, settings: &Settings<'a>, log: &mut Diagnostics) -> Option<(&'a Element, usize)> {
+    let mut next: Vec<(&Element, usize)> = root.all("worldbody").map(|section| (section, 0)).collect();
+    while let Some((element, class)) = next.pop() {
+        if element.is(tag) && element.text("name") == Some(name) {
+            return Some((element, class));
+        }
+        let class = settings.classes.find(element, "childclass", &mut log.apart()).unwrap_or(class);
+        next.extend(element.children.iter().map(|child| (child, class)));
+    }
+    None
+}
+
+fn site(values: &Values<'_>, context: &Context<'_>, log: &mut Diagnostics) -> Pose {
+    let angles = &context.settings.compiler.angles;
+    let pose = match values.has("fromto") {
+        true => geometry::between(values, log).map(|(pose, _)| pose).unwrap_or_default(),
+        false => values.pose(angles, log),
+    };
+    context.frame.then(&pose)
+}
+
+fn joint<'a>(values: &Values<'a>, context: &Context<'a>, log: &mut Diagnostics) -> Option<Joint<'a>> {
+    use Kind::{Ball, Free, Hinge, Slide};
+    let compiler = &context.settings.compiler;
+    let kind = match values.has("type") {
+        true => values.word("type", &[("free", Free), ("ball", Ball), ("slide", Slide), ("hinge", Hinge)], log)?,
+        false => Hinge,
+    };
+    let angle = |angle: f64| if kind == Hinge { compiler.angles.radians(angle) } else { angle };
+    let (mut anchor, mut axis) = ([0.0; 3], [0.0, 0.0, 1.0]);
+    if kind != Free {
+        anchor = context.frame.then(&Pose::at(values.exactly("pos", log).unwrap_or_default())).position;
+    }
+    if matches!(kind, Slide | Hinge) {
+        let given = values.exactly::<3>("axis", log).unwrap_or(axis);
+        let Some(unit) = unit(given) else {
+            let [x, y, z] = given;
+            values.error("axis", Code::ZeroAxis, format!("({x:?} {y:?} {z:?})"), "a vector that is not zero", log);
+            return None;
+        };
+        // As written, where it is a multiple of a unit vector already.
+        axis = rotate(context.frame.rotation, if is_of_length_one(given) { given } else { unit });
+    }
+    let (is_limited, limit) = limits(values, kind, context, log);
+    let reference = if matches!(kind, Slide | Hinge) { angle(values.number("ref", log).unwrap_or(0.0)) } else { 0.0 };
+    Some(Joint {
+        name: context.name(values.element),
+        element: values.element,
+        kind,
+        anchor,
+        axis,
+        reference,
+        is_limited,
+        limit,
+        dynamics: dynamics(values, kind, &angle, log),
+    })
+}
+
+fn is_of_length_one(axis: Vector) -> bool {
+    axis.iter().filter(|x| **x == 0.0).count() == 2 && axis.iter().any(|x| x.abs() == 1.0)
+}
+
+/// Whether a range is a bound.
+fn is_bound(values: &Values<'_>, (flag, field): (&str, &str), range: [f64; 2], auto: bool, log: &mut Diagnostics) -> bool {
+    match values.yes_or_auto(flag, log) {
+        Some(yes) => yes,
+        None if !auto && range != [0.0; 2] => {
+            let expected = format!("{flag}, since <compiler autolimits=\"false\">");
+            values.error(field, Code::LimitIncomplete, "a range alone", expected, log);
+            false
+        }
+        None => range[0] < range[1],
+    }
+}
+
+fn limits(values: &Values<'_>, kind: Kind, context: &Context<'_>, log: &mut Diagnostics) -> (bool, Option<Limit>) {
+    let compiler = &context.settings.compiler;
+    let range = values.exactly::<2>("range", log).unwrap_or_default();
+    let force = values.exactly::<2>("actuatorfrcrange", log).unwrap_or_default();
+    let is_limited = kind != Kind::Free && is_bound(values, ("limited", "range"), range, compiler.auto_limits, log);
+    let ordered = |field: &str, [lower, upper]: [f64; 2], log: &mut Diagnostics| {
+        if lower >= upper {
+            values.error(field, Code::LimitOrder, format!("{lower} and {upper}"), "the lower bound, then a greater one", log);
+        }
+    };
+    match kind {
+        Kind::Free => return (false, None),
+        Kind::Ball => {
+            if is_limited {
+                let expected = "no limit: the angle of a ball joint is not limited here";
+                values.element.warning((&values.subject, "range"), Code::LostDynamics, "a limit of a ball joint", expected, log);
+            }
+            return (false, None);
+        }
+        Kind::Slide | Kind::Hinge => {}
+    }
+    let mut limit = Limit::NONE;
+    if is_limited {
+        ordered("range", range, log);
+        let convert = |bound: f64| if kind == Kind::Hinge { compiler.angles.radians(bound) } else { bound };
+        [limit.lower, limit.upper] = range.map(convert);
+    }
+    if is_bound(values, ("actuatorfrclimited", "actuatorfrcrange"), force, compiler.auto_limits, log) {
+        ordered("actuatorfrcrange", force, log);
+        limit.effort = force[0].abs().max(force[1].abs());
+    }
+    (is_limited, (limit != Limit::NONE).then_some(limit))
+}
+
+fn dynamics(values: &Values<'_>, kind: Kind, angle: &dyn Fn(f64) -> f64, log: &mut Diagnostics) -> JointDynamics {
+    let [damping, stiffness] = ["damping", "stiffness"].map(|name| {
+        if !values.has(name) {
+            return None;
+        }
+        let [first, second, third] = values.at_most(name, [0.0; 3], log);
+        if second != 0.0 || third != 0.0 {
+            let expected = format!("one coefficient: the {name} is linear, and the others are not used");
+            values.element.warning((&values.subject, name), Code::LostDynamics, format!("a {name} of higher degree"), expected, log);
+        }
+        Some(first)
+    });
+    let [friction, armature] = ["frictionloss", "armature"].map(|name| values.number(name, log));
+    let rest = values.number("springref", log).map(angle);
+    if values.has("springdamper") {
+        let expected = "`stiffness` and `damping`: those that MuJoCo computes from a time constant are not";
+        values.element.warning((&values.subject, "springdamper"), Code::LostDynamics, "a spring", expected, log);
+    }
+    if matches!(kind, Kind::Slide | Kind::Hinge) {
+        return JointDynamics { damping, friction, armature, stiffness, rest: rest.filter(|_| stiffness.is_some()) };
+    }
+    let lost = [("damping", damping), ("frictionloss", friction), ("armature", armature), ("stiffness", stiffness)];
+    for (name, _) in lost.iter().filter(|(_, number)| number.is_some_and(|number| number != 0.0)) {
+        let expected = "none: a joint of several degrees of freedom keeps no such number";
+        values.element.warning((&values.subject, name), Code::LostDynamics, format!("{name} of a ball or free joint"), expected, log);
+    }
+    JointDynamics::default()
+}
+
+/// The pose of a joint in the body's frame, turned or moved back by its reference, so that the
+/// coordinate is the file's.
+pub(crate) fn at_reference(joint: &Joint<'_>, before: Pose) -> Pose {
+    match joint.kind {
+        _ if joint.reference == 0.0 => before,
+        Kind::Slide => before.then(&Pose::at(joint.axis.map(|x| -joint.reference * x))),
+        _ => Pose { rotation: multiply(before.rotation, about(joint.axis, -joint.reference)), ..before },
+    }
+}

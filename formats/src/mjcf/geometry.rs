@@ -1,0 +1,373 @@
+//! The tag `<geom>`: mass, and the shape for contact and for drawings.
+
+use std::rc::Rc;
+
+use articulated_core::description::CollisionShape;
+use articulated_core::diagnostic::{Code, Diagnostics, quote};
+
+use super::element::Element;
+use super::mesh::{self, Meshes};
+use super::pose::{Pose, Symmetric, TINY, Vector, add, diagonal, norm, of_z_axis, rotate, scale, subtract};
+use super::settings::Settings;
+use super::values::Values;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Plane,
+    HeightField,
+    Sphere,
+    Capsule,
+    Ellipsoid,
+    Cylinder,
+    Box,
+    Mesh,
+    /// A signed distance field, of a plugin or a mesh.
+    Sdf,
+}
+
+/// A geom in the frame of its body.
+pub(crate) struct Geom<'a> {
+    pub(crate) element: &'a Element,
+    /// Of its document.
+    settings: Rc<Settings<'a>>,
+    kind: Kind,
+    /// Of the shape; for a mesh, of the frame of its file.
+    pose: Pose,
+    /// Half of what the shape measures along its axes, m.
+    size: Vector,
+    mesh: Option<&'a Element>,
+    mass: Option<f64>,
+    density: f64,
+    is_shell: bool,
+    fit_scale: f64,
+    pub(crate) group: i64,
+    /// Whether it makes contact.
+    pub(crate) collides: bool,
+    pub(crate) color: Option<[f64; 4]>,
+}
+
+/// A mass with its centre and its inertia about it, in the frame of the body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mass {
+    pub(crate) mass: f64,
+    pub(crate) pose: Pose,
+    /// In the axes of the pose.
+    pub(crate) inertia: Symmetric,
+}
+
+const KINDS: [(&str, Kind); 9] = [
+    ("plane", Kind::Plane),
+    ("hfield", Kind::HeightField),
+    ("sphere", Kind::Sphere),
+    ("capsule", Kind::Capsule),
+    ("ellipsoid", Kind::Ellipsoid),
+    ("cylinder", Kind::Cylinder),
+    ("box", Kind::Box),
+    ("mesh", Kind::Mesh),
+    ("sdf", Kind::Sdf),
+];
+
+/// The pose of a shape between two points, and half its length, m.
+pub(crate) fn between(values: &Values<'_>, log: &mut Diagnostics) -> Option<(Pose, f64)> {
+    let [a, b, c, x, y, z] = values.exactly::<6>("fromto", log)?;
+    let (from, to) = ([a, b, c], [x, y, z]);
+    let along = subtract(from, to);
+    let length = norm(along);
+    if length / 2.0 < TINY {
+        values.error("fromto", Code::Number, quote(values.text("fromto").unwrap_or_default()), "two points that are apart", log);
+        return None;
+    }
+    let rotation = of_z_axis(scale(along, 1.0 / length));
+    Some((Pose { position: scale(add(from, to), 0.5), rotation }, length / 2.0))
+}
+
+/// A geom, of which meshes are not read yet.
+pub(crate) fn geom<'a>(values: &Values<'a>, settings: &Rc<Settings<'a>>, frame: &Pose, log: &mut Diagnostics) -> Option<Geom<'a>> {
+    let kind = if values.has("type") { values.word("type", &KINDS, log)? } else { Kind::Sphere };
+    let mut size = values.at_most("size", [0.0; 3], log);
+    let mesh = match values.text("mesh") {
+        None => None,
+        Some(name) => {
+            let found = settings.meshes.get(name).copied();
+            if found.is_none() {
+                let near = articulated_core::suggest::nearest(name, settings.meshes.keys().map(String::as_str));
+                let hint = near.map(|near| format!(" (did you mean {near:?}?)")).unwrap_or_default();
+                values.error("mesh", Code::UnknownName, quote(name), format!("the name of a mesh of <asset>{hint}"), log);
+                return None;
+            }
+            found
+        }
+    };
+    if kind == Kind::Mesh && mesh.is_none() {
+        values.error("mesh", Code::MissingAttribute, "none", "the name of a mesh", log);
+        return None;
+    }
+    let pose = if values.has("fromto") {
+        let (pose, half) = between(values, log)?;
+        if values.exactly::<3>("pos", log).is_some_and(|pos| pos != [0.0; 3]) {
+            values.error("fromto", Code::Together, "both pos and fromto", "one of them", log);
+        }
+        match kind {
+            Kind::Capsule | Kind::Cylinder => size[1] = half,
+            Kind::Ellipsoid | Kind::Box => size = [size[0], size[0], half],
+            _ => values.error("fromto", Code::Together, "fromto", "it in a capsule, a cylinder, a box or an ellipsoid", log),
+        }
+        pose
+    } else {
+        values.pose(&settings.compiler.angles, log)
+    };
+    let sizes = match kind {
+        Kind::Sphere => 1,
+        Kind::Capsule | Kind::Cylinder => 2,
+        Kind::Ellipsoid | Kind::Box => 3,
+        _ => 0,
+    };
+    if mesh.is_none() && size[..sizes].iter().any(|size| *size <= 0.0) {
+        let found = quote(values.text("size").unwrap_or_default());
+        values.error("size", Code::Number, found, format!("{sizes} numbers above zero, m"), log);
+        return None;
+    }
+    let mass = values.number("mass", log);
+    let density = values.number("density", log).unwrap_or(1000.0);
+    if mass.unwrap_or(density) < 0.0 {
+        let field = if mass.is_some() { "mass" } else { "density" };
+        values.error(field, Code::NegativeMass, format!("a negative {field}"), "zero or more", log);
+    }
+    let affinity = |name: &str, log: &mut Diagnostics| values.integer(name, log).unwrap_or(1);
+    let (type_bits, affinity_bits) = (affinity("contype", log), affinity("conaffinity", log));
+    Some(Geom {
+        element: values.element,
+        settings: settings.clone(),
+        kind,
+        pose: frame.then(&pose),
+        size,
+        mesh,
+        mass,
+        density,
+        is_shell: values.yes("shellinertia", log).unwrap_or(false),
+        fit_scale: values.number("fitscale", log).unwrap_or(1.0),
+        group: values.integer("group", log).unwrap_or(0),
+        collides: type_bits != 0 || affinity_bits != 0,
+        color: values.exactly::<4>("rgba", log),
+    })
+}
+
+impl Geom<'_> {
+    /// Its mass, centre and inertia; `None` if it has no mass, or an error was reported.
+    pub(crate) fn mass(&self, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Option<Mass> {
+        if self.mass == Some(0.0) || (self.mass.is_none() && self.density == 0.0) {
+            return None;
+        }
+        let body = match self.mesh {
+            Some(mesh) => Some(meshes.body(mesh, &self.settings, log)?),
+            None if self.kind == Kind::Sdf => {
+                let expected = "a mesh, or <inertial> in the body: plugins are not read";
+                self.element.error(
+                    (&super::grammar::subject(self.element), "type"),
+                    Code::Unsupported,
+                    "a field of a plugin",
+                    expected,
+                    log,
+                );
+                return None;
+            }
+            None => None,
+        };
+        let (pose, volume, inertia) = match (&body, self.kind) {
+            (Some(body), Kind::Mesh | Kind::Sdf) => {
+                let inertia = body.inertia.map(|x| x / body.volume);
+                (self.pose.then(&Pose::at(body.center)), body.volume, inertia)
+            }
+            (Some(body), kind) => {
+                let (size, center) = fitted(body, kind, self.settings.compiler.fit_aabb);
+                let size = scale(size, self.fit_scale);
+                let axes = body.principal().axes;
+                let position = add(body.center, rotate(axes, center));
+                let (volume, inertia) = shape(kind, size, self.is_shell);
+                (self.pose.then(&Pose { position, rotation: axes }), volume, diagonal(inertia))
+            }
+            (None, kind) => {
+                let (volume, inertia) = shape(kind, self.size, self.is_shell);
+                (self.pose, volume, diagonal(inertia))
+            }
+        };
+        if self.mass.is_some() && volume <= TINY {
+            return None;
+        }
+        let mass = self.mass.unwrap_or(self.density * volume);
+        (mass > TINY).then(|| Mass { mass, pose, inertia: inertia.map(|x| mass * x) })
+    }
+
+    /// Its shape for contact and drawings, with its pose in the body.
+    pub(crate) fn shape(&self) -> Option<(Pose, CollisionShape)> {
+        let unread = |why: &str| CollisionShape::Unread { why: why.to_owned() };
+        let [a, b, c] = self.size;
+        let shape = match (self.kind, self.mesh) {
+            (Kind::Mesh, Some(mesh)) => self.mesh_shape(mesh),
+            (_, Some(_)) => unread("a shape that is fitted to a mesh"),
+            (Kind::Sphere, _) => CollisionShape::Sphere { radius: a },
+            (Kind::Capsule, _) => CollisionShape::Capsule { radius: a, length: 2.0 * b },
+            (Kind::Cylinder, _) => CollisionShape::Cylinder { radius: a, length: 2.0 * b },
+            (Kind::Box, _) => CollisionShape::Box { size: [2.0 * a, 2.0 * b, 2.0 * c] },
+            (Kind::Ellipsoid, _) => unread("an ellipsoid"),
+            (Kind::HeightField, _) => unread("a height field"),
+            (Kind::Sdf, _) => unread("a signed distance field"),
+            // The floor of the scene
+            (Kind::Plane, _) => return None,
+            (Kind::Mesh, None) => return None,
+        };
+        Some((self.pose, shape))
+    }
+
+    fn mesh_shape(&self, mesh: &Element) -> CollisionShape {
+        let settings = &*self.settings;
+        let class = settings.classes.find(mesh, "class", &mut Diagnostics::default()).unwrap_or(0);
+        let subject = articulated_core::diagnostic::Subject::Document;
+        let values = Values::new(mesh, settings.classes.tags(class, "mesh"), &subject);
+        let Some(file) = mesh.text("file") else {
+            return CollisionShape::Unread { why: "a mesh without a file".to_owned() };
+        };
+        let scale = values.exactly::<3>("scale", &mut Diagnostics::default()).unwrap_or([1.0; 3]);
+        let [path, ..] = mesh::paths(mesh, file, settings);
+        // From the folder of the document, as in other formats.
+        let path = path.strip_prefix(&settings.folder).unwrap_or(&path).to_owned();
+        CollisionShape::Mesh { file: path.to_string_lossy().into_owned(), scale }
+    }
+}
+
+/// Half the size of a shape that is fitted to a mesh, and its centre, in the principal axes of the
+/// mesh.
+fn fitted(body: &mesh::Body, kind: Kind, to_corners: bool) -> (Vector, Vector) {
+    let principal = body.principal();
+    let [a, b, c] = principal.inertia_box;
+    if !to_corners {
+        let size = match kind {
+            Kind::Sphere => [(a + b + c) / 3.0, 0.0, 0.0],
+            Kind::Capsule => [(a + b) / 2.0, (c - (a + b) / 4.0).max(0.0), 0.0],
+            Kind::Cylinder => [(a + b) / 2.0, c, 0.0],
+            _ => [a, b, c],
+        };
+        return (size, [0.0; 3]);
+    }
+    let [least, most] = principal.corners;
+    let center = scale(add(least, most), 0.5);
+    let [a, b, c] = subtract(most, center);
+    let radius = a.max(b);
+    let size = match kind {
+        Kind::Sphere => [radius.max(c), 0.0, 0.0],
+        Kind::Capsule => [radius, c - radius, 0.0],
+        Kind::Cylinder => [radius, c, 0.0],
+        _ => [a, b, c],
+    };
+    (size, center)
+}
+
+/// Volume, m³ (or surface, m²), and principal moments of inertia for 1 kg of a shape.
+fn shape(kind: Kind, [a, b, c]: Vector, is_shell: bool) -> (f64, Vector) {
+    use std::f64::consts::PI;
+    match (kind, is_shell) {
+        (Kind::Sphere, false) => (4.0 * PI * a * a * a / 3.0, [2.0 * a * a / 5.0; 3]),
+        (Kind::Sphere, true) => (4.0 * PI * a * a, [2.0 * a * a / 3.0; 3]),
+        (Kind::Capsule, is_shell) => capsule(a, 2.0 * b, is_shell),
+        (Kind::Cylinder, false) => {
+            let height = 2.0 * b;
+            let across = (3.0 * a * a + height * height) / 12.0;
+            (PI * a * a * height, [across, across, a * a / 2.0])
+        }
+        (Kind::Cylinder, true) => {
+            let (disk, side) = (PI * a * a, 4.0 * PI * a * b);
+            let total = 2.0 * disk + side;
+            let (disk, side) = (disk / total, side / total);
+            let across = side * (6.0 * a * a + 4.0 * b * b) / 12.0 + 2.0 * disk * (a * a / 4.0 + b * b);
+            (total, [across, across, side * a * a + disk * a * a])
+        }
+        (Kind::Ellipsoid, false) => (4.0 * PI * a * b * c / 3.0, [(b * b + c * c) / 5.0, (a * a + c * c) / 5.0, (a * a + b * b) / 5.0]),
+        (Kind::Ellipsoid, true) => ellipsoid_shell([a, b, c]),
+        (Kind::Box | Kind::HeightField, false) => (8.0 * a * b * c, [(b * b + c * c) / 3.0, (a * a + c * c) / 3.0, (a * a + b * b) / 3.0]),
+        (Kind::Box | Kind::HeightField, true) => box_shell([a, b, c]),
+        (Kind::Plane | Kind::Mesh | Kind::Sdf, _) => (0.0, [0.0; 3]),
+    }
+}
+
+fn capsule(radius: f64, height: f64, is_shell: bool) -> (f64, Vector) {
+    use std::f64::consts::PI;
+    let r2 = radius * radius;
+    if is_shell {
+        let (ball, tube) = (4.0 * PI * r2, 2.0 * PI * radius * height);
+        let total = ball + tube;
+        let (ball, tube) = (ball / total, tube / total);
+        // Of a hemisphere, from the middle of the ball and from that of the capsule
+        let (own, from) = (radius / 2.0, height / 2.0 + radius / 2.0);
+        let across = tube * (6.0 * r2 + height * height) / 12.0 + ball * (2.0 * r2 / 3.0 + from * from - own * own);
+        return (total, [across, across, tube * r2 + 2.0 * ball * r2 / 3.0]);
+    }
+    let volume = PI * (r2 * height + 4.0 * r2 * radius / 3.0);
+    let ball = 4.0 * radius / (4.0 * radius + 3.0 * height);
+    let tube = 1.0 - ball;
+    let moment = 2.0 * ball * r2 / 5.0;
+    let across = tube * (3.0 * r2 + height * height) / 12.0 + moment + ball * height * (3.0 * radius + 2.0 * height) / 8.0;
+    (volume, [across, across, tube * r2 / 2.0 + moment])
+}
+
+/// The surface by Thomsen's approximation, the moments as those of a layer of 1e-6 m, as in MuJoCo.
+fn ellipsoid_shell(size: Vector) -> (f64, Vector) {
+    use std::f64::consts::PI;
+    const POWER: f64 = 1.6075;
+    const LAYER: f64 = 1e-6;
+    let [a, b, c] = size;
+    let mean = ((a * b).powf(POWER) + (b * c).powf(POWER) + (c * a).powf(POWER)) / 3.0;
+    let moments = |[a, b, c]: Vector| [(b * b + c * c) / 5.0, (a * a + c * c) / 5.0, (a * a + b * b) / 5.0];
+    let volume = |[a, b, c]: Vector| 4.0 * PI * a * b * c / 3.0;
+    let outer = size.map(|x| x + LAYER);
+    let density = 1.0 / (volume(outer) - volume(size));
+    let of = |size: Vector| moments(size).map(|moment| volume(size) * density * moment);
+    (4.0 * PI * mean.powf(1.0 / POWER), subtract(of(outer), of(size)))
+}
+
+fn box_shell([a, b, c]: Vector) -> (f64, Vector) {
+    let [x, y, z] = [2.0 * a, 2.0 * b, 2.0 * c];
+    let sides = [x * y, y * z, z * x];
+    let total = 2.0 * (sides[0] + sides[1] + sides[2]);
+    let [xy, yz, zx] = sides.map(|side| side / total);
+    let [a2, b2, c2] = [a * a, b * b, c * c];
+    let [x2, y2, z2] = [x * x / 12.0, y * y / 12.0, z * z / 12.0];
+    let moments = [
+        2.0 * (xy * c2 + zx * b2 + xy * y2 + yz * (y2 + z2) + zx * z2),
+        2.0 * (xy * c2 + yz * a2 + xy * x2 + yz * z2 + zx * (x2 + z2)),
+        2.0 * (yz * a2 + zx * b2 + xy * (x2 + y2) + yz * y2 + zx * x2),
+    ];
+    (total, moments)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thin_shells_of_a_box_are_the_shell() {
+        // d/dh of the moments of a solid that grows by h on each side, by central differences
+        let size = [0.2, 0.3, 0.5];
+        let h = 1e-5;
+        let solid = |h: f64| {
+            let (volume, moments) = shape(Kind::Box, size.map(|x| x + h), false);
+            moments.map(|moment| volume * moment)
+        };
+        let volume = |h: f64| shape(Kind::Box, size.map(|x| x + h), false).0;
+        let area = (volume(h) - volume(-h)) / (2.0 * h);
+        let (found, moments) = shape(Kind::Box, size, true);
+        assert!((found - area).abs() < 1e-6);
+        for k in 0..3 {
+            let expected = (solid(h)[k] - solid(-h)[k]) / (2.0 * h) / area;
+            assert!((moments[k] - expected).abs() < 1e-6, "{k}");
+        }
+    }
+
+    #[test]
+    fn a_capsule_without_length_is_a_sphere() {
+        for is_shell in [false, true] {
+            let (volume, moments) = shape(Kind::Capsule, [0.3, 0.0, 0.0], is_shell);
+            let (expected, sphere) = shape(Kind::Sphere, [0.3, 0.0, 0.0], is_shell);
+            assert!((volume - expected).abs() < 1e-15 && norm(subtract(moments, sphere)) < 1e-15);
+        }
+    }
+}

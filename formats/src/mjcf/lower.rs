@@ -1,0 +1,253 @@
+//! From bodies to a [`Description`].
+
+use std::collections::BTreeSet;
+
+use articulated_core::description::{Base, Collision, Description, Frame, Inertial, Joint, JointKind, Link, Origin, Visual};
+use articulated_core::diagnostic::{Code, Diagnostics, quote};
+
+use super::bodies::{self, Body, Kind, at_reference};
+use super::grammar::subject;
+use super::inertia;
+use super::mesh::Meshes;
+use super::pose::{Pose, scale, subtract};
+use crate::Options;
+use crate::reading::HELD;
+
+/// The link that does not move.
+const WORLD: &str = "world";
+
+/// The description of all bodies; `None` where an error leaves no sense in it.
+pub(crate) fn lower(
+    name: &str,
+    bodies: &[Body<'_>],
+    meshes: &mut Meshes<'_>,
+    options: &Options,
+    log: &mut Diagnostics,
+) -> Option<Description> {
+    let mut lower = Lower {
+        description: Description { name: name.to_owned(), ..Description::default() },
+        links: BTreeSet::from([WORLD.to_owned()]),
+        joints: BTreeSet::new(),
+        link_of: Vec::with_capacity(bodies.len()),
+        is_fixed: Vec::with_capacity(bodies.len()),
+    };
+    lower.reserve(bodies, log);
+    let mut inertials: Vec<Option<Inertial>> = Vec::with_capacity(bodies.len());
+    inertials.push(None);
+    inertials.extend(bodies.iter().skip(1).map(|body| inertia::of_body(body, meshes, log)));
+    set_total_mass(bodies, &mut inertials);
+    for (index, (body, inertial)) in bodies.iter().zip(inertials).enumerate() {
+        if index == 0 {
+            lower.description.links.push(Link { name: WORLD.to_owned(), ..Link::default() });
+            lower.link_of.push(0);
+            lower.is_fixed.push(true);
+        } else {
+            lower.body(index, body, inertial, options, log);
+        }
+        lower.content(index, body);
+    }
+    lower.sites(bodies, log);
+    Some(lower.description)
+}
+
+/// Scales all masses so that they are the `settotalmass` of the main file.
+fn set_total_mass(bodies: &[Body<'_>], inertials: &mut [Option<Inertial>]) {
+    let Some(wanted) = bodies.first().and_then(|world| world.settings.compiler.total_mass) else { return };
+    let total: f64 = inertials.iter().flatten().map(|inertial| inertial.mass).sum();
+    if total <= 0.0 {
+        return;
+    }
+    let factor = wanted / total;
+    for inertial in inertials.iter_mut().flatten() {
+        inertial.mass *= factor;
+        inertial.inertia = inertial.inertia.map(|moment| moment * factor);
+    }
+}
+
+struct Lower {
+    description: Description,
+    /// Names of links and frames, and of joints, that are taken.
+    links: BTreeSet<String>,
+    joints: BTreeSet<String>,
+    link_of: Vec<usize>,
+    /// Whether nothing moves the body.
+    is_fixed: Vec<bool>,
+}
+
+/// `name`, or with the first number from 2 on that is not taken. It is taken then.
+fn free(taken: &mut BTreeSet<String>, name: String) -> String {
+    if taken.insert(name.clone()) {
+        return name;
+    }
+    let number = (2..).find(|number| !taken.contains(&format!("{name}_{number}"))).unwrap_or_default();
+    let name = format!("{name}_{number}");
+    taken.insert(name.clone());
+    name
+}
+
+impl Lower {
+    /// Takes the names that the file gives, which are stronger than those made here.
+    fn reserve(&mut self, bodies: &[Body<'_>], log: &mut Diagnostics) {
+        for (index, body) in bodies.iter().enumerate() {
+            if let Some(name) = body.name.as_ref().filter(|_| index > 0)
+                && !self.links.insert(name.clone())
+            {
+                let expected = "a name of its own; the world is called \"world\"";
+                body.element.error(
+                    (&subject(body.element), "name"),
+                    Code::DuplicateName,
+                    format!("a second body {}", quote(name)),
+                    expected,
+                    log,
+                );
+            }
+            for joint in &body.joints {
+                if let Some(name) = &joint.name
+                    && !self.joints.insert(name.clone())
+                {
+                    let found = format!("a second joint {}", quote(name));
+                    joint.element.error((&subject(joint.element), "name"), Code::DuplicateName, found, "a name of its own", log);
+                }
+            }
+        }
+    }
+
+    fn body(&mut self, index: usize, body: &Body<'_>, inertial: Option<Inertial>, options: &Options, log: &mut Diagnostics) {
+        let name = body.name.clone().unwrap_or_else(|| free(&mut self.links, format!("body_{index}")));
+        let parent = self.link_of[body.parent];
+        self.is_fixed.push(self.is_fixed[body.parent] && body.joints.is_empty());
+        if self.is_fixed[index] && options.base == Base::Fixed && inertial.is_some_and(|inertial| inertial.mass != 0.0) {
+            body.element.unused(&subject(body.element), None, HELD, log);
+        }
+        let link = Link { name: name.clone(), inertial, ..Link::default() };
+        let free_joint = body.joints.iter().find(|joint| joint.kind == Kind::Free);
+        if let Some(joint) = free_joint {
+            self.free_joint(body, joint, link, log);
+        } else if body.joints.is_empty() {
+            let joint = free(&mut self.joints, format!("{name}_fixed"));
+            let child = self.add_link(link);
+            self.add_joint(Joint { name: joint, kind: JointKind::Fixed, parent, child, origin: body.pose.origin(), ..Joint::default() });
+        } else {
+            self.sequence(body, parent, link);
+        }
+        self.link_of.push(self.description.links.len() - 1);
+    }
+
+    fn add_link(&mut self, link: Link) -> usize {
+        self.description.links.push(link);
+        self.description.links.len() - 1
+    }
+
+    fn add_joint(&mut self, joint: Joint) {
+        self.description.joints.push(joint);
+    }
+
+    fn free_joint(&mut self, body: &Body<'_>, joint: &bodies::Joint<'_>, link: Link, log: &mut Diagnostics) {
+        let subject = subject(joint.element);
+        if body.parent != 0 || body.joints.len() > 1 {
+            let found = if body.parent == 0 { "a free joint beside others" } else { "a free joint inside a moving body" };
+            joint.element.error((&subject, "type"), Code::Misplaced, found, "it alone, in a body directly inside the world", log);
+        }
+        if body.pose != Pose::default() {
+            let why = "the place of a free body is its coordinates: no initial state is read";
+            body.element.unused(&super::grammar::subject(body.element), body.element.attribute("pos"), why, log);
+        }
+        let align = joint.element.text("align");
+        if align == Some("true") || (align != Some("false") && body.settings.compiler.align_free) {
+            let why = "the coordinates are those of the body's frame, not of its inertia";
+            joint.element.unused(&subject, joint.element.attribute("align"), why, log);
+        }
+        let name = joint.name.clone().unwrap_or_else(|| free(&mut self.joints, format!("{}_free", link.name)));
+        let child = self.add_link(link);
+        self.add_joint(Joint { name, kind: JointKind::Floating, parent: 0, child, ..Joint::default() });
+    }
+
+    /// Hinges, slides and balls, one after the other. The frame of each link in between is at the
+    /// anchor of its joint.
+    fn sequence(&mut self, body: &Body<'_>, mut parent: usize, link: Link) {
+        let mut link = Some(link);
+        let body_name = link.as_ref().map(|link| link.name.clone()).unwrap_or_default();
+        let mut anchor = [0.0; 3];
+        for (k, joint) in body.joints.iter().enumerate() {
+            let is_last = k + 1 == body.joints.len();
+            let frame = match k {
+                0 => body.pose.then(&Pose::at(joint.anchor)),
+                _ => Pose::at(subtract(joint.anchor, anchor)),
+            };
+            anchor = joint.anchor;
+            let (kind, word) = match joint.kind {
+                Kind::Slide => (JointKind::Prismatic, "slide"),
+                Kind::Ball => (JointKind::Spherical, "ball"),
+                _ if joint.is_limited => (JointKind::Revolute, "hinge"),
+                _ => (JointKind::Continuous, "hinge"),
+            };
+            let child = match link.take_if(|_| is_last && anchor == [0.0; 3]) {
+                Some(link) => self.add_link(link),
+                None => {
+                    let name = free(&mut self.links, format!("{body_name}_{}", k + 1));
+                    self.add_link(Link { name, intermediate: true, ..Link::default() })
+                }
+            };
+            let name = joint.name.clone().unwrap_or_else(|| free(&mut self.joints, format!("{body_name}_{word}")));
+            let origin = at_reference(joint, frame).origin();
+            let axis = if kind == JointKind::Spherical { Joint::default().axis } else { joint.axis };
+            self.add_joint(Joint {
+                name,
+                kind,
+                parent,
+                child,
+                origin,
+                axis,
+                limit: joint.limit,
+                dynamics: joint.dynamics,
+                ..Joint::default()
+            });
+            parent = child;
+        }
+        if let Some(link) = link {
+            let name = free(&mut self.joints, format!("{body_name}_fixed"));
+            let child = self.add_link(link);
+            self.add_joint(Joint {
+                name,
+                kind: JointKind::Fixed,
+                parent,
+                child,
+                origin: Origin::at(scale(anchor, -1.0)),
+                ..Joint::default()
+            });
+        }
+    }
+
+    /// Shapes for contact and drawings.
+    fn content(&mut self, index: usize, body: &Body<'_>) {
+        let link = &mut self.description.links[self.link_of[index]];
+        for geom in &body.geoms {
+            let Some((pose, shape)) = geom.shape() else { continue };
+            let origin = pose.origin();
+            if geom.collides {
+                link.collision.push(Collision { origin, shape: shape.clone() });
+            }
+            link.visual.push(Visual { origin, shape, material: String::new(), color: geom.color });
+        }
+    }
+
+    /// Sites become frames.
+    fn sites(&mut self, bodies: &[Body<'_>], log: &mut Diagnostics) {
+        for (index, body) in bodies.iter().enumerate() {
+            let link = self.link_of[index];
+            for site in &body.sites {
+                let name = match &site.name {
+                    Some(name) if self.links.insert(name.clone()) => name.clone(),
+                    Some(name) => {
+                        let own = free(&mut self.links, format!("{name}_site"));
+                        let why = format!("a body or site has this name: the frame is called {}", quote(&own));
+                        site.element.unused(&subject(site.element), site.element.attribute("name"), &why, log);
+                        own
+                    }
+                    None => free(&mut self.links, format!("{}_site", self.description.links[link].name)),
+                };
+                self.description.frames.push(Frame { name, link, origin: site.pose.origin() });
+            }
+        }
+    }
+}

@@ -1,0 +1,372 @@
+//! Volumes and inertias of meshes, from files and from vertices in the document.
+//!
+//! Three small readers, of binary STL, of the vertices and faces of OBJ, and of MuJoCo's MSH: a
+//! library for meshes would have to keep the order of faces and the single precision of MuJoCo, and
+//! none reads MSH.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
+
+use super::element::Element;
+use super::pose::{Quaternion, Symmetric, Vector, add, conjugate, cross, dot, norm, principal, rotate, scale, subtract};
+use super::settings::Settings;
+use super::values::Values;
+use crate::Sources;
+
+/// Vertices that are read have coordinates of single precision, as in MuJoCo.
+#[derive(Debug, Default)]
+struct Triangles {
+    vertices: Vec<Vector>,
+    faces: Vec<[u32; 3]>,
+}
+
+/// How a mesh becomes a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mode {
+    /// Tetrahedra from the centroid of the faces, all of positive volume.
+    Legacy,
+    /// Tetrahedra with the sign of their face.
+    Exact,
+    /// The surface alone.
+    Shell,
+    /// The convex hull.
+    Convex,
+}
+
+/// A mesh as a body of density 1 (of surface density 1 for a shell), in the frame of its file.
+#[derive(Debug)]
+pub(crate) struct Body {
+    /// m³, or m² of a shell.
+    pub(crate) volume: f64,
+    pub(crate) center: Vector,
+    /// About the centre, in the axes of the file.
+    pub(crate) inertia: Symmetric,
+    vertices: Vec<Vector>,
+}
+
+/// A mesh in the axes of its inertia, about its centre.
+pub(crate) struct Principal {
+    /// To the axes of the file.
+    pub(crate) axes: Quaternion,
+    /// Half the sides of the box of equal volume and inertia, m.
+    pub(crate) inertia_box: Vector,
+    /// The corners of the smallest box along the axes, m.
+    pub(crate) corners: [Vector; 2],
+}
+
+impl Body {
+    pub(crate) fn principal(&self) -> Principal {
+        let ([a, b, c], axes) = principal(self.inertia);
+        let side = |two: f64, one: f64| 0.5 * (6.0 * (two - one).max(0.0) / self.volume).sqrt();
+        let back = conjugate(axes);
+        let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+        for vertex in &self.vertices {
+            let own = rotate(back, subtract(*vertex, self.center));
+            for k in 0..3 {
+                corners[0][k] = corners[0][k].min(own[k]);
+                corners[1][k] = corners[1][k].max(own[k]);
+            }
+        }
+        Principal { axes, inertia_box: [side(b + c, a), side(a + c, b), side(a + b, c)], corners }
+    }
+}
+
+/// All meshes that were asked for.
+pub(crate) struct Meshes<'a> {
+    sources: &'a dyn Sources,
+    /// By the place of the tag in memory.
+    known: BTreeMap<usize, Option<Rc<Body>>>,
+}
+
+impl<'a> Meshes<'a> {
+    pub(crate) fn new(sources: &'a dyn Sources) -> Self {
+        Self { sources, known: BTreeMap::new() }
+    }
+
+    /// The body of a mesh; an error where it has none, once.
+    pub(crate) fn body(&mut self, element: &Element, settings: &Settings<'_>, log: &mut Diagnostics) -> Option<Rc<Body>> {
+        let key = std::ptr::from_ref(element) as usize;
+        if let Some(known) = self.known.get(&key) {
+            return known.clone();
+        }
+        let body = self.read(element, settings, log).map(Rc::new);
+        self.known.insert(key, body.clone());
+        body
+    }
+
+    fn read(&self, element: &Element, settings: &Settings<'_>, log: &mut Diagnostics) -> Option<Body> {
+        let class = settings.classes.find(element, "class", log).unwrap_or(0);
+        let values = Values::new(element, settings.classes.tags(class, "mesh"), &Subject::Document);
+        let modes = [("legacy", Mode::Legacy), ("exact", Mode::Exact), ("shell", Mode::Shell), ("convex", Mode::Convex)];
+        let mode = if values.has("inertia") { values.word("inertia", &modes, log)? } else { Mode::Legacy };
+        let mut triangles = self.triangles(&values, settings, log)?;
+        let scale = values.exactly::<3>("scale", log).unwrap_or([1.0; 3]);
+        let position = values.exactly::<3>("refpos", log).unwrap_or_default();
+        let rotation = conjugate(values.exactly::<4>("refquat", log).unwrap_or([1.0, 0.0, 0.0, 0.0]));
+        for vertex in &mut triangles.vertices {
+            let own = rotate(rotation, subtract(*vertex, position));
+            *vertex = [0, 1, 2].map(|k| own[k] * scale[k]);
+        }
+        if scale.iter().product::<f64>() < 0.0 {
+            triangles.faces.iter_mut().for_each(|face| face.swap(1, 2));
+        }
+        if mode == Mode::Convex || triangles.faces.is_empty() {
+            let found = if mode == Mode::Convex { "the inertia of a convex hull" } else { "vertices without faces" };
+            let expected = "`inertia` legacy, exact or shell and faces, or <inertial> in the body: hulls are not computed";
+            values.error("inertia", Code::Unsupported, found, expected, log);
+            return None;
+        }
+        let body = body(triangles, mode);
+        if body.is_none() {
+            let expected = "a closed surface whose faces have one orientation, or `inertia=\"shell\"`";
+            values.error("file", Code::Unsupported, "a mesh of no volume", expected, log);
+        }
+        body
+    }
+
+    fn triangles(&self, values: &Values<'_>, settings: &Settings<'_>, log: &mut Diagnostics) -> Option<Triangles> {
+        let element = values.element;
+        let mut triangles = match element.text("file") {
+            Some(file) => {
+                let (bytes, path) = self.file(element, file, settings, log)?;
+                match parse(&bytes, &path, element.text("content_type").unwrap_or_default()) {
+                    Ok(triangles) => triangles,
+                    Err(found) => {
+                        let expected = "a binary STL, an OBJ or an MSH with faces of vertices that exist";
+                        values.error("file", Code::File, format!("{}: {found}", quote(file)), expected, log);
+                        return None;
+                    }
+                }
+            }
+            None if values.has("builtin") => {
+                let found = format!("the mesh {}", quote(values.text("builtin").unwrap_or_default()));
+                values.error("builtin", Code::Unsupported, found, "a file or vertices, or <inertial> in the body", log);
+                return None;
+            }
+            None => Triangles::default(),
+        };
+        if let Some(numbers) = values.list("vertex", log) {
+            triangles.vertices = numbers.chunks_exact(3).map(|v| [0, 1, 2].map(|k| single(v[k]))).collect();
+        }
+        if let Some(numbers) = values.list("face", log) {
+            triangles.faces = numbers.chunks_exact(3).map(|f| [0, 1, 2].map(|k| f[k] as u32)).collect();
+        }
+        let count = triangles.vertices.len();
+        if count < 4 || triangles.faces.iter().flatten().any(|index| *index as usize >= count) {
+            let found = format!("{count} vertices and {} faces", triangles.faces.len());
+            values.error("vertex", Code::WrongCount, found, "at least 4 vertices, and faces of those", log);
+            return None;
+        }
+        Some(triangles)
+    }
+
+    fn file(&self, element: &Element, file: &str, settings: &Settings<'_>, log: &mut Diagnostics) -> Option<(Vec<u8>, PathBuf)> {
+        let mut first = None;
+        for path in paths(element, file, settings) {
+            match self.sources.read(&path) {
+                Ok(bytes) => return Some((bytes, path)),
+                Err(error) => first = first.or(Some((error, path))),
+            }
+        }
+        let (error, path) = first?;
+        let found = format!("{}: {error}", quote(&path.to_string_lossy()));
+        let expected = "a file: the mass of a body is that of its meshes, unless it has <inertial>";
+        element.error((&Subject::Document, "file"), Code::File, found, expected, log);
+        None
+    }
+}
+
+/// Where the file of a mesh may be: from the main file's folder, or from that of the file that
+/// names it.
+pub(crate) fn paths(element: &Element, file: &str, settings: &Settings<'_>) -> [PathBuf; 3] {
+    let stripped = file.rsplit(['/', '\\']).next().unwrap_or_default();
+    let file = Path::new(if settings.compiler.strip_path { stripped } else { file });
+    let meshes = Path::new(&settings.compiler.mesh_folder);
+    let beside = Path::new(&element.file.name).parent().unwrap_or(Path::new(""));
+    [settings.folder.join(meshes).join(file), beside.join(meshes).join(file), beside.join(file)]
+}
+
+fn single(x: f64) -> f64 {
+    f64::from(x as f32)
+}
+
+fn parse(bytes: &[u8], path: &Path, content_type: &str) -> Result<Triangles, String> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let triangles = match (content_type, ending.as_str()) {
+        ("model/stl", _) | ("", "stl") => stl(bytes),
+        ("model/obj", _) | ("", "obj") => obj(bytes),
+        ("model/vnd.mujoco.msh", _) | ("", "msh") => msh(bytes),
+        _ => return Err(format!("the ending {}", quote(&ending))),
+    };
+    let triangles = triangles.ok_or("a file that is cut off or not of this format")?;
+    let finite = triangles.vertices.iter().flatten().all(|x| x.is_finite());
+    if finite { Ok(triangles) } else { Err("coordinates that are not finite".to_owned()) }
+}
+
+fn floats(bytes: &[u8]) -> impl Iterator<Item = f32> {
+    bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+}
+
+/// 80 bytes, the number of faces, and for each face a normal, three vertices and two bytes.
+fn stl(bytes: &[u8]) -> Option<Triangles> {
+    let count = u32::from_le_bytes(bytes.get(80..84)?.try_into().ok()?) as usize;
+    let faces = bytes.get(84..84 + count.checked_mul(50)?)?;
+    let mut triangles = Triangles::default();
+    for face in faces.chunks_exact(50) {
+        let numbers: Vec<f64> = floats(&face[12..48]).map(f64::from).collect();
+        let first = triangles.vertices.len() as u32;
+        triangles.vertices.extend(numbers.chunks_exact(3).map(|v| [v[0], v[1], v[2]]));
+        triangles.faces.push([first, first + 1, first + 2]);
+    }
+    Some(triangles)
+}
+
+/// Four counts (vertices, normals, texture coordinates, faces), and then these.
+fn msh(bytes: &[u8]) -> Option<Triangles> {
+    let count = |k: usize| Some(i32::from_le_bytes(bytes.get(4 * k..4 * k + 4)?.try_into().ok()?));
+    let count = |k: usize| count(k).and_then(|n| usize::try_from(n).ok());
+    let [vertices, normals, texture, faces] = [count(0)?, count(1)?, count(2)?, count(3)?];
+    let part = |from: usize, size: usize| bytes.get(from..from.checked_add(size)?);
+    let at = 16 + vertices.checked_mul(12)? + normals.checked_mul(12)? + texture.checked_mul(8)?;
+    let numbers: Vec<f64> = floats(part(16, vertices.checked_mul(12)?)?).map(f64::from).collect();
+    let indices: Vec<u32> =
+        part(at, faces.checked_mul(12)?)?.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+    Some(Triangles {
+        vertices: numbers.chunks_exact(3).map(|v| [v[0], v[1], v[2]]).collect(),
+        faces: indices.chunks_exact(3).map(|f| [f[0], f[1], f[2]]).collect(),
+    })
+}
+
+/// The lines `v` and `f`.
+fn obj(bytes: &[u8]) -> Option<Triangles> {
+    let text = String::from_utf8_lossy(bytes);
+    let mut triangles = Triangles::default();
+    let mut polygon = Vec::new();
+    for line in text.lines() {
+        let mut words = line.split_ascii_whitespace();
+        match words.next() {
+            Some("v") => {
+                let mut next = || words.next()?.parse::<f32>().ok().map(f64::from);
+                triangles.vertices.push([next()?, next()?, next()?]);
+            }
+            Some("f") => {
+                polygon.clear();
+                for word in words {
+                    let index: i64 = word.split('/').next()?.parse().ok()?;
+                    let index = if index < 0 { triangles.vertices.len() as i64 + index } else { index - 1 };
+                    polygon.push(u32::try_from(index).ok()?);
+                }
+                split(&polygon, &mut triangles)?;
+            }
+            _ => {}
+        }
+    }
+    Some(triangles)
+}
+
+/// Splits a polygon into triangles: one of four corners along its shorter diagonal, others from
+/// their first corner.
+fn split(polygon: &[u32], into: &mut Triangles) -> Option<()> {
+    if let [a, b, c, d] = *polygon {
+        let vertex = |k: u32| into.vertices.get(k as usize).copied();
+        let length = |from: u32, to: u32| Some(norm(subtract(vertex(from)?, vertex(to)?)));
+        let faces = if length(a, c)? < length(b, d)? { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
+        into.faces.extend(faces);
+        return Some(());
+    }
+    into.faces.extend((1..polygon.len().max(2) - 1).map(|k| [polygon[0], polygon[k], polygon[k + 1]]));
+    Some(())
+}
+
+/// Volume, centre and inertia of what the faces enclose, or of the faces.
+fn body(triangles: Triangles, mode: Mode) -> Option<Body> {
+    const LEAST: f64 = 1e-15;
+    let Triangles { vertices, faces } = triangles;
+    let corners = |face: &[u32; 3]| face.map(|k| vertices[k as usize]);
+    let middle = |[a, b, c]: [Vector; 3]| scale(add(add(a, b), c), 1.0 / 3.0);
+    // Twice the area, along the normal.
+    let normal = |[a, b, c]: [Vector; 3]| cross(subtract(b, a), subtract(c, a));
+    // The centroid of the faces
+    let (mut area, mut centroid) = (0.0, [0.0; 3]);
+    for face in faces.iter().map(corners) {
+        let own = norm(normal(face)) / 2.0;
+        area += own;
+        centroid = add(centroid, scale(middle(face), own));
+    }
+    if area < LEAST || !area.is_finite() {
+        return None;
+    }
+    let centroid = scale(centroid, 1.0 / area);
+    // V = Σ (m − o)·n / 6 over the tetrahedra from o to the faces, or the area of the faces
+    let size = |face: [Vector; 3], from: Vector| match mode {
+        Mode::Shell => norm(normal(face)) / 2.0,
+        Mode::Legacy => (dot(subtract(middle(face), from), normal(face)) / 6.0).abs(),
+        Mode::Exact | Mode::Convex => dot(subtract(middle(face), from), normal(face)) / 6.0,
+    };
+    let (mut volume, mut center) = (0.0, [0.0; 3]);
+    for face in faces.iter().map(corners) {
+        let own = size(face, centroid);
+        volume += own;
+        center = add(center, scale(add(scale(middle(face), 3.0), centroid), own / 4.0));
+    }
+    if volume < LEAST {
+        return None;
+    }
+    let center = scale(center, 1.0 / volume);
+    // The products of inertia of a tetrahedron with one corner at the origin, or of a triangle
+    let parts = if mode == Mode::Shell { 12.0 } else { 20.0 };
+    let (mut volume, mut products) = (0.0, [0.0; 6]);
+    for face in faces.iter().map(corners) {
+        let [d, e, f] = face.map(|corner| subtract(corner, center));
+        let own = size([d, e, f], [0.0; 3]);
+        volume += own;
+        for (product, (i, j)) in products.iter_mut().zip([(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]) {
+            let twice = 2.0 * (d[i] * d[j] + e[i] * e[j] + f[i] * f[j]);
+            let mixed = d[i] * e[j] + d[j] * e[i] + d[i] * f[j] + d[j] * f[i] + e[i] * f[j] + e[j] * f[i];
+            *product += own / parts * (twice + mixed);
+        }
+    }
+    let [xx, xy, xz, yy, yz, zz] = products;
+    let inertia = [yy + zz, -xy, -xz, xx + zz, -yz, xx + yy];
+    (volume >= LEAST).then_some(Body { volume, center, inertia, vertices })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A box of sides 1, 2 and 3 from the origin, with faces of four corners that look outward.
+    const BOX: &str = "v 0 0 0\nv 1 0 0\nv 1 2 0\nv 0 2 0\nv 0 0 3\nv 1 0 3\nv 1 2 3\nv 0 2 3\n\
+        f 4 3 2 1\nf 5 6 7 8\nf 1/1/1 2/2/2 6/3 5\nf -5 -1 -2 -6\nf 1 5 8 4\nf 2 3 7 6\n";
+
+    #[test]
+    fn a_box_has_the_inertia_of_a_box_in_each_mode() {
+        for mode in [Mode::Legacy, Mode::Exact] {
+            let found = body(obj(BOX.as_bytes()).unwrap(), mode).unwrap();
+            assert!((found.volume - 6.0).abs() < 1e-14, "{mode:?} {}", found.volume);
+            assert!(norm(subtract(found.center, [0.5, 1.0, 1.5])) < 1e-14);
+            let expected = [6.5, 0.0, 0.0, 5.0, 0.0, 2.5];
+            assert!(found.inertia.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-13), "{:?}", found.inertia);
+            let sides = found.principal().inertia_box;
+            assert!(norm(subtract(sides, [0.5, 1.0, 1.5])) < 1e-13, "{sides:?}");
+        }
+        let shell = body(obj(BOX.as_bytes()).unwrap(), Mode::Shell).unwrap();
+        assert!((shell.volume - 22.0).abs() < 1e-13);
+    }
+
+    #[test]
+    fn files_that_are_cut_off_are_refused() {
+        let mut bytes = vec![0; 84];
+        bytes[80] = 2;
+        assert!(stl(&bytes).is_none());
+        bytes.extend([0; 100]);
+        assert_eq!(stl(&bytes).unwrap().faces.len(), 2);
+        bytes[80..84].fill(0xff);
+        assert!(stl(&bytes).is_none());
+        assert!(msh(&[0xff; 64]).is_none() && msh(&[0; 3]).is_none());
+        assert!(obj(b"v 0 0\n").is_none() && obj(b"f 1 2 x\n").is_none() && obj(b"f 1 2 3 9\n").is_none());
+    }
+}

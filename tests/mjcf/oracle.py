@@ -1,0 +1,338 @@
+#!/usr/bin/env python3
+"""Reads every MJCF file that a list of Python packages ships, and compares masses, limits and dynamics with MuJoCo's.
+
+    python3 tests/mjcf/oracle.py                  all packages of packages.txt (0.4 GB of downloads)
+    python3 tests/mjcf/oracle.py --sample         a few of them, as CI does
+    python3 tests/mjcf/oracle.py --only robosuite packages whose name contains a word
+    python3 tests/mjcf/oracle.py --file F.xml     one file
+    python3 tests/mjcf/oracle.py --write          also writes docs/mjcf-files.md
+
+For each file that MuJoCo compiles: masses, centres of mass and inertias of all bodies, armature, damping, friction, stiffness,
+rest and limits of all joints with one coordinate, and in random states the mass matrix, the bias force (inverse dynamics
+without acceleration), positions and orientations of all bodies, and the centre of mass of the whole.
+
+Packages are downloaded, not installed: their models are unpacked into target/mjcf. MuJoCo goes into a virtual environment
+there, with the versions of requirements.txt.
+
+Exit status: 0 if every file that MuJoCo compiles is read and every number agrees, else 1.
+"""
+
+import argparse
+import collections
+import json
+import os
+import re
+import subprocess
+import sys
+import tarfile
+import zipfile
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+REPOSITORY = HERE.parent.parent
+TARGET = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
+PLACE = TARGET / "mjcf"
+HELPER = TARGET / "release" / "examples" / ("dynamics.exe" if os.name == "nt" else "dynamics")
+TABLE = REPOSITORY / "docs" / "mjcf-files.md"
+ENDINGS = {".xml", ".mjcf", ".stl", ".obj", ".msh", ".png", ".skn", ".bin", ".jpg", ".hf"}
+STATES = 3
+# MuJoCo's types of joints; 0 is free.
+BALL, SLIDE, HINGE = 1, 2, 3
+# Of the scale of each number.
+BOUND = 1e-10
+# MuJoCo stops to diagonalize an inertia where the next turn has a cosine above 1 - 1e-12, or an entry beside the diagonal is
+# below 1e-12 (for meshes before the density): what is left is up to 1.5e-6 of the inertia. It is no part of the comparison.
+LEFT_BY_MUJOCO = 1.5e-6
+
+
+def main():
+    arguments = parse()
+    python = environment()
+    if Path(sys.executable).resolve() != python.resolve() and "MJCF_ORACLE" not in os.environ:
+        build()
+        words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in sys.argv]
+        # MuJoCo writes a log into the folder that it runs in.
+        code = subprocess.run([str(python), *words], cwd=PLACE, env={**os.environ, "MJCF_ORACLE": "1"}).returncode
+        sys.exit(code)
+    if arguments.file:
+        verdict, numbers = compare(Path(arguments.file))
+        print(verdict, *(f"{name}: {value:.1e}" for name, value in sorted(numbers.items())), sep="\n  ")
+        sys.exit(verdict != "equal")
+    own = HERE / "models"
+    rows = {}
+    for name, path in [("files of this folder", own), *packages(arguments)]:
+        rows[name] = files_of(path)
+        counts = collections.Counter(verdict.split(":")[0] for _, verdict, _ in rows[name])
+        print(f"{name}: " + ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items())), flush=True)
+        for file, verdict, numbers in rows[name]:
+            if not verdict.startswith(("equal", "refused by MuJoCo")):
+                worst = ", ".join(f"{key} {value:.1e}" for key, value in numbers.items() if value > BOUND)
+                print(f"  {file}: {verdict} {worst}", flush=True)
+    worst = collections.Counter()
+    for _, verdict, numbers in (row for all_rows in rows.values() for row in all_rows):
+        if verdict == "equal":
+            for key, value in numbers.items():
+                worst[key] = max(worst[key], value)
+    print("largest differences: " + ", ".join(f"{key} {value:.1e}" for key, value in sorted(worst.items())))
+    if arguments.write:
+        write(rows, worst)
+    good = all(verdict.startswith(("equal", "refused by MuJoCo")) for all_rows in rows.values() for _, verdict, _ in all_rows)
+    sys.exit(not good)
+
+
+def parse():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--sample", action="store_true", help="only the packages marked so")
+    parser.add_argument("--only", default="", help="only packages whose name contains this")
+    parser.add_argument("--file", help="only this file")
+    parser.add_argument("--write", action="store_true", help="write the table of files")
+    return parser.parse_args()
+
+
+def environment():
+    """The Python with MuJoCo."""
+    folder = PLACE / "python"
+    python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+    done = folder / "requirements.txt"
+    wanted = (HERE / "requirements.txt").read_text()
+    if not done.exists() or done.read_text() != wanted:
+        subprocess.run([sys.executable, "-m", "venv", "--clear", folder], check=True)
+        subprocess.run([python, "-m", "pip", "install", "--quiet", "-r", HERE / "requirements.txt"], check=True)
+        done.write_text(wanted)
+    return python
+
+
+def build():
+    command = ["cargo", "build", "--quiet", "--release", "-p", "articulated-formats", "--example", "dynamics"]
+    subprocess.run(command, check=True, cwd=REPOSITORY)
+
+
+def packages(arguments):
+    """Names and folders of the packages."""
+    for line in (HERE / "packages.txt").read_text().splitlines():
+        wanted, _, note = line.partition("#")
+        wanted = wanted.strip()
+        if not wanted or (arguments.sample and note.strip() != "sample") or arguments.only not in wanted:
+            continue
+        folder = PLACE / wanted.replace("==", "-")
+        if not (folder / "done").exists():
+            fetch(wanted, folder)
+        yield wanted, folder
+
+
+def fetch(wanted, folder):
+    folder.mkdir(parents=True, exist_ok=True)
+    download = folder / "download"
+    command = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--dest", download, wanted]
+    subprocess.run(command, check=True)
+    for archive in download.iterdir():
+        if archive.suffix in {".whl", ".zip"}:
+            with zipfile.ZipFile(archive) as opened:
+                opened.extractall(folder, [name for name in opened.namelist() if Path(name).suffix.lower() in ENDINGS])
+        else:
+            with tarfile.open(archive) as opened:
+                members = [m for m in opened.getmembers() if Path(m.name).suffix.lower() in ENDINGS]
+                opened.extractall(folder, members, filter="data")
+        archive.unlink()
+    (folder / "done").touch()
+
+
+def files_of(folder):
+    """Name, verdict and numbers of each MJCF file."""
+    rows = []
+    for path in sorted(folder.rglob("*")):
+        if path.suffix.lower() not in {".xml", ".mjcf"} or not re.search(rb"<mujoco[\s>/]", path.read_bytes()):
+            continue
+        try:
+            verdict, numbers = compare(path)
+        except subprocess.TimeoutExpired:
+            verdict, numbers = "differs: no answer in two minutes", {}
+        rows.append((path.relative_to(folder).as_posix(), verdict, numbers))
+    return rows
+
+
+def compare(path):
+    """A verdict, and the largest difference of each kind of number."""
+    import warnings
+
+    import mujoco
+    import numpy as np
+
+    warnings.simplefilter("ignore")
+    mujoco.set_mju_user_warning(lambda text: None)
+    try:
+        mujoco.MjModel.from_xml_path(str(path))
+        spec = mujoco.MjSpec.from_file(str(path))
+        for body in spec.bodies:
+            body.simple = 0  # so that inertias may be set
+        model = spec.compile()
+    except (ValueError, mujoco.FatalError) as error:
+        return "refused by MuJoCo: " + str(error).splitlines()[0][:120].replace(str(path.parent), "…"), {}
+    data = mujoco.MjData(model)
+    armature = model.dof_armature.copy()
+    model.dof_armature[:] = 0
+    if model.ntendon:
+        model.tendon_armature[:] = 0
+    if model.nu and hasattr(model, "actuator_armature"):
+        model.actuator_armature[:] = 0
+    if model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY:
+        model.opt.gravity[:] = 0
+    states = [state(model, np.random.default_rng(seed)) for seed in range(STATES)]
+    sent = b"".join(np.concatenate(one[2]).astype("<f8").tobytes() for one in states) if model.nv else b""
+    command = [str(HELPER), str(path), *(repr(float(g)) for g in model.opt.gravity)]
+    answer = subprocess.run(command, input=sent, capture_output=True, timeout=120)
+    if answer.returncode:
+        first = answer.stderr.decode().splitlines()[0]
+        return "refused: " + first.replace(str(path.parent), "…")[:300], {}
+    line, _, rest = answer.stdout.partition(b"\n")
+    robot, numbers = json.loads(line), np.frombuffer(rest, "<f8")
+    if (robot["nq"], robot["nv"]) != (model.nq, model.nv):
+        return f"differs: {robot['nq']} coordinates and {robot['nv']} freedoms, MuJoCo {model.nq} and {model.nv}", {}
+    names = [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, body) for body in range(model.nbody)]
+    by_name = {link["name"]: index for index, link in enumerate(robot["links"])}
+    # Bodies that MuJoCo fuses are links here.
+    fused = len(robot["links"]) != model.nbody
+    index = [by_name.get(name, -1) for name in names] if fused else list(range(model.nbody))
+    if -1 in index:
+        return f"differs: {len(robot['links'])} links, MuJoCo {model.nbody} bodies", {}
+    off = collections.Counter()
+
+    def differ(kind, found, expected, scale=None):
+        found, expected = np.asarray(found, float), np.asarray(expected, float)
+        scale = np.abs(expected).max(initial=0) if scale is None else scale
+        value = (np.abs(found - expected) / np.maximum(scale, 1e-300)).max(initial=0)
+        off[kind] = max(off[kind], float(value) if np.isfinite(value) else float("inf"))
+
+    masses(model, robot, fused, differ, mujoco, np)
+    joints(model, spec, robot, armature, differ, np)
+    mujoco.mj_setConst(model, data)
+    at, frames, nv = 0, robot["frames"], model.nv
+
+    def take(count):
+        nonlocal at
+        at += count
+        return numbers[at - count : at]
+
+    for q, v, _, change in states if nv else []:
+        matrix, bias, poses = take(nv * nv).reshape(nv, nv), take(nv), take(12 * frames).reshape(frames, 12)
+        data.qpos[:], data.qvel[:] = q, v
+        mujoco.mj_forward(model, data)
+        expected = np.zeros((nv, nv))
+        mujoco.mj_fullM(model, data, expected)
+        size = np.sqrt(np.outer(np.diag(expected), np.diag(expected))) + 1e-300
+        differ("mass matrix", change.T @ matrix @ change / size, expected / size, 1.0)
+        differ("bias force", change.T @ bias, data.qfrc_bias, max(np.abs(data.qfrc_bias).max(), np.abs(expected).max()))
+        length = max(1e-3, np.abs(data.xpos).max())
+        differ("position", poses[index, 9:], data.xpos, length)
+        differ("orientation", poses[index, :9], data.xmat, 1.0)
+        weights = np.array([link["mass"] for link in robot["links"]])
+        centers = [pose[9:] + pose[:9].reshape(3, 3) @ np.array(link["center"]) for pose, link in zip(poses, robot["links"])]
+        if weights.sum() > 0:
+            differ("centre of mass", weights @ np.array(centers) / weights.sum(), data.subtree_com[0], length)
+    return "equal" if all(value <= BOUND for value in off.values()) else "differs:", dict(off)
+
+
+def state(model, random):
+    """q and v of MuJoCo, those that are sent with an acceleration, and the matrix from MuJoCo's v to that."""
+    import mujoco
+    import numpy as np
+
+    q, v, sent_q = np.zeros(model.nq), random.normal(size=model.nv), []
+    change, acceleration = np.zeros((model.nv, model.nv)), np.zeros(model.nv)
+    for joint in range(model.njnt):
+        kind, at, dof = int(model.jnt_type[joint]), model.jnt_qposadr[joint], model.jnt_dofadr[joint]
+        if kind in (SLIDE, HINGE):
+            q[at] = random.uniform(-1, 1)
+            sent_q.append(q[at])
+            change[dof, dof] = 1
+            continue
+        quaternion = random.normal(size=4)
+        quaternion /= np.linalg.norm(quaternion)
+        if kind == BALL:
+            q[at : at + 4] = quaternion
+            sent_q += [*quaternion[1:], quaternion[0]]
+            change[dof : dof + 3, dof : dof + 3] = np.eye(3)
+            continue
+        # Free: here the twist of the body in its axes, there the velocity in the world's and the rates in the body's.
+        position = random.normal(size=3)
+        q[at : at + 7] = [*position, *quaternion]
+        sent_q += [*position, *quaternion[1:], quaternion[0]]
+        rotation = np.zeros(9)
+        mujoco.mju_quat2Mat(rotation, quaternion)
+        rotation = rotation.reshape(3, 3)
+        change[dof : dof + 3, dof + 3 : dof + 6] = np.eye(3)
+        change[dof + 3 : dof + 6, dof : dof + 3] = rotation.T
+        acceleration[dof + 3 : dof + 6] = -np.cross(v[dof + 3 : dof + 6], rotation.T @ v[dof : dof + 3])
+    return q, v, (np.array(sent_q), change @ v, acceleration), change
+
+
+def masses(model, robot, fused, differ, mujoco, np):
+    """Compares the bodies, and gives MuJoCo the inertias to all digits."""
+    links = robot["links"]
+    differ("total mass", sum(link["mass"] for link in links), model.body_mass.sum())
+    if fused:
+        return
+    for body in range(1, model.nbody):
+        link = links[body]
+        differ("mass", link["mass"], model.body_mass[body])
+        if model.body_mass[body] <= 0:
+            continue
+        differ("centre", link["center"], model.body_ipos[body], max(1e-3, np.abs(model.body_ipos[body]).max()))
+        rotation = np.zeros(9)
+        mujoco.mju_quat2Mat(rotation, model.body_iquat[body])
+        rotation = rotation.reshape(3, 3)
+        found = np.array(link["inertia"]).reshape(3, 3)
+        own = rotation.T @ found @ rotation
+        size = np.abs(model.body_inertia[body]).max()
+        rest = np.abs(own - np.diag(model.body_inertia[body])).max()
+        differ("inertia", rest if rest > LEFT_BY_MUJOCO * size else 0.0, 0.0, size)
+        moments, axes = np.linalg.eigh(found)
+        if np.linalg.det(axes) < 0:
+            axes[:, 0] *= -1
+        quaternion = np.zeros(4)
+        mujoco.mju_mat2Quat(quaternion, axes.flatten())
+        model.body_iquat[body], model.body_inertia[body] = quaternion, moments
+    model.body_sameframe[:] = 0
+
+
+def joints(model, spec, robot, armature, differ, np):
+    """Compares what joints with one coordinate have."""
+    for joint, found in zip(range(model.njnt), robot["joints"]):
+        if int(model.jnt_type[joint]) not in (SLIDE, HINGE):
+            continue
+        dof, at = model.jnt_dofadr[joint], model.jnt_qposadr[joint]
+        differ("armature", found["armature"] or 0, armature[dof])
+        differ("friction", found["friction"] or 0, model.dof_frictionloss[dof])
+        if not np.any(spec.joints[joint].springdamper):
+            differ("damping", found["damping"] or 0, model.dof_damping[dof])
+            differ("stiffness", found["stiffness"] or 0, model.jnt_stiffness[joint])
+            if model.jnt_stiffness[joint]:
+                differ("rest", found["rest"] or 0, model.qpos_spring[at], 1.0)
+        if model.jnt_limited[joint]:
+            differ("limits", [found["lower"], found["upper"]], model.jnt_range[joint], 1.0)
+        elif found["lower"] is not None or found["upper"] is not None:
+            differ("limits", 1, 0, 1.0)
+
+
+def write(rows, worst):
+    """The table for people."""
+    out = ["# MJCF files of Python packages", "", "Written by `python3 tests/mjcf/oracle.py --write`; [mjcf.md](mjcf.md) says what is compared.", ""]
+    out += ["| package | files | MuJoCo compiles | read here | equal |", "| --- | ---: | ---: | ---: | ---: |"]
+    total = [0, 0, 0, 0]
+    for name, files in rows.items():
+        compiled = [row for row in files if not row[1].startswith("refused by MuJoCo")]
+        read = [row for row in compiled if not row[1].startswith("refused")]
+        counts = [len(files), len(compiled), len(read), sum(row[1] == "equal" for row in read)]
+        total = [a + b for a, b in zip(total, counts)]
+        out.append("| " + " | ".join([name, *map(str, counts)]) + " |")
+    out.append("| " + " | ".join(["**all**", *map(str, total)]) + " |")
+    out += ["", "Largest differences: " + ", ".join(f"{key} {value:.1e}" for key, value in sorted(worst.items())) + ".", ""]
+    out += ["Files that MuJoCo refuses are parts of others, or their meshes are not in the package.", ""]
+    for name, files in rows.items():
+        out += [f"## {name}", "", "| file | verdict |", "| --- | --- |"]
+        out += [f"| {file} | {verdict.replace('|', '/')} |" for file, verdict, _ in files] + [""]
+    TABLE.write_text("\n".join(out))
+
+
+if __name__ == "__main__":
+    main()
