@@ -120,6 +120,7 @@ class _Source(NamedTuple):
     document: bytes
     base: str
     gravity: tuple
+    includes: bool
     wrenches_in: str = "body"
     frames: Optional[tuple] = None
     append: tuple = ()
@@ -233,13 +234,13 @@ class Robot(_native.Robot):
             source = other._source
             if source.append or source.payloads or source.locks:
                 raise ValueError("other: found a robot with edits, expected one as loaded; append it first, and edit the result")
-            file, document = source.file, source.document
+            file, document, includes = source.file, source.document, source.includes
         else:
             file = _path("other", other)
-            document = _native.read(file)
+            document, includes = _native.read(file), True
         position = _vector("position", position, "three finite numbers, m in the frame of the link")
         rpy = _vector("rpy", rpy, "three finite numbers, rad")
-        row = (file, document, _name("at", at), _name("prefix", prefix), position, rpy)
+        row = (file, document, includes, _name("at", at), _name("prefix", prefix), position, rpy)
         return self._edited(self._source._replace(append=(*self._source.append, row)))
 
     def _edited(self, source):
@@ -408,12 +409,12 @@ for _index, _function in enumerate(_TABLE):
         setattr(Robot, _function.name, _native.method(_index, _function.name, _text(_function)))
 
 
-def _robot(file, document, base, gravity, frames, wrenches_in):
+def _robot(file, document, base, gravity, frames, wrenches_in, includes):
     if base not in ("fixed", "floating"):
         raise ValueError(f'base: found {base!r}, expected "fixed" or "floating"')
     gravity = _vector("gravity", gravity, "three finite numbers, m/s² in the world frame")
     frames = None if frames is None else tuple(_names("frames", frames))
-    robot = Robot._made(_Source(file, document, base, gravity, _reference(wrenches_in), frames))
+    robot = Robot._made(_Source(file, document, base, gravity, includes, _reference(wrenches_in), frames))
     for finding in robot._warnings:
         warnings.warn(RobotWarning(finding["message"], finding), stacklevel=3)
     return robot
@@ -436,7 +437,7 @@ def load(path, base="fixed", gravity=GRAVITY, frames=None, wrenches_in="body"):
         RobotWarning: Something in the file looks wrong; the values are used as they are.
     """
     path = _path("path", path)
-    return _robot(path, _native.read(path), base, gravity, frames, wrenches_in)
+    return _robot(path, _native.read(path), base, gravity, frames, wrenches_in, True)
 
 
 def loads(text, name="robot.urdf", base="fixed", gravity=GRAVITY, frames=None, wrenches_in="body"):
@@ -449,7 +450,7 @@ def loads(text, name="robot.urdf", base="fixed", gravity=GRAVITY, frames=None, w
         raise TypeError(f"text: found {type(text).__name__}, expected str or bytes")
     if not isinstance(name, str):
         raise TypeError(f"name: found {type(name).__name__}, expected str")
-    return _robot(name, text, base, gravity, frames, wrenches_in)
+    return _robot(name, text, base, gravity, frames, wrenches_in, False)
 
 
 def bundled(name, base=None, gravity=GRAVITY, frames=None, wrenches_in="body"):
@@ -458,7 +459,7 @@ def bundled(name, base=None, gravity=GRAVITY, frames=None, wrenches_in="body"):
     if not isinstance(name, str) or name not in robots:
         raise _unknown("name", name, robots, "one of " + ", ".join(robots))
     urdf, own = robots[name]
-    return _robot(f"{name}.urdf", urdf.encode(), own if base is None else base, gravity, frames, wrenches_in)
+    return _robot(f"{name}.urdf", urdf.encode(), own if base is None else base, gravity, frames, wrenches_in, False)
 
 
 def bundled_names():

@@ -2,10 +2,12 @@
 
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::sync::OnceLock;
 
 use articulated::algorithm::{Function, Needs, functions};
 use articulated::description::{Description, Limit, Origin, Payload};
+use articulated::formats::{Disk, Included};
 use articulated::model::FLOATING_BASE;
 use articulated::spatial::Reference;
 use articulated::{Base, Model};
@@ -39,9 +41,10 @@ pub(crate) struct Robot {
 /// The first index and the end.
 type Ends = (usize, usize);
 
-/// A robot to append: its file's name, its document, the link that carries it, what stands before
-/// its names, and the position and roll, pitch and yaw of its root there.
-type AppendedRow = (String, Vec<u8>, String, String, [f64; 3], [f64; 3]);
+/// A robot to append: its file's name, its document, whether it may include files, the link that
+/// carries it, what stands before its names, and the position and roll, pitch and yaw of its root
+/// there.
+type AppendedRow = (String, Vec<u8>, bool, String, String, [f64; 3], [f64; 3]);
 
 /// A load: the link, its mass, its centre of mass, and xx, xy, xz, yy, yz, zz of its inertia.
 type PayloadRow = (String, f64, [f64; 3], [f64; 6]);
@@ -78,6 +81,12 @@ fn links(description: &Description, model: &Model<f64>) -> Vec<String> {
     let child = |name: &str| link(description.joints.iter().find(|joint| joint.name == name).map(|joint| joint.child));
     let name = |body: &str| if body == FLOATING_BASE { link(description.root()) } else { child(body) };
     model.links().map(|i| model.bodies()[i].name.as_str()).map(|body| name(body).unwrap_or_else(|| body.to_owned())).collect()
+}
+
+/// The files that a document of a file includes; none, with which they are refused, of a text.
+fn included(file: &str, document: &[u8], is_file: bool) -> Included {
+    let options = articulated::formats::Options { file: file.to_owned(), ..articulated::formats::Options::default() };
+    if is_file { articulated::formats::included(&Disk, Path::new(""), document, &options) } else { Included::default() }
 }
 
 /// The model with these frames. Errors: those that it does not have.
@@ -228,7 +237,7 @@ impl Robot {
 impl Robot {
     /// `like`: the same robot, of which only gravity, frames and the reference of wrenches differ.
     #[new]
-    #[pyo3(signature = (file, document, base, gravity, wrenches_in, frames, append, payloads, locks, like=None))]
+    #[pyo3(signature = (file, document, base, gravity, includes, wrenches_in, frames, append, payloads, locks, like=None))]
     #[allow(clippy::too_many_arguments)] // Why: what makes a robot, one by one.
     fn new(
         py: Python<'_>,
@@ -236,6 +245,7 @@ impl Robot {
         document: &[u8],
         base: &str,
         gravity: [f64; 3],
+        includes: bool,
         wrenches_in: &str,
         frames: Option<Vec<String>>,
         append: Vec<AppendedRow>,
@@ -258,9 +268,13 @@ impl Robot {
         let mut request = Request::new(file, document);
         let options = &mut request.options.robot;
         (options.base, options.gravity, options.wrench_reference) = (base_of(base)?, gravity, reference);
+        options.included = included(file, document, includes);
+        for (file, document, includes, ..) in &append {
+            options.included.extend(included(file, document, *includes));
+        }
         options.append = append
             .into_iter()
-            .map(|(file, document, at, prefix, xyz, rpy)| {
+            .map(|(file, document, _, at, prefix, xyz, rpy)| {
                 let origin = if rpy == [0.0; 3] { Origin::at(xyz) } else { Origin::new(xyz, rpy) };
                 Appended { document, file: file.into(), at: at.into(), prefix, origin }
             })

@@ -152,6 +152,24 @@ def test_bad_options(options, error, message):
     assert message in str(found.value)
 
 
+def test_a_file_that_includes_another(tmp_path):
+    """An MJCF file, whose included files belong to the robot of a file, and to no robot of a text."""
+    (tmp_path / "bar.xml").write_text('<mujoco><default><default class="bar"><geom type="capsule" size="0.05" fromto="0 0 0 0 0 0.5"/></default></default></mujoco>')
+    text = """<mujoco model="swing"><include file="bar.xml"/><worldbody><body name="bar"><joint name="hinge" axis="0 1 0"/><geom class="bar" mass="2"/>
+    </body></worldbody></mujoco>"""
+    path = tmp_path / "swing.xml"
+    path.write_text(text)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", articulated.RobotWarning)
+        robot = articulated.load(path)
+        assert robot.nv == 1 and robot.gravity_torque([0.5])[0] == pytest.approx(-2 * 9.81 * 0.25 * np.sin(0.5))
+        pendulum = articulated.loads(PENDULUM)
+        for both in (pendulum.append(path, "bob", "a_"), pendulum.append(robot, "bob", "a_")):
+            assert both.nv == 2 and both.lock("swing", 0.1).nv == 1
+        with pytest.raises(articulated.RobotError, match="includes another file"):
+            articulated.loads(text, name="swing.xml")
+
+
 def test_the_class_makes_no_robots():
     for arguments in ((), ("panda_like",)):
         with pytest.raises(TypeError, match="expected one of articulated.load, loads and bundled"):
