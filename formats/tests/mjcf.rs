@@ -173,7 +173,7 @@ fn what_is_not_used_is_listed_with_its_line() {
     );
     let found: Vec<_> = reading.unused.iter().map(|unused| (unused.line.unwrap(), unused.tag.as_str())).collect();
     let expected =
-        [(2, "option timestep"), (3, "visual"), (5, "light"), (7, "joint damping"), (8, "geom friction"), (12, "motor"), (15, "gyro")];
+        [(2, "option timestep"), (3, "visual"), (5, "light"), (7, "dynamics damping"), (8, "geom friction"), (12, "motor"), (15, "gyro")];
     for one in expected {
         assert!(found.contains(&one), "{one:?} in {found:?}");
     }

@@ -97,9 +97,14 @@ impl Element {
     /// Reports what of it is not used: an attribute, or the tag.
     pub(crate) fn unused(&self, subject: &Subject, attribute: Option<&Attribute>, why: &str, log: &mut Diagnostics) {
         let what = attribute.map_or_else(|| self.name.clone(), |attribute| format!("{} {}", self.name, attribute.name));
-        let tag = if self.file.included { format!("{what} of {}", self.file.name) } else { what };
+        self.unused_part(subject, (attribute, what), why, log);
+    }
+
+    /// As [`Self::unused`], under a name of its own.
+    pub(crate) fn unused_part(&self, subject: &Subject, (attribute, what): (Option<&Attribute>, String), why: &str, log: &mut Diagnostics) {
+        let why = if self.file.included { format!("{why} ({})", self.file.name) } else { why.to_owned() };
         let line = attribute.map_or(self.at, |attribute| attribute.at).line();
-        log.push_unused(Unused { line, subject: subject.clone(), tag, why: why.to_owned() });
+        log.push_unused(Unused { line, subject: subject.clone(), tag: what, why });
     }
 }
 
