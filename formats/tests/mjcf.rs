@@ -10,6 +10,9 @@ use articulated_core::diagnostic::{Code, Diagnostics};
 use articulated_core::model::Model;
 use articulated_formats::{Included, NoFiles, Options, Reading, Sources, included, read, read_with};
 
+#[path = "corpus/grammar.rs"]
+mod grammar;
+
 /// Files by their names.
 #[derive(Default)]
 struct Files(BTreeMap<PathBuf, Vec<u8>>);
@@ -316,4 +319,32 @@ fn no_part_of_a_file_makes_the_reader_panic() {
             drop(read(format!("{}{word}{}", &text[..start + 2], &text[end..]).as_bytes(), &options()));
         }
     }
+}
+
+/// `DOCUMENTS=1000000 cargo test --release -p articulated-formats --test mjcf random` makes more.
+#[test]
+fn random_documents_are_robots_or_lists_of_mistakes() {
+    let count: u64 = std::env::var("DOCUMENTS").ok().and_then(|count| count.parse().ok()).unwrap_or(2000);
+    let (mut state, mut robots) = (0x2545_f491_4f6c_dd1d_u64, 0);
+    let mut next = move || {
+        // xorshift64
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        state
+    };
+    for _ in 0..count {
+        let bytes: Vec<u8> = (0..next() % 400).map(|_| (next() >> 32) as u8).collect();
+        let text = grammar::document(&bytes);
+        let start = std::time::Instant::now();
+        match read(text.as_bytes(), &options()) {
+            Ok(reading) => {
+                robots += 1;
+                drop(Model::<f64>::new(&reading.description, Base::Fixed));
+            }
+            Err(found) => assert!(!found.errors.is_empty()),
+        }
+        assert!(start.elapsed().as_secs() < 30, "{text}");
+    }
+    assert!(robots > 0);
 }

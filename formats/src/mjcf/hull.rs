@@ -66,7 +66,7 @@ pub(crate) fn hull(points: &[Vector]) -> Option<Vec<[u32; 3]>> {
         }
         let height = |point: &u32| face.height(points[*point as usize]);
         let apex = face.outside.iter().copied().max_by(|a, b| height(a).total_cmp(&height(b)))?;
-        let (rim, orphans) = remove_seen(points[apex as usize], index, &mut faces, &mut by_edge)?;
+        let (rim, orphans) = remove_seen((points[apex as usize], -least), index, &mut faces, &mut by_edge)?;
         let before = faces.len();
         for (from, to) in rim {
             let face = Face::of(points, [from, to, apex])?;
@@ -115,8 +115,14 @@ fn assign(points: &[Vector], point: u32, faces: &mut [Face], from: usize, least:
 /// Edges around faces, and points that were outside of them.
 type Removed = (Vec<(u32, u32)>, Vec<u32>);
 
-/// Removes all faces that a point sees, from one of them on.
-fn remove_seen(point: Vector, start: usize, faces: &mut [Face], by_edge: &mut HashMap<(u32, u32), usize>) -> Option<Removed> {
+/// Removes all faces that a point sees, from one of them on; also those in whose plane it is, so that
+/// no triangle without area is made at their edges.
+fn remove_seen(
+    (point, least): (Vector, f64),
+    start: usize,
+    faces: &mut [Face],
+    by_edge: &mut HashMap<(u32, u32), usize>,
+) -> Option<Removed> {
     let (mut rim, mut orphans, mut next) = (Vec::new(), Vec::new(), vec![start]);
     faces[start].is_gone = true;
     let mut seen = vec![start];
@@ -127,7 +133,7 @@ fn remove_seen(point: Vector, start: usize, faces: &mut [Face], by_edge: &mut Ha
             if faces[neighbour].is_gone {
                 continue;
             }
-            if faces[neighbour].height(point) > 0.0 {
+            if faces[neighbour].height(point) >= least {
                 faces[neighbour].is_gone = true;
                 seen.push(neighbour);
                 next.push(neighbour);

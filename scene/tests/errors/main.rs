@@ -26,7 +26,7 @@ fn an_unknown_key_is_told_with_the_nearest() {
     let expected = "s.toml:2: effects.dampign: found a key that is not known, expected one of armature, damping, friction, spring, limit, motor, \
                     drag, box_drag, buoyancy, added_mass, contact, shaft; did you mean \"damping\"?";
     assert_eq!(one("\n[effects.dampign]\nelbow = 1"), expected);
-    let expected = "s.toml:3: effects.spring.elbow.stifness: found a key that is not known, expected one of stiffness, rest; did you mean \"stiffness\"?";
+    let expected = "s.toml:3: effects.spring.elbow.stifness: found a key that is not known, expected one of stiffness, rest, from; did you mean \"stiffness\"?";
     assert_eq!(one("[effects.spring]\n\nelbow = { stifness = 1 }"), expected);
     let expected = "s.toml:4: effects.contact.foot.frction: found a key that is not known, expected one of radius, stiffness, damping, friction, \
                     speed, normal, height, xyz, rpy, from; did you mean \"friction\"?";
