@@ -101,6 +101,11 @@ impl Writer<'_> {
         words[self.next() % words.len()]
     }
 
+    fn put(&mut self, words: &[&str]) {
+        let word = self.one(words);
+        self.out += word;
+    }
+
     fn attributes(&mut self) {
         for _ in 0..self.next() % 6 {
             let name = self.one(ATTRIBUTES);
@@ -112,11 +117,11 @@ impl Writer<'_> {
             self.out += &already;
             self.out.push('"');
             match self.next() % 3 {
-                0 => self.out += self.one(NAMES),
-                1 => self.out += self.one(WORDS),
+                0 => self.put(NAMES),
+                1 => self.put(WORDS),
                 _ => {
                     for _ in 0..self.next() % 13 {
-                        self.out += self.one(NUMBERS);
+                        self.put(NUMBERS);
                         self.out.push(' ');
                     }
                 }
