@@ -131,7 +131,7 @@ impl Writer<'_> {
     }
 
     fn tags(&mut self, names: &[&str], depth: usize) {
-        while !self.bytes.is_empty() && self.next() % 5 > 0 {
+        while !self.bytes.is_empty() && !self.next().is_multiple_of(5) {
             let name = self.one(names);
             self.out += &format!("<{name}");
             self.attributes();
@@ -150,7 +150,7 @@ impl Writer<'_> {
 }
 
 /// The document that bytes stand for.
-pub fn document(bytes: &[u8]) -> String {
+pub(crate) fn document(bytes: &[u8]) -> String {
     let mut writer = Writer { bytes, out: "<mujoco>".to_owned() };
     while !writer.bytes.is_empty() {
         writer.tags(IN_ROOT, 0);
