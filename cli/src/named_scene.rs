@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use articulated_codegen::nearest;
 use articulated_codegen::scene::{self, Bundled, Prepared, Scene};
+use articulated_formats::Formats;
 use articulated_lab::session::Session;
 
 use crate::console;
@@ -26,8 +27,10 @@ pub(crate) fn open(path: &Path) -> Result<(Prepared, PathBuf), Failure> {
     if !path.exists() {
         return Err(unknown(name));
     }
-    if path.is_file() && ends_with(path, "urdf") {
-        return Err(Failure::input([format!("{name}: found a URDF, expected a scene, a TOML file with urdf = {name:?} in it")]));
+    let is_robot = path.extension().is_some_and(|ending| Formats::default().has_ending(&ending.to_string_lossy()));
+    if path.is_file() && is_robot {
+        let (found, key) = if ends_with(path, "urdf") { ("a URDF", "urdf") } else { ("a robot", "file") };
+        return Err(Failure::input([format!("{name}: found {found}, expected a scene, a TOML file with {key} = {name:?} in it")]));
     }
     Ok((scene::open(path, &robots())?, path.parent().map(Path::to_owned).unwrap_or_default()))
 }

@@ -146,6 +146,23 @@ fn one_robot_in_two_formats_is_one_module() {
     assert_eq!(source("-", TINY), urdf);
 }
 
+const MJCF: &str = r#"<mujoco model="arm"><worldbody><body name="upper" pos="0 0 1"><joint name="shoulder" axis="0 1 0"/>
+<inertial pos="0 0.1 -0.3" mass="2" diaginertia="0.1 0.2 0.1"/>
+<body name="fore" pos="0 0 -0.6"><joint name="elbow" axis="1 0 0"/><inertial pos="0 0 -0.2" mass="1" diaginertia="0.1 0.1 0.1"/></body>
+</body></worldbody></mujoco>"#;
+
+#[test]
+fn one_robot_as_mjcf_and_as_urdf_is_one_module() {
+    let source = |file: &str, document: &str| {
+        let mut request = Request::new(file, document);
+        request.options.functions = ["inverse_dynamics", "mass_matrix", "placements"].map(Into::into).to_vec();
+        let source = generate(&request).unwrap_or_else(|e| panic!("{e}")).source;
+        source.split_once('\n').unwrap().1.to_owned()
+    };
+    let urdf = URDF.replace("base", "world");
+    assert_eq!(source("arm.xml", MJCF), source("arm.urdf", &urdf));
+}
+
 #[test]
 fn edits_and_findings_are_those_of_every_format() {
     let mut request = request("arm.tiny", TINY);

@@ -97,9 +97,14 @@ impl Element {
     /// Reports what of it is not used: an attribute, or the tag.
     pub(crate) fn unused(&self, subject: &Subject, attribute: Option<&Attribute>, why: &str, log: &mut Diagnostics) {
         let what = attribute.map_or_else(|| self.name.clone(), |attribute| format!("{} {}", self.name, attribute.name));
-        let tag = if self.file.included { format!("{what} of {}", self.file.name) } else { what };
+        self.unused_part(subject, (attribute, what), why, log);
+    }
+
+    /// As [`Self::unused`], under a name of its own.
+    pub(crate) fn unused_part(&self, subject: &Subject, (attribute, what): (Option<&Attribute>, String), why: &str, log: &mut Diagnostics) {
+        let why = if self.file.included { format!("{why} ({})", self.file.name) } else { why.to_owned() };
         let line = attribute.map_or(self.at, |attribute| attribute.at).line();
-        log.push_unused(Unused { line, subject: subject.clone(), tag, why: why.to_owned() });
+        log.push_unused(Unused { line, subject: subject.clone(), tag: what, why });
     }
 }
 
@@ -121,12 +126,12 @@ impl<'a> Loader<'a> {
     /// The root of a document, with the included files in the place of their tags.
     pub(crate) fn root(&mut self, bytes: &[u8], file: &str, log: &mut Diagnostics) -> Option<Element> {
         let mut own = Diagnostics::new(file);
-        let root = self.document(bytes, Rc::new(File { name: file.to_owned(), included: false }), 0, &mut own);
+        let root = self.document(bytes, &Rc::new(File { name: file.to_owned(), included: false }), 0, &mut own);
         log.take(own);
         root
     }
 
-    fn document(&mut self, bytes: &[u8], file: Rc<File>, depth: usize, log: &mut Diagnostics) -> Option<Element> {
+    fn document(&mut self, bytes: &[u8], file: &Rc<File>, depth: usize, log: &mut Diagnostics) -> Option<Element> {
         let text = document::text(bytes, log)?;
         let lines = Lines::of(&text);
         let document = document::parse(&text, &lines, log)?;
@@ -136,7 +141,7 @@ impl<'a> Loader<'a> {
             log.error(root.place(""), Code::NotARobot, found, "the root element <mujoco>");
             return None;
         }
-        Some(self.element(&root, &file, depth, log))
+        Some(self.element(&root, file, depth, log))
     }
 
     fn element(&mut self, tag: &Tag<'_>, file: &Rc<File>, depth: usize, log: &mut Diagnostics) -> Element {
@@ -187,7 +192,7 @@ impl<'a> Loader<'a> {
                     self.included.insert(path.clone());
                     let file = File { name: path.to_string_lossy().into_owned(), included: true };
                     let mut own = Diagnostics::new(&file.name);
-                    let root = self.document(&bytes, Rc::new(file), depth + 1, &mut own);
+                    let root = self.document(&bytes, &Rc::new(file), depth + 1, &mut own);
                     log.take(own);
                     return root.map(|root| root.children).unwrap_or_default();
                 }

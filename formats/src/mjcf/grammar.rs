@@ -34,7 +34,6 @@ const DEFORMABLE: &str = "deformable bodies are not read: the dynamics are those
 const PLUGIN: &str = "plugins of MuJoCo are not read";
 const ACTUATOR: &str = "controls are given by the scene";
 const FLUID: &str = "forces of the medium are given by the scene";
-const DYNAMICS: &str = "kept for scenes that turn on such forces; no part of the rigid-body dynamics";
 
 const BODY_TAGS: Names = "body frame replicate attach inertial joint freejoint geom site";
 const BODY_UNUSED_TAGS: &[(Names, &str)] =
@@ -222,9 +221,6 @@ const ROWS: &[Row] = &[
 const BODIES: Names = "worldbody body frame replicate";
 const IN_BODIES: Names = "worldbody body frame replicate default";
 
-/// Attributes of joints that no effect takes by default.
-const OF_JOINTS: [&str; 6] = ["stiffness", "damping", "armature", "frictionloss", "springref", "actuatorfrcrange"];
-
 fn has(names: Names, name: &str) -> bool {
     names.split_ascii_whitespace().any(|own| own == name)
 }
@@ -286,9 +282,6 @@ fn attributes(element: &Element, row: &Row, subject: &Subject, suggester: &mut S
     for attribute in &element.attributes {
         let name = attribute.name.as_str();
         if has(row.attributes, name) {
-            if row.name == "joint" && OF_JOINTS.contains(&name) {
-                element.unused(subject, Some(attribute), DYNAMICS, log);
-            }
             continue;
         }
         if name.starts_with("xmlns") || name.contains(':') {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use articulated_core::description::{Base, Collision, Description, Frame, Inertial, Joint, JointKind, Link, Origin, Visual};
-use articulated_core::diagnostic::{Code, Diagnostics, quote};
+use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
 use super::bodies::{self, Body, Kind, at_reference};
 use super::grammar::subject;
@@ -74,6 +74,23 @@ struct Lower {
     is_fixed: Vec<bool>,
 }
 
+/// Reports the numbers of a joint that only effects use, under the names by which those take them.
+fn keep_dynamics(joint: &bodies::Joint<'_>, name: &str, log: &mut Diagnostics) {
+    const WHY: &str = "kept for scenes that turn on such forces; no part of the rigid-body dynamics";
+    let own = joint.dynamics;
+    let numbers = [
+        ("dynamics damping", "damping", own.damping),
+        ("dynamics friction", "frictionloss", own.friction),
+        ("joint armature", "armature", own.armature),
+        ("joint stiffness", "stiffness", own.stiffness),
+        ("joint springref", "springref", own.rest),
+    ];
+    for (tag, attribute, _) in numbers.iter().filter(|(_, _, number)| number.is_some()) {
+        let place = (joint.element.attribute(attribute), (*tag).to_owned());
+        joint.element.unused_part(&Subject::Joint(name.to_owned()), place, WHY, log);
+    }
+}
+
 /// `name`, or with the first number from 2 on that is not taken. It is taken then.
 fn free(taken: &mut BTreeSet<String>, name: String) -> String {
     if taken.insert(name.clone()) {
@@ -128,7 +145,7 @@ impl Lower {
             let child = self.add_link(link);
             self.add_joint(Joint { name: joint, kind: JointKind::Fixed, parent, child, origin: body.pose.origin(), ..Joint::default() });
         } else {
-            self.sequence(body, parent, link);
+            self.sequence(body, parent, link, log);
         }
         self.link_of.push(self.description.links.len() - 1);
     }
@@ -164,7 +181,7 @@ impl Lower {
 
     /// Hinges, slides and balls, one after the other. The frame of each link in between is at the
     /// anchor of its joint.
-    fn sequence(&mut self, body: &Body<'_>, mut parent: usize, link: Link) {
+    fn sequence(&mut self, body: &Body<'_>, mut parent: usize, link: Link, log: &mut Diagnostics) {
         let mut link = Some(link);
         let body_name = link.as_ref().map(|link| link.name.clone()).unwrap_or_default();
         let mut anchor = [0.0; 3];
@@ -189,6 +206,7 @@ impl Lower {
                 }
             };
             let name = joint.name.clone().unwrap_or_else(|| free(&mut self.joints, format!("{body_name}_{word}")));
+            keep_dynamics(joint, &name, log);
             let origin = at_reference(joint, frame).origin();
             let axis = if kind == JointKind::Spherical { Joint::default().axis } else { joint.axis };
             self.add_joint(Joint {

@@ -11,6 +11,7 @@ use std::rc::Rc;
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
 use super::element::Element;
+use super::hull::hull;
 use super::pose::{Quaternion, Symmetric, Vector, add, conjugate, cross, dot, norm, principal, rotate, scale, subtract};
 use super::settings::Settings;
 use super::values::Values;
@@ -114,10 +115,17 @@ impl<'a> Meshes<'a> {
             triangles.faces.iter_mut().for_each(|face| face.swap(1, 2));
         }
         if mode == Mode::Convex || triangles.faces.is_empty() {
-            let found = if mode == Mode::Convex { "the inertia of a convex hull" } else { "vertices without faces" };
-            let expected = "`inertia` legacy, exact or shell and faces, or <inertial> in the body: hulls are not computed";
-            values.error("inertia", Code::Unsupported, found, expected, log);
-            return None;
+            if values.exactly::<1>("maxhullvert", log).is_some_and(|[most]| most >= 0.0) {
+                let expected = "the whole hull, or <inertial> in the body: `maxhullvert` is not read";
+                values.error("maxhullvert", Code::Unsupported, "a part of a convex hull", expected, log);
+                return None;
+            }
+            let Some(faces) = hull(&triangles.vertices) else {
+                let found = "points without a convex hull that can be computed";
+                values.error("inertia", Code::Unsupported, found, "points that do not lie in a plane", log);
+                return None;
+            };
+            triangles.faces = faces;
         }
         let body = body(triangles, mode);
         if body.is_none() {

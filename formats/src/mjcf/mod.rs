@@ -24,6 +24,7 @@ mod documents;
 mod element;
 mod geometry;
 mod grammar;
+mod hull;
 mod inertia;
 mod lower;
 mod mesh;

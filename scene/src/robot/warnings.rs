@@ -152,17 +152,21 @@ impl Editing<'_> {
         self.leave_geometry_that_is_used(effects);
         let Reading { description, unused, .. } = &mut self.reading;
         let joints = indices(description.joints.iter().map(|j| j.name.as_str()));
-        let tag = |e: &Applied| {
+        let tags = |e: &Applied| {
             let dynamics = description.joints[*joints.get(e.on.as_str())?].dynamics;
-            // The first number of each.
-            let (tag, x) = match e.effect {
-                EffectId::damping => ("dynamics damping", dynamics.damping),
-                EffectId::friction => ("dynamics friction", dynamics.friction),
+            // Numbers of the file by their place among those of the effect.
+            let numbers: &[(usize, &str, Option<f64>)] = match e.effect {
+                EffectId::damping => &[(0, "dynamics damping", dynamics.damping)],
+                EffectId::friction => &[(0, "dynamics friction", dynamics.friction)],
+                EffectId::armature => &[(0, "joint armature", dynamics.armature)],
+                EffectId::spring => &[(0, "joint stiffness", dynamics.stiffness), (1, "joint springref", dynamics.rest)],
                 _ => return None,
             };
-            (e.parameters.first().copied() == x).then_some(tag)
+            let used = numbers.iter().filter(|(k, _, number)| number.is_some() && e.parameters.get(*k).copied() == *number);
+            Some(used.map(|(_, tag, _)| *tag).collect::<Vec<_>>())
         };
-        let used: HashSet<(&str, &str)> = effects.iter().filter_map(|e| Some((e.on.as_str(), tag(e)?))).collect();
+        let used: HashSet<(&str, &str)> =
+            effects.iter().flat_map(|e| tags(e).unwrap_or_default().into_iter().map(|tag| (e.on.as_str(), tag))).collect();
         unused.retain(|u| !matches!(&u.subject, Subject::Joint(name) if used.contains(&(name.as_str(), u.tag.as_str()))));
     }
 }

@@ -19,14 +19,14 @@ fn one(text: &str) -> String {
 
 #[test]
 fn an_unknown_key_is_told_with_the_nearest() {
-    let expected = "s.toml:1: gravty: found a key that is not known, expected one of summary, robot, urdf, base, gravity, functions, parameters, \
+    let expected = "s.toml:1: gravty: found a key that is not known, expected one of summary, robot, urdf, file, base, gravity, functions, parameters, \
                     frames, wrenches_in, lock, payload, append, rename, allow_unphysical_inertia, snap_angles, limbs, batch, level, forbid_unsafe, max_code_size, effects, \
                     simulation, initial, control, impact; did you mean \"gravity\"?";
     assert_eq!(one("gravty = [0, 0, -9.81]"), expected);
     let expected = "s.toml:2: effects.dampign: found a key that is not known, expected one of armature, damping, friction, spring, limit, motor, \
                     drag, box_drag, buoyancy, added_mass, contact, shaft; did you mean \"damping\"?";
     assert_eq!(one("\n[effects.dampign]\nelbow = 1"), expected);
-    let expected = "s.toml:3: effects.spring.elbow.stifness: found a key that is not known, expected one of stiffness, rest; did you mean \"stiffness\"?";
+    let expected = "s.toml:3: effects.spring.elbow.stifness: found a key that is not known, expected one of stiffness, rest, from; did you mean \"stiffness\"?";
     assert_eq!(one("[effects.spring]\n\nelbow = { stifness = 1 }"), expected);
     let expected = "s.toml:4: effects.contact.foot.frction: found a key that is not known, expected one of radius, stiffness, damping, friction, \
                     speed, normal, height, xyz, rpy, from; did you mean \"friction\"?";
@@ -47,9 +47,8 @@ fn a_value_of_another_type_is_told() {
         "s.toml:2: effects.damping.elbow: found true, expected a number (damping, N·m·s/rad|N·s/m), a table with damping, \"urdf\" or \"off\""
     );
     assert_eq!(
-        one("[effects.spring]\nelbow = \"urdf\""),
-        "s.toml:2: effects.spring.elbow: found \"urdf\", which has no numbers for it, expected a number (stiffness, N·m/rad|N/m), a table with \
-         stiffness or \"off\""
+        one("[effects.added_mass]\nelbow = \"urdf\""),
+        "s.toml:2: effects.added_mass.elbow: found \"urdf\", which has no numbers for it, expected a table with angular, linear or \"off\""
     );
     assert_eq!(one("effects = 1979-05-27"), "s.toml:1: effects: found the date 1979-05-27, expected a table of effects");
 }
