@@ -54,10 +54,24 @@ fn robots(header_only: bool) -> Vec<Robot> {
 static PROGRAM: LazyLock<Program> = LazyLock::new(|| {
     let shape = |robot: &Robot| robot.case.model.shape();
     let all: Vec<(&str, Shape, _)> = ROBOTS.iter().map(|r| (r.name.as_str(), shape(r), &r.generated)).collect();
-    let program = c_program::build(&all, Vectors::Any);
+    let program = c_program::build(&all, Vectors::Any, "-O1");
     println!("compiled {} robots in {:.1?}", all.len(), program.time);
     program
 });
+
+/// Functions of every kind of argument and result; few, since they are compiled in three ways.
+const SOME: [&str; 10] = [
+    "placements",
+    "twists_body",
+    "inverse_dynamics",
+    "inverse_dynamics_with_wrenches",
+    "mass_matrix",
+    "forward_dynamics",
+    "kinetic_energy",
+    "torque_regressor",
+    "integrate",
+    "difference",
+];
 
 /// Robots with functions of many states and limbs in lanes, in each way in which their C can be
 /// compiled on this machine.
@@ -70,25 +84,27 @@ static MANY: LazyLock<Vec<Robot>> = LazyLock::new(|| {
     };
     let bundled = |name: &str| articulated_models::robot(name).expect("a bundled robot").urdf;
     let tree = urdf_text(&random_tree(102, Flavour { massless: false, ..Flavour::WRITTEN }));
-    let short = |name: &str| !name.contains("derivatives") && name != "coriolis_matrix";
+    let some = |name: &str| SOME.contains(&name);
     vec![
-        robot("arm", include_str!("../../robots/arm.urdf"), Base::Fixed, "f64", false, &|_| true),
-        robot("arm_own_math", include_str!("../../robots/arm.urdf"), Base::Fixed, "f32_f64", true, &short),
-        robot("tree", &tree, Base::Floating, "f64", false, &short),
-        robot("gripper_arm", bundled("gripper_arm"), Base::Fixed, "f64", false, &short),
+        robot("arm", include_str!("../../robots/arm.urdf"), Base::Fixed, "f64", false, &|name| some(name) || name == "coriolis_matrix"),
+        robot("arm_own_math", include_str!("../../robots/arm.urdf"), Base::Fixed, "f32_f64", true, &some),
+        robot("tree", &tree, Base::Floating, "f64", false, &|name| ["placements", "inverse_dynamics", "difference"].contains(&name)),
+        robot("gripper_arm", bundled("gripper_arm"), Base::Fixed, "f64", false, &|name| {
+            ["inverse_dynamics", "mass_matrix"].contains(&name)
+        }),
         robot("quadruped", bundled("quadruped"), Base::Floating, "f64", false, &|name| ["inverse_dynamics", "mass_matrix"].contains(&name)),
         robot("strider", include_str!("../../robots/strider.urdf"), Base::Floating, "f64", false, &|name| {
-            short(name) || name == "forward_dynamics_derivatives"
+            ["inverse_dynamics", "jacobians_world_aligned", "forward_dynamics_derivatives"].contains(&name)
         }),
         robot("seven_axes", bundled("panda_like"), Base::Fixed, "f64", false, &|name| name == "forward_dynamics_derivatives"),
-        robot("stone", "<robot name='stone'><link name='stone'/></robot>", Base::Fixed, "f64", false, &|_| true),
+        robot("stone", "<robot name='stone'><link name='stone'/></robot>", Base::Fixed, "f64", false, &some),
     ]
 });
 
 static WAYS: LazyLock<Vec<(Vectors, Program)>> = LazyLock::new(|| {
     let all: Vec<(&str, Shape, _)> = MANY.iter().map(|r| (r.name.as_str(), r.case.model.shape(), &r.generated)).collect();
     let ways = [Vectors::Any, Vectors::Own, Vectors::None];
-    ways.into_iter().map(|vectors| (vectors, c_program::build(&all, vectors))).collect()
+    ways.into_iter().map(|vectors| (vectors, c_program::build(&all, vectors, "-O0"))).collect()
 });
 
 /// States one after the other, and in blocks of which the last is not full.

@@ -262,10 +262,12 @@ impl<'a> Builder<'a> {
                 x = stage.locked(x, &[lead.multiplier * at + lead.offset], joint);
             }
         }
+        let mut at = x.compose(&turned(stage.turn));
         for lead in terms.into_iter().filter(|lead| joints[lead.joint].locked.is_none()) {
             let coordinates = Coordinates { pitch: per_radian(joint), ..AT_ZERO };
-            parent = self.push_body(joint.name.clone(), parent, x.compose(&turned(stage.turn)), stage.joint, coordinates);
-            x = turned_back(stage.turn);
+            parent = self.push_body(joint.name.clone(), parent, at, stage.joint, coordinates);
+            // The next one is on the same axis.
+            (at, x) = (Placement::identity(), turned_back(stage.turn));
             self.followers.push((parent, index, lead));
             self.body_of[index] = Some(parent);
         }

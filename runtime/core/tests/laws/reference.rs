@@ -15,12 +15,7 @@ const FEW: f64 = 16.0;
 /// Functions that have a scale which shares nothing with the library.
 const MEASURED: [&str; 5] = ["placements", "inverse_dynamics", "bias_forces", "gravity_torque", "mass_matrix"];
 
-fn textbook_holds(case: &Case, random: &mut Random) {
-    textbook_holds_within(FEW, case, random);
-}
-
-/// The same within so many units of u times the magnitude of the terms.
-pub(crate) fn textbook_holds_within(units: f64, case: &Case, random: &mut Random) {
+pub(crate) fn textbook_holds(case: &Case, random: &mut Random) {
     let state = case.state(random);
     for name in MEASURED {
         let given = arguments(name, &state);
@@ -28,7 +23,7 @@ pub(crate) fn textbook_holds_within(units: f64, case: &Case, random: &mut Random
             let expected = case.textbook::<Big>().call(name, &slices(&precise(&given))).unwrap().unwrap();
             distance_from(&case.call::<f64>(name, &given), &expected, &scale(case, name, &state))
         });
-        assert!(far <= units, "{name}: {far:?} units of roundoff");
+        assert!(far <= FEW, "{name}: {far:?} units of roundoff");
     }
 }
 

@@ -113,10 +113,14 @@ impl<'a> Motions<'a> {
             let rest = vec![S::zero(); nv];
             return [locked.iter().map(|&x| S::from_f64(x)).collect(), rest.clone(), rest];
         }
-        if let Some(m) = &it.mimic {
-            let (multiplier, offset) = (S::from_f64(m.multiplier), S::from_f64(m.offset));
-            let [q, v, a] = self.numbers(m.joint, q, v, a);
-            return [vec![multiplier * q[0] + offset], vec![multiplier * v[0]], vec![multiplier * a[0]]];
+        if it.mimic.is_some() {
+            let mut own = [S::zero(); 3];
+            for m in it.mimic.iter().chain(&it.also) {
+                let (multiplier, offset) = (S::from_f64(m.multiplier), S::from_f64(m.offset));
+                let [q, v, a] = self.numbers(m.joint, q, v, a);
+                own = [own[0] + multiplier * q[0] + offset, own[1] + multiplier * v[0], own[2] + multiplier * a[0]];
+            }
+            return own.map(|x| vec![x]);
         }
         let (i, k) = if nv == 0 { (0, 0) } else { self.seat(joint) };
         [q[i..i + nq].to_vec(), v[k..k + nv].to_vec(), a[k..k + nv].to_vec()]

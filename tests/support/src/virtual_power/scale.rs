@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use articulated_core::description::{Base, Joint, JointKind};
+use articulated_core::description::{Base, Joint, JointKind, Mimic};
 use nalgebra::Vector3;
 
 use super::pose::Pose;
@@ -91,10 +91,11 @@ impl Motions<'_> {
             self.add_scale(root, &ways, g, &FREE, (0, ways[root].length), &mut scale);
         }
         for (index, joint) in self.description.joints.iter().enumerate() {
-            let Some((end, multiplier)) = self.leader(index) else { continue };
-            let own: Vec<Share> = shares(joint).iter().map(|s| (s.0 * multiplier.abs(), s.1 * multiplier.abs())).collect();
-            let from = ways[joint.child].length;
-            self.add_scale(joint.child, &ways, g, &own, (self.seat(end).1, from), &mut scale);
+            for (end, multiplier) in self.leaders(index) {
+                let own: Vec<Share> = shares(joint).iter().map(|s| (s.0 * multiplier.abs(), s.1 * multiplier.abs())).collect();
+                let from = ways[joint.child].length;
+                self.add_scale(joint.child, &ways, g, &own, (self.seat(end).1, from), &mut scale);
+            }
         }
         scale
     }
@@ -115,15 +116,19 @@ impl Motions<'_> {
         }
     }
 
-    /// The joint at the end of a chain of followers, and how far it moves this one. `None` where
+    /// The joints at the ends of chains of followers, and how far each moves this one. None where
     /// either is locked, or does not move.
-    fn leader(&self, joint: usize) -> Option<(usize, f64)> {
+    fn leaders(&self, joint: usize) -> Vec<(usize, f64)> {
         let it = &self.description.joints[joint];
-        match &it.mimic {
-            _ if it.locked.is_some() || it.kind.is_fixed() => None,
-            None => Some((joint, 1.0)),
-            Some(m) => self.leader(m.joint).map(|(end, multiplier)| (end, m.multiplier * multiplier)),
+        if it.locked.is_some() || it.kind.is_fixed() {
+            return Vec::new();
         }
+        if it.mimic.is_none() {
+            return vec![(joint, 1.0)];
+        }
+        let further =
+            |m: &Mimic| self.leaders(m.joint).into_iter().map(|(end, multiplier)| (end, m.multiplier * multiplier)).collect::<Vec<_>>();
+        it.mimic.iter().chain(&it.also).flat_map(further).collect()
     }
 
     /// For each number of a placement: 1 in a rotation, in a position the length of the way from
