@@ -9,9 +9,8 @@ use super::documents::Documents;
 use super::element::Element;
 use super::geometry::{self, Geom};
 use super::grammar::subject;
-use super::inertia::{Explicit, explicit};
-use super::pose::{Pose, Vector, about, multiply, rotate, unit};
-use super::settings::Settings;
+use super::pose::{Pose, Symmetric, Vector, about, diagonal, multiply, rotate, unit};
+use super::settings::{Compiler, Settings};
 use super::values::Values;
 
 /// A model may have so many bodies, joints, geoms and sites altogether.
@@ -65,6 +64,33 @@ pub(crate) struct Site<'a> {
     pub(crate) element: &'a Element,
     pub(crate) name: Option<String>,
     pub(crate) pose: Pose,
+}
+
+/// What `<inertial>` says.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Explicit {
+    pub(crate) pose: Pose,
+    pub(crate) mass: f64,
+    pub(crate) inertia: Symmetric,
+}
+
+fn explicit(values: &Values<'_>, compiler: &Compiler, log: &mut Diagnostics) -> Option<Explicit> {
+    for name in ["pos", "mass"].iter().filter(|name| !values.has(name)) {
+        values.error(name, Code::MissingAttribute, "none", format!("the attribute {name} in <inertial>"), log);
+    }
+    let pose = values.pose(&compiler.angles, log);
+    let mass = values.number("mass", log)?;
+    let inertia = match values.exactly::<6>("fullinertia", log) {
+        Some([xx, yy, zz, xy, xz, yz]) => {
+            let turns = ["quat", "axisangle", "xyaxes", "zaxis", "euler", "diaginertia"];
+            if let Some(name) = turns.iter().find(|name| values.has(name)) {
+                values.error("fullinertia", Code::Together, format!("both fullinertia and {name}"), "one of them", log);
+            }
+            [xx, xy, xz, yy, yz, zz]
+        }
+        None => diagonal(values.exactly::<3>("diaginertia", log).unwrap_or_default()),
+    };
+    Some(Explicit { pose, mass, inertia })
 }
 
 /// Where a tag is.

@@ -3,9 +3,10 @@
 use std::rc::Rc;
 
 use articulated_core::description::CollisionShape;
-use articulated_core::diagnostic::{Code, Diagnostics, quote};
+use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
 use super::element::Element;
+use super::grammar::subject;
 use super::mesh::{self, Meshes};
 use super::pose::{Pose, Symmetric, TINY, Vector, add, diagonal, norm, of_z_axis, rotate, scale, subtract};
 use super::settings::Settings;
@@ -162,13 +163,7 @@ impl Geom<'_> {
             Some(mesh) => Some(meshes.body(mesh, &self.settings, log)?),
             None if self.kind == Kind::Sdf => {
                 let expected = "a mesh, or <inertial> in the body: plugins are not read";
-                self.element.error(
-                    (&super::grammar::subject(self.element), "type"),
-                    Code::Unsupported,
-                    "a field of a plugin",
-                    expected,
-                    log,
-                );
+                self.element.error((&subject(self.element), "type"), Code::Unsupported, "a field of a plugin", expected, log);
                 return None;
             }
             None => None,
@@ -222,7 +217,7 @@ impl Geom<'_> {
     fn mesh_shape(&self, mesh: &Element) -> CollisionShape {
         let settings = &*self.settings;
         let class = settings.classes.find(mesh, "class", &mut Diagnostics::default()).unwrap_or(0);
-        let subject = articulated_core::diagnostic::Subject::Document;
+        let subject = Subject::Document;
         let values = Values::new(mesh, settings.classes.tags(class, "mesh"), &subject);
         let Some(file) = mesh.text("file") else {
             return CollisionShape::Unread { why: "a mesh without a file".to_owned() };
@@ -356,9 +351,9 @@ mod tests {
         let area = (volume(h) - volume(-h)) / (2.0 * h);
         let (found, moments) = shape(Kind::Box, size, true);
         assert!((found - area).abs() < 1e-6);
-        for k in 0..3 {
-            let expected = (solid(h)[k] - solid(-h)[k]) / (2.0 * h) / area;
-            assert!((moments[k] - expected).abs() < 1e-6, "{k}");
+        let (outer, inner) = (solid(h), solid(-h));
+        for (moment, (outer, inner)) in moments.iter().zip(outer.iter().zip(inner)) {
+            assert!((moment - (outer - inner) / (2.0 * h) / area).abs() < 1e-6);
         }
     }
 

@@ -8,34 +8,6 @@ use super::grammar::subject;
 use super::mesh::Meshes;
 use super::pose::{Pose, Symmetric, add, diagonal, of_point, principal, scale, subtract, turned};
 use super::settings::{Compiler, InertiaFromGeom};
-use super::values::Values;
-
-/// What `<inertial>` says.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Explicit {
-    pose: Pose,
-    mass: f64,
-    inertia: Symmetric,
-}
-
-pub(crate) fn explicit(values: &Values<'_>, compiler: &Compiler, log: &mut Diagnostics) -> Option<Explicit> {
-    for name in ["pos", "mass"].iter().filter(|name| !values.has(name)) {
-        values.error(name, Code::MissingAttribute, "none", format!("the attribute {name} in <inertial>"), log);
-    }
-    let pose = values.pose(&compiler.angles, log);
-    let mass = values.number("mass", log)?;
-    let inertia = match values.exactly::<6>("fullinertia", log) {
-        Some([xx, yy, zz, xy, xz, yz]) => {
-            let turns = ["quat", "axisangle", "xyaxes", "zaxis", "euler", "diaginertia"];
-            if let Some(name) = turns.iter().find(|name| values.has(name)) {
-                values.error("fullinertia", Code::Together, format!("both fullinertia and {name}"), "one of them", log);
-            }
-            [xx, xy, xz, yy, yz, zz]
-        }
-        None => diagonal(values.exactly::<3>("diaginertia", log).unwrap_or_default()),
-    };
-    Some(Explicit { pose, mass, inertia })
-}
 
 /// The mass of a body, its centre and its inertia, bounds included; `None` for a body without.
 pub(crate) fn of_body(body: &Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Option<Inertial> {
