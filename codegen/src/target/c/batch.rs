@@ -55,13 +55,23 @@ impl Source<'_> {
     /// The functions of many states.
     pub(super) fn batches(&self, out: &mut String) {
         self.each_batch(|function, states, real| {
-            self.of_lanes(out, function, states, real);
+            let is_any = function.results.iter().any(|array| array.numbers() > 0);
+            if is_any {
+                self.of_lanes(out, function, states, real);
+            }
             for form in [Form::States, Form::Blocks] {
                 if self.header_only {
                     self.document_batch(out, function, real, form);
                 }
                 let _ = writeln!(out, "{} {{", self.head(function, real, form));
                 match form {
+                    _ if !is_any => {
+                        let names: Vec<&str> = self.arrays(function).iter().map(|array| array.name).collect();
+                        *out += &unused(&names);
+                        *out += if form == Form::States { "    (void)count;\n" } else { "    (void)blocks;\n" };
+                        let takes_sets = function.arguments.iter().any(crate::lir::function::Argument::is_parameters);
+                        *out += if takes_sets { "    (void)parameter_sets;\n" } else { "" };
+                    }
                     Form::States => self.of_states(out, function, real),
                     Form::Blocks => self.of_blocks(out, function, real),
                 }
