@@ -110,11 +110,15 @@ static WAYS: LazyLock<Vec<(Vectors, Program)>> = LazyLock::new(|| {
 /// States one after the other, and in blocks of which the last is not full.
 #[test]
 fn c_of_many_states_gives_what_the_generic_library_gives() {
-    // In units of roundoff of the type; 3.4 were seen in Rust.
-    const ALLOWED: f64 = 8.0;
+    // In units of roundoff of the type: 3.6 were seen in f64, and 17 in f32, of a Coriolis matrix without fused
+    // multiply-adds.
+    const ALLOWED: [f64; 2] = [8.0, 32.0];
     for (vectors, program) in WAYS.iter() {
         for (robot, real) in MANY.iter().flat_map(|r| [(r, Real::F64), (r, Real::F32)]) {
-            let unit = if real == Real::F32 { f64::from(f32::EPSILON) / f64::EPSILON } else { 1.0 };
+            let (unit, allowed) = match real {
+                Real::F32 => (f64::from(f32::EPSILON) / f64::EPSILON, ALLOWED[1]),
+                Real::F64 => (1.0, ALLOWED[0]),
+            };
             let states = single_states(robot, 37);
             for form in ["batch", "blocks"] {
                 let mut worst = (0.0, "");
@@ -127,7 +131,7 @@ fn c_of_many_states_gives_what_the_generic_library_gives() {
                     }
                 }
                 println!("{vectors:?} {} {real:?} {form}: {:.1} units of roundoff in {}", robot.name, worst.0, worst.1);
-                assert!(worst.0 <= ALLOWED, "{vectors:?} {} {real:?} {form}: {} units of roundoff in {}", robot.name, worst.0, worst.1);
+                assert!(worst.0 <= allowed, "{vectors:?} {} {real:?} {form}: {} units of roundoff in {}", robot.name, worst.0, worst.1);
             }
         }
     }

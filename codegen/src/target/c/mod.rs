@@ -191,7 +191,12 @@ impl Source<'_> {
         let solved =
             self.module.functions.iter().find_map(|f| f.columns).filter(|_| functions.contains(&format!("{}_columns(", self.prefix)));
         let linkage = if self.header_only { "static inline" } else { "static" };
-        let functions = &(solved.map_or(String::new(), |columns| columns::text(&self.prefix, linkage, columns)) + functions);
+        let mut loops = solved.map_or(String::new(), |columns| columns::text(&self.prefix, linkage, columns));
+        // Without vectors such a function has no loop.
+        if self.module.functions.iter().all(|f| f.columns.is_none() || f.scalar.is_some()) && !loops.is_empty() {
+            loops = format!("#if {}_LIMBS\n{loops}#endif\n\n", self.upper);
+        }
+        let functions = &(loops + functions);
         let batch = if functions.contains("_lanes_f") { self.module.request.options.batch.as_slice() } else { &[] };
         let vectors: String = batch.iter().map(|real| lanes::text(&self.prefix, *real, self.no_libm, functions)).collect();
         let text = vectors + &lanes::of_limbs(&self.prefix, self.no_libm, functions) + functions;

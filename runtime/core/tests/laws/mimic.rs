@@ -86,7 +86,7 @@ fn a_follower_that_turns_back_keeps_the_tip_level() {
 #[test]
 fn torque_on_each_of_several_leaders_is_that_of_equal_power() {
     let mut met = std::cell::Cell::new(0);
-    for_each_tree(120, Flavour { mimic: false, locked: false, ..Flavour::ANY }, |free, random| {
+    for_each_tree(60, Flavour { mimic: false, locked: false, ..Flavour::ANY }, |free, random| {
         let joints = &free.description.joints;
         let single: Vec<usize> = (0..joints.len()).filter(|&j| joints[j].kind.sizes() == (1, 1)).collect();
         let [.., a, b, c, follower] = single[..] else { return };
@@ -133,7 +133,7 @@ fn torque_on_each_of_several_leaders_is_that_of_equal_power() {
         assert!(far <= FEW, "placements: {far} units of roundoff");
         crate::reference::textbook_holds(&reduced, random);
     });
-    assert!(*met.get_mut() > 30, "only {} trees", met.get());
+    assert!(*met.get_mut() > 15, "only {} trees", met.get());
 }
 
 /// A differential drive, by hand: M = 1e-4 + 0.05²·0.01 on the diagonal, −0.05²·0.01 beside it.
