@@ -10,9 +10,9 @@ use super::element::Element;
 use super::geometry::{self, Geom};
 use super::grammar::subject;
 use super::inertia::{Explicit, explicit};
-use super::pose::{Pose, Vector, about, multiply, rotate, unit};
 use super::settings::Settings;
 use super::values::Values;
+use crate::pose::{Pose, Vector, about, multiply, rotate, unit};
 
 /// A model may have so many bodies, joints, geoms and sites altogether.
 const MOST_ITEMS: usize = 400_000;

@@ -7,9 +7,9 @@ use articulated_core::diagnostic::{Code, Diagnostics, quote};
 
 use super::element::Element;
 use super::mesh::{self, Meshes};
-use super::pose::{Pose, Symmetric, TINY, Vector, add, diagonal, norm, of_z_axis, rotate, scale, subtract};
 use super::settings::Settings;
 use super::values::Values;
+use crate::pose::{Pose, Symmetric, TINY, Vector, add, diagonal, norm, of_z_axis, rotate, scale, subtract};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {

@@ -6,9 +6,9 @@ use articulated_core::diagnostic::{Code, Diagnostics};
 use super::bodies::Body;
 use super::grammar::subject;
 use super::mesh::Meshes;
-use super::pose::{Pose, Symmetric, add, diagonal, of_point, principal, scale, subtract, turned};
 use super::settings::{Compiler, InertiaFromGeom};
 use super::values::Values;
+use crate::pose::{Pose, Symmetric, add, diagonal, of_point, principal, scale, subtract, turned};
 
 /// What `<inertial>` says.
 #[derive(Clone, Copy, Debug)]

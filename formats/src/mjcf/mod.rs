@@ -27,7 +27,6 @@ mod grammar;
 mod inertia;
 mod lower;
 mod mesh;
-mod pose;
 mod settings;
 mod values;
 
