@@ -14,6 +14,7 @@ use super::grammar::subject;
 use super::joints::{self, Joint};
 use super::links::{self, Link};
 use super::load::ROOT;
+use super::names::{MODEL, ROOT_FRAME, Reference, Version, WORLD_NAME, relative_to, version};
 use super::values::{self, flag, only, text, yes};
 use crate::Options;
 use crate::cycles::{around, cycles};
@@ -30,22 +31,6 @@ const MOST_STEPS: u64 = 200_000_000;
 /// The node of the world, and its body.
 pub(crate) const WORLD: usize = 0;
 
-/// Names that the format uses itself.
-const MODEL: &str = "__model__";
-const ROOT_FRAME: &str = "__root__";
-pub(crate) const WORLD_NAME: &str = "world";
-
-/// The version of the format.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Version(u32);
-
-impl Version {
-    pub(crate) const V1_5: Self = Self(5);
-    pub(crate) const V1_7: Self = Self(7);
-    const NEWEST: Self = Self(12);
-    const OLDEST: Self = Self(4);
-}
-
 /// Where names are looked up.
 pub(crate) struct Scope {
     /// What the keys of its names begin with.
@@ -56,16 +41,6 @@ pub(crate) struct Scope {
     pub(crate) model: usize,
     pub(crate) version: Version,
     is_static: bool,
-}
-
-/// A name that a tag uses for another.
-#[derive(Clone, Copy)]
-pub(crate) struct Reference<'a> {
-    pub(crate) element: &'a Element,
-    /// The tag or attribute with the name.
-    pub(crate) field: &'static str,
-    pub(crate) name: &'a str,
-    pub(crate) scope: usize,
 }
 
 /// What a node refers to.
@@ -378,27 +353,6 @@ fn name_of(element: &Element) -> &str {
     element.text("name").or(child("name")).or(child("uri")).unwrap_or_default()
 }
 
-fn version(root: &Element, log: &mut Diagnostics) -> Version {
-    let expected = "1.4 to 1.12";
-    let Some(written) = root.text("version").map(str::trim) else {
-        let expected = format!("the attribute version in <sdf>: {expected}");
-        root.error((&Subject::Document, "version"), Code::MissingAttribute, "none", expected, log);
-        return Version::NEWEST;
-    };
-    let number = written.strip_prefix("1.").and_then(|minor| minor.parse().ok()).map(Version);
-    match number {
-        Some(version) if version < Version::OLDEST => {
-            root.error((&Subject::Document, "version"), Code::Version, quote(written), expected, log);
-        }
-        Some(version) if version <= Version::NEWEST => return version,
-        _ => {
-            let expected = format!("{expected}; read as 1.12");
-            root.warning((&Subject::Document, "version"), Code::Version, quote(written), expected, log);
-        }
-    }
-    Version::NEWEST
-}
-
 /// Reports what the file says of gravity where it is not that of scenes.
 fn gravity(world: &Element, log: &mut Diagnostics) {
     let Some(element) = only(world, "gravity", &Subject::Document, log) else { return };
@@ -658,12 +612,4 @@ impl<'a> Build<'a, '_> {
         joint.node = node;
         self.graph.joints.push(joint);
     }
-}
-
-/// What a `<pose>` says that it is relative to.
-pub(crate) fn relative_to(tag: &Element, scope: usize) -> Option<Reference<'_>> {
-    // Up to 1.6 the attribute is called frame.
-    let (field, attribute) = ["relative_to", "frame"].into_iter().find_map(|field| Some((field, tag.attribute(field)?)))?;
-    let name = attribute.value.trim();
-    (!name.is_empty()).then_some(Reference { element: tag, field, name, scope })
 }

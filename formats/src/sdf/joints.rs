@@ -7,7 +7,7 @@ use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 use articulated_core::suggest::Suggester;
 
 use super::grammar::subject;
-use super::graph::{Reference, Version, WORLD_NAME};
+use super::names::{Reference, Version, WORLD_NAME};
 use super::values::{bound, exactly, name, number, only, yes};
 use crate::pose::Vector;
 use crate::xml::tree::Element;
@@ -42,9 +42,10 @@ impl Type {
     /// How many axes it has.
     pub(crate) fn axes(self) -> usize {
         match self {
-            Self::Fixed | Self::Ball => 0,
+            // A gearbox is read where it is cut.
+            Self::Fixed | Self::Ball | Self::Gearbox => 0,
             Self::Universal | Self::Revolute2 => 2,
-            Self::Revolute | Self::Continuous | Self::Prismatic | Self::Screw | Self::Gearbox => 1,
+            Self::Revolute | Self::Continuous | Self::Prismatic | Self::Screw => 1,
         }
     }
 }
@@ -108,7 +109,9 @@ pub(crate) fn joint<'a>(
         Some(Reference { element, field, name, scope })
     };
     let (parent, child) = (end("parent", log), end("child", log));
-    let kind = kind(element, about, suggester, log);
+    let physics = only(element, "physics", about, log).and_then(|physics| only(physics, "simbody", about, log));
+    let is_cut = physics.and_then(|simbody| yes(simbody, "must_be_loop_joint", about, log)).unwrap_or(false);
+    let kind = kind(element, is_cut, about, suggester, log);
     if let Some(child) = child.filter(|child| child.name == WORLD_NAME) {
         let expected = "a link: the world is a parent, never a child";
         child.element.error((about, "child"), Code::UnknownLink, quote(WORLD_NAME), expected, log);
@@ -138,12 +141,10 @@ pub(crate) fn joint<'a>(
         }
     }
     let pitch = pitch(element, kind, about, log);
-    let physics = only(element, "physics", about, log).and_then(|physics| only(physics, "simbody", about, log));
-    let is_cut = physics.and_then(|simbody| yes(simbody, "must_be_loop_joint", about, log)).unwrap_or(false);
     is_good.then_some(Joint { element, node: 0, kind, parent: parent?, parent_node: 0, child: child?, axes, pitch, is_cut })
 }
 
-fn kind(element: &Element, about: &Subject, suggester: &mut Suggester, log: &mut Diagnostics) -> Option<Type> {
+fn kind(element: &Element, is_cut: bool, about: &Subject, suggester: &mut Suggester, log: &mut Diagnostics) -> Option<Type> {
     let Some(name) = element.text("type") else {
         element.error((about, "type"), Code::MissingAttribute, "none", "the attribute type in <joint>", log);
         return None;
@@ -156,8 +157,9 @@ fn kind(element: &Element, about: &Subject, suggester: &mut Suggester, log: &mut
             let expected = format!("one of {}{near}", names.collect::<Vec<_>>().join(", "));
             element.error((about, "type"), Code::UnknownJointType, format!("the type {}", quote(name)), expected, log);
         }
-        Some(Type::Gearbox) => {
-            let expected = "two revolute joints, of which one follows the other: <mimic> inside its <axis>";
+        Some(Type::Gearbox) if !is_cut => {
+            let expected = "two revolute joints, of which one follows the other: <mimic> inside its <axis>; \
+                            <physics><simbody><must_be_loop_joint>true leaves this joint out";
             element.error((about, "type"), Code::Unsupported, "a gearbox, which couples two joints", expected, log);
             return None;
         }

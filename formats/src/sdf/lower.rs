@@ -7,9 +7,10 @@ use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 use articulated_core::listed;
 
 use super::grammar::subject;
-use super::graph::{Graph, WORLD, WORLD_NAME, What};
+use super::graph::{Graph, WORLD, What};
 use super::joints::{self, Axis, Type};
-use super::links;
+use super::names::WORLD_NAME;
+use super::shapes;
 use crate::Options;
 use crate::cycles::{around, cycles};
 use crate::pose::{Pose, Vector, cross, rotate, scale};
@@ -225,8 +226,8 @@ impl Lower<'_, '_> {
         self.description.links.push(Link { name: WORLD_NAME.to_owned(), ..Link::default() });
         for link in &self.graph.links {
             let name = free(&mut self.links, self.graph.nodes[link.node].name.clone());
-            let collision = links::collisions(link, self.graph, options, log);
-            let visual = links::visuals(link, self.graph, options, log);
+            let collision = shapes::collisions(link, self.graph, options, log);
+            let visual = shapes::visuals(link, self.graph, options, log);
             self.description.links.push(Link { name, inertial: link.inertial, collision, visual, intermediate: false });
         }
         let frames = self.graph.nodes.iter().filter(|node| node.what == What::Frame);

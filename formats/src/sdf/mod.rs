@@ -26,6 +26,8 @@ mod joints;
 mod links;
 mod load;
 mod lower;
+mod names;
+mod shapes;
 mod values;
 
 use articulated_core::description::Description;
