@@ -68,7 +68,7 @@ fn header(reading: &Reading, model: &Model<f64>) -> String {
     let mut out = format!("{{\"nq\": {}, \"nv\": {}, \"frames\": {}", model.nq(), model.nv(), model.frames().len());
     let _ = write!(out, ", \"warnings\": {}, \"unused\": {}, \"links\": [", reading.warnings.len(), reading.unused.len());
     let links = description.links.iter().filter(|link| !link.intermediate);
-    let links: Vec<String> = links.map(|link| link_of(link)).collect();
+    let links: Vec<String> = links.map(link_of).collect();
     let _ = write!(out, "{}], \"joints\": [", links.join(", "));
     let order = model.joints().iter().map(|joint| format!("[{:?}, {:?}, {}, {}]", joint.name, joint.kind.name(), joint.q.0, joint.v.0));
     let frames = model.frames().iter().map(|frame| format!("{:?}", frame.name));

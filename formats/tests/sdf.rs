@@ -302,6 +302,11 @@ fn joints_of_all_types_are_read() {
     at(&screw, "a", &[TAU], [0.0, 0.0, 2.0]);
     let old = robot("screw", &("<thread_pitch>4</thread_pitch>".to_owned() + &axis("0 0 1")));
     at(&old, "a", &[4.0], [0.0, 0.0, -1.0]);
+    // What a file cuts is not needed.
+    let cut = "<physics><simbody><must_be_loop_joint>1</must_be_loop_joint></simbody></physics>";
+    let text = link("a", "") + &joint("j", "fixed", ["world", "a"], "") + &link("b", "") + &joint("k", "fixed", ["a", "b"], "");
+    let robot = described(&model("1.9", &(text + &joint("g", "gearbox", ["world", "b"], cut))));
+    assert_eq!(kinds(&robot), [("j", Fixed), ("k", Fixed)]);
     let gearbox = error(&model("1.9", &(link("a", "") + &joint("j", "gearbox", ["world", "a"], &axis("1 0 0")))));
     assert!(gearbox.0 == Code::Unsupported && gearbox.2.contains("<mimic>"), "{gearbox:?}");
 }

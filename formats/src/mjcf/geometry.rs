@@ -356,9 +356,8 @@ mod tests {
         let area = (volume(h) - volume(-h)) / (2.0 * h);
         let (found, moments) = shape(Kind::Box, size, true);
         assert!((found - area).abs() < 1e-6);
-        for k in 0..3 {
-            let expected = (solid(h)[k] - solid(-h)[k]) / (2.0 * h) / area;
-            assert!((moments[k] - expected).abs() < 1e-6, "{k}");
+        for ((moment, more), less) in moments.iter().zip(solid(h)).zip(solid(-h)) {
+            assert!((moment - (more - less) / (2.0 * h) / area).abs() < 1e-6, "{moment}");
         }
     }
 

@@ -37,12 +37,12 @@ impl<'a> Loader<'a> {
     /// The root of a document. The root of an included file is a child of its `<include>`.
     pub(crate) fn root(&mut self, bytes: &[u8], file: &str, log: &mut Diagnostics) -> Option<Element> {
         self.open.push(file.into());
-        self.document(bytes, Rc::new(File { name: file.to_owned(), included: false }), 0, log)
+        self.document(bytes, &Rc::new(File { name: file.to_owned(), included: false }), 0, log)
     }
 
-    fn document(&mut self, bytes: &[u8], file: Rc<File>, depth: usize, log: &mut Diagnostics) -> Option<Element> {
+    fn document(&mut self, bytes: &[u8], file: &Rc<File>, depth: usize, log: &mut Diagnostics) -> Option<Element> {
         let mut own = Diagnostics::new(&file.name);
-        let root = self.tags(bytes, &file, depth, &mut own);
+        let root = self.tags(bytes, file, depth, &mut own);
         log.take(own);
         root
     }
@@ -117,7 +117,7 @@ impl<'a> Loader<'a> {
                     self.files += 1;
                     let file = File { name: path.to_string_lossy().into_owned(), included: true };
                     self.open.push(path);
-                    let root = self.document(&bytes, Rc::new(file), depth + 1, log);
+                    let root = self.document(&bytes, &Rc::new(file), depth + 1, log);
                     self.open.pop();
                     return root;
                 }
