@@ -526,6 +526,16 @@ fn frames_that_depend_on_each_other_are_an_error() {
     assert!(ring.0 == Code::Ring && ring.2.contains("\"a\"") && ring.2.contains("\"b\""), "{ring:?}");
     let ring = refused(&model("1.9", &(link("a", "") + "<frame name=\"f\" attached_to=\"g\"/><frame name=\"g\" attached_to=\"f\"/>")));
     assert!(ring.errors.iter().any(|error| error.code == Code::Ring));
+    for own in [
+        "<frame name=\"f\" attached_to=\"f\"/>",
+        "<frame name=\"f\"><pose relative_to=\"f\"/></frame>",
+        "<link name=\"f\"><pose relative_to=\"f\"/></link>",
+        "<model name=\"f\" canonical_link=\"__model__\"><link name=\"b\"/></model>",
+        "<model name=\"f\"><pose relative_to=\"f::b\"/><link name=\"b\"/></model>",
+    ] {
+        let ring = refused(&model("1.9", &(link("a", "") + own)));
+        assert!(ring.errors.iter().any(|error| error.code == Code::Ring), "{own} {ring}");
+    }
 }
 
 #[test]

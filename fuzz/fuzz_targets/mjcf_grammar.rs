@@ -52,11 +52,18 @@ impl Writer<'_> {
             self.out += &already;
             self.out.push('"');
             match self.next() % 3 {
-                0 => self.out += self.one(NAMES),
-                1 => self.out += self.one(WORDS),
+                0 => {
+                    let word = self.one(NAMES);
+                    self.out += word;
+                }
+                1 => {
+                    let word = self.one(WORDS);
+                    self.out += word;
+                }
                 _ => {
                     for _ in 0..self.next() % 13 {
-                        self.out += self.one(NUMBERS);
+                        let word = self.one(NUMBERS);
+                        self.out += word;
                         self.out.push(' ');
                     }
                 }

@@ -38,7 +38,8 @@ impl Writer<'_> {
     fn numbers(&mut self, count: usize) {
         let count = if self.next() % 20 == 0 { self.next() % 8 } else { count };
         for _ in 0..count {
-            self.out += self.one(NUMBERS);
+            let word = self.one(NUMBERS);
+            self.out += word;
             self.out.push(' ');
         }
     }
@@ -93,7 +94,10 @@ impl Writer<'_> {
             "velocity_decay" => self.tags(&["linear", "angular"], depth + 1),
             "physics" => self.out += "<simbody><must_be_loop_joint>1</must_be_loop_joint></simbody>",
             "include" => self.out += "<uri>model://a</uri>",
-            "static" | "gravity" | "use_parent_model_frame" => self.out += self.one(&["true", "false", "1", "0"]),
+            "static" | "gravity" | "use_parent_model_frame" => {
+                let word = self.one(&["true", "false", "1", "0"]);
+                self.out += word;
+            }
             "pose" => self.numbers(6),
             "xyz" | "size" | "scale" => self.numbers(3),
             _ => self.numbers(1),

@@ -210,8 +210,15 @@ impl<'a> Graph<'a> {
         log.extend(new);
         let (Some(above), Some(attached)) = (complete(above), complete(attached)) else { return false };
         let mut is_good = true;
-        for (next, what) in [(&above, "poses that are relative to each other"), (&attached, "frames that are attached to each other")] {
-            let on = |node: usize| (node != WORLD && next[node] != node).then(|| next[node]);
+        // The world is in no other frame. A link, and a model without links, move with nothing else.
+        let is_world = |node: usize| node == WORLD;
+        let moves_alone = |node: usize| matches!(self.nodes[node].attached_to, To::Node(own) if own == node);
+        let both: [(&[usize], &dyn Fn(usize) -> bool, &str); 2] = [
+            (&above, &is_world, "poses that are relative to each other"),
+            (&attached, &|node| is_world(node) || moves_alone(node), "frames that are attached to each other"),
+        ];
+        for (next, is_last, what) in both {
+            let on = |node: usize| (!is_last(node)).then(|| next[node]);
             for node in cycles(self.nodes.len(), on) {
                 is_good = false;
                 let names = listed(around(node, on).take(10).map(|node| quote(&self.nodes[node].name)));

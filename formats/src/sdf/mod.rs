@@ -1,7 +1,7 @@
 //! SDF, the format of Gazebo (SDFormat 1.4 to 1.12): a strict reader of models.
 //!
 //! A file goes from elements (tags with their places, included files in their tags) to a graph of
-//! frames, links and joints ([`graph`], names resolved), then to a [`Description`]. No input makes
+//! frames, links and joints with their names resolved, then to a [`Description`]. No input makes
 //! it panic, hang or overflow its stack.
 //!
 //! # What becomes of it
