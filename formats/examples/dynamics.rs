@@ -70,7 +70,10 @@ fn header(reading: &Reading, model: &Model<f64>) -> String {
     let links = description.links.iter().filter(|link| !link.intermediate);
     let links: Vec<String> = links.map(link_of).collect();
     let _ = write!(out, "{}], \"joints\": [", links.join(", "));
-    let _ = write!(out, "{}]}}", joints(description));
+    let order = model.joints().iter().map(|joint| format!("[{:?}, {:?}, {}, {}]", joint.name, joint.kind.name(), joint.q.0, joint.v.0));
+    let frames = model.frames().iter().map(|frame| format!("{:?}", frame.name));
+    let [order, frames] = [order.collect::<Vec<_>>(), frames.collect()].map(|all| all.join(", "));
+    let _ = write!(out, "{}], \"order\": [{order}], \"frame_names\": [{frames}]}}", joints(description));
     out
 }
 

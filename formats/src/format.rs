@@ -5,7 +5,7 @@ use std::fmt;
 use articulated_core::description::Description;
 use articulated_core::diagnostic::Diagnostics;
 
-use crate::{Options, Sources, mjcf, urdf};
+use crate::{Options, Sources, mjcf, sdf, urdf};
 
 /// A format of robot files. Each has one row in [`FORMATS`].
 pub trait Format: Sync + std::panic::RefUnwindSafe {
@@ -39,7 +39,7 @@ pub struct Input<'a> {
 }
 
 /// All formats. A document of which none is recognized is read as the first.
-pub const FORMATS: &[&dyn Format] = &[&urdf::Urdf, &mjcf::Mjcf];
+pub const FORMATS: &[&dyn Format] = &[&urdf::Urdf, &mjcf::Mjcf, &sdf::Sdf];
 
 /// The formats that a reader chooses from.
 #[derive(Clone, Copy)]

@@ -9,9 +9,9 @@ use super::documents::Documents;
 use super::element::Element;
 use super::geometry::{self, Geom};
 use super::grammar::subject;
-use super::pose::{Pose, Symmetric, Vector, about, diagonal, multiply, rotate, unit};
 use super::settings::{Compiler, Settings};
 use super::values::Values;
+use crate::pose::{Pose, Symmetric, Vector, about, diagonal, multiply, rotate, unit};
 
 /// A model may have so many bodies, joints, geoms and sites altogether.
 const MOST_ITEMS: usize = 400_000;

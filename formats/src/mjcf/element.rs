@@ -1,112 +1,22 @@
-//! The tags of a file and of the files that it includes, as one tree.
+//! Files and the files that they include, as one tree of tags.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Subject, Unused, quote};
+use articulated_core::diagnostic::{Code, Diagnostics, Place, Subject, quote};
 
 use crate::Sources;
 use crate::xml::document;
 use crate::xml::element::Tag;
 use crate::xml::lines::Lines;
+pub(crate) use crate::xml::tree::{Attribute, Element, File};
 
 /// Tags may be nested so deeply, included ones in those that include them.
 const MOST_DEPTH: usize = 256;
 /// A file may include so many files, and so many tags altogether.
 const MOST_FILES: usize = 1000;
 const MOST_TAGS: usize = 2 << 20;
-
-/// A tag with everything inside it.
-#[derive(Debug)]
-pub(crate) struct Element {
-    pub(crate) name: String,
-    pub(crate) attributes: Vec<Attribute>,
-    pub(crate) children: Vec<Element>,
-    pub(crate) at: At,
-    /// The file that it is in.
-    pub(crate) file: Rc<File>,
-}
-
-#[derive(Debug)]
-pub(crate) struct Attribute {
-    pub(crate) name: String,
-    pub(crate) value: String,
-    pub(crate) at: At,
-}
-
-/// A file that was read.
-#[derive(Debug)]
-pub(crate) struct File {
-    /// As in messages.
-    pub(crate) name: String,
-    /// Whether another file includes it.
-    pub(crate) included: bool,
-}
-
-impl Element {
-    pub(crate) fn attribute(&self, name: &str) -> Option<&Attribute> {
-        self.attributes.iter().find(|attribute| attribute.name == name)
-    }
-
-    pub(crate) fn text(&self, name: &str) -> Option<&str> {
-        self.attribute(name).map(|attribute| attribute.value.as_str())
-    }
-
-    pub(crate) fn is(&self, name: &str) -> bool {
-        self.name == name
-    }
-
-    /// The children of this name.
-    pub(crate) fn all<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Element> {
-        self.children.iter().filter(move |child| child.name == name)
-    }
-
-    fn diagnostic(&self, at: At, subject: &Subject, field: &str, code: Code, found: String, expected: String) -> Diagnostic {
-        Diagnostic::error(&self.file.name, Place { at, subject, field }, code, found, expected)
-    }
-
-    /// Reports an error at one of the attributes, or at the tag where it has none of this name.
-    pub(crate) fn error(
-        &self,
-        (subject, field): (&Subject, &str),
-        code: Code,
-        found: impl Into<String>,
-        expected: impl Into<String>,
-        log: &mut Diagnostics,
-    ) {
-        log.push(self.diagnostic(self.at_of(field), subject, field, code, found.into(), expected.into()));
-    }
-
-    /// Reports a warning, as [`Self::error`].
-    pub(crate) fn warning(
-        &self,
-        (subject, field): (&Subject, &str),
-        code: Code,
-        found: impl Into<String>,
-        expected: impl Into<String>,
-        log: &mut Diagnostics,
-    ) {
-        log.push(self.diagnostic(self.at_of(field), subject, field, code, found.into(), expected.into()).into_warning());
-    }
-
-    fn at_of(&self, field: &str) -> At {
-        self.attribute(field).map_or(self.at, |attribute| attribute.at)
-    }
-
-    /// Reports what of it is not used: an attribute, or the tag.
-    pub(crate) fn unused(&self, subject: &Subject, attribute: Option<&Attribute>, why: &str, log: &mut Diagnostics) {
-        let what = attribute.map_or_else(|| self.name.clone(), |attribute| format!("{} {}", self.name, attribute.name));
-        self.unused_part(subject, (attribute, what), why, log);
-    }
-
-    /// As [`Self::unused`], under a name of its own.
-    pub(crate) fn unused_part(&self, subject: &Subject, (attribute, what): (Option<&Attribute>, String), why: &str, log: &mut Diagnostics) {
-        let why = if self.file.included { format!("{why} ({})", self.file.name) } else { why.to_owned() };
-        let line = attribute.map_or(self.at, |attribute| attribute.at).line();
-        log.push_unused(Unused { line, subject: subject.clone(), tag: what, why });
-    }
-}
 
 /// Reads a file and the files that it includes.
 pub(crate) struct Loader<'a> {
@@ -145,13 +55,7 @@ impl<'a> Loader<'a> {
     }
 
     fn element(&mut self, tag: &Tag<'_>, file: &Rc<File>, depth: usize, log: &mut Diagnostics) -> Element {
-        let attributes = tag.attributes_with_lines().map(|(name, value, at)| Attribute {
-            name: crate::xml::markup::as_written(name),
-            value: value.to_owned(),
-            at,
-        });
-        let mut element =
-            Element { name: tag.name(), attributes: attributes.collect(), children: Vec::new(), at: tag.at(), file: file.clone() };
+        let mut element = Element::of(tag, file);
         if depth > MOST_DEPTH {
             log.error(tag.place(""), Code::TooLarge, "tags nested very deeply", format!("at most {MOST_DEPTH}"));
             return element;

@@ -8,9 +8,9 @@ use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 use super::element::Element;
 use super::grammar::subject;
 use super::mesh::{self, Meshes};
-use super::pose::{Pose, Symmetric, TINY, Vector, add, diagonal, norm, of_z_axis, rotate, scale, subtract};
 use super::settings::Settings;
 use super::values::Values;
+use crate::pose::{Pose, Symmetric, TINY, Vector, add, diagonal, norm, of_z_axis, rotate, scale, subtract};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {

@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use super::pose::{Vector, cross, dot, norm, scale, subtract};
+use crate::pose::{Vector, cross, dot, norm, scale, subtract};
 
 /// More points are refused.
 pub(crate) const MOST_POINTS: usize = 1 << 20;

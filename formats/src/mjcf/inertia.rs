@@ -6,8 +6,8 @@ use articulated_core::diagnostic::{Code, Diagnostics};
 use super::bodies::Body;
 use super::grammar::subject;
 use super::mesh::Meshes;
-use super::pose::{Pose, Symmetric, add, diagonal, of_point, principal, scale, subtract, turned};
 use super::settings::{Compiler, InertiaFromGeom};
+use crate::pose::{Pose, Symmetric, add, diagonal, of_point, principal, scale, subtract, turned};
 
 /// The mass of a body, its centre and its inertia, bounds included; `None` for a body without.
 pub(crate) fn of_body(body: &Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Option<Inertial> {

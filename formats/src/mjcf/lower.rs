@@ -9,8 +9,8 @@ use super::bodies::{self, Body, Kind, at_reference};
 use super::grammar::subject;
 use super::inertia;
 use super::mesh::Meshes;
-use super::pose::{Pose, scale, subtract};
 use crate::Options;
+use crate::pose::{Pose, scale, subtract};
 use crate::reading::HELD;
 
 /// The link that does not move.

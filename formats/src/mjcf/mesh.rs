@@ -12,10 +12,10 @@ use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
 use super::element::Element;
 use super::hull::hull;
-use super::pose::{Quaternion, Symmetric, Vector, add, conjugate, cross, dot, norm, principal, rotate, scale, subtract};
 use super::settings::Settings;
 use super::values::Values;
 use crate::Sources;
+use crate::pose::{Quaternion, Symmetric, Vector, add, conjugate, cross, dot, norm, principal, rotate, scale, subtract};
 
 /// Vertices that are read have coordinates of single precision, as in MuJoCo.
 #[derive(Debug, Default)]

@@ -28,7 +28,6 @@ mod hull;
 mod inertia;
 mod lower;
 mod mesh;
-mod pose;
 mod settings;
 mod values;
 

@@ -4,7 +4,7 @@ use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 use articulated_core::suggest::nearest;
 
 use super::element::{Attribute, Element};
-use super::pose::{
+use crate::pose::{
     IDENTITY, Pose, Quaternion, TINY, about, cross, dot, multiply, norm, of_axes, of_z_axis, radians, scale, subtract, unit,
 };
 use crate::xml::number;

@@ -59,5 +59,5 @@ fn check_moments(mass: Option<f64>, inertia: [f64; 6], context: &Context<'_>, pl
 
 /// The option that accepts a negative principal moment, as the command, scenes and macro, and build
 /// scripts spell it.
-const ALLOW_UNPHYSICAL_INERTIA: &str =
+pub(crate) const ALLOW_UNPHYSICAL_INERTIA: &str =
     "`--allow-unphysical-inertia` (key `allow_unphysical_inertia`, method `Build::allow_unphysical_inertia`)";

@@ -70,6 +70,7 @@ use roxmltree::Document;
 #[cfg(feature = "urdf-rs")]
 pub use conversion::{ConversionError, from_urdf_rs, to_urdf_rs};
 pub(crate) use frame::right_angle;
+pub(crate) use inertia::ALLOW_UNPHYSICAL_INERTIA;
 pub use write::write;
 
 use crate::xml::document;

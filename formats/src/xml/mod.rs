@@ -5,3 +5,4 @@ pub(crate) mod element;
 pub(crate) mod lines;
 pub(crate) mod markup;
 pub(crate) mod number;
+pub(crate) mod tree;

@@ -6,7 +6,7 @@ use articulated_core::description::{Origin, Rotation};
 
 pub(crate) type Vector = [f64; 3];
 
-/// A quaternion (w, x, y, z) of any length but zero, as the format orders it.
+/// A quaternion (w, x, y, z) of any length but zero.
 pub(crate) type Quaternion = [f64; 4];
 
 /// A frame in another: a translation, m, and a rotation.

@@ -1,0 +1,115 @@
+//! Shapes of links, for contact and drawings.
+
+use articulated_core::description::{Collision, CollisionShape, Visual};
+use articulated_core::diagnostic::{Code, Diagnostics, Subject};
+
+use super::grammar::subject;
+use super::graph::Graph;
+use super::links::Link;
+use super::names::relative_to;
+use super::values::{self, exactly, only};
+use crate::Options;
+use crate::pose::Pose;
+use crate::xml::tree::Element;
+
+/// All collision geometry of a link. What is wrong with it is a warning.
+pub(crate) fn collisions(link: &Link<'_>, graph: &Graph<'_>, options: &Options, log: &mut Diagnostics) -> Vec<Collision> {
+    let tags = link.element.children.iter().filter(|child| child.is("collision"));
+    let mut all = Vec::new();
+    for tag in tags {
+        let mut own = log.apart();
+        let (pose, shape) = placed_shape(tag, link, graph, options, &mut own);
+        let why = own.errors.first().map(ToString::to_string).unwrap_or_default();
+        log.take_as_warnings(own, "; the shape makes no contact");
+        all.push(Collision { origin: pose.origin(), shape: shape.unwrap_or(CollisionShape::Unread { why }) });
+    }
+    all
+}
+
+/// The whole appearance of a link: the dynamics need none of it, so that nothing here is a finding.
+pub(crate) fn visuals(link: &Link<'_>, graph: &Graph<'_>, options: &Options, log: &Diagnostics) -> Vec<Visual> {
+    let tags = link.element.children.iter().filter(|child| child.is("visual"));
+    let visual = |tag: &Element| {
+        let mut own = log.apart();
+        let (pose, shape) = placed_shape(tag, link, graph, options, &mut own);
+        let why = own.errors.first().map(ToString::to_string).unwrap_or_default();
+        let material = tag.children.iter().find(|child| child.is("material"));
+        let diffuse = material.and_then(|material| material.children.iter().find(|child| child.is("diffuse")));
+        let color = diffuse.and_then(|color| exactly::<4>(color, &Subject::Document, &mut own));
+        Visual {
+            origin: pose.origin(),
+            shape: shape.unwrap_or(CollisionShape::Unread { why }),
+            material: String::new(),
+            color: color.map(|color| color.map(|part| part.clamp(0.0, 1.0))),
+        }
+    };
+    tags.map(visual).collect()
+}
+
+fn placed_shape(
+    tag: &Element,
+    link: &Link<'_>,
+    graph: &Graph<'_>,
+    options: &Options,
+    log: &mut Diagnostics,
+) -> (Pose, Option<CollisionShape>) {
+    let about = &subject(link.element);
+    let mut pose = Pose::default();
+    if let Some(element) = only(tag, "pose", about, log) {
+        pose = values::pose(element, options.snap_angles, about, log);
+        let frame = relative_to(element, link.scope).and_then(|reference| graph.resolve(&reference, log));
+        if let Some(frame) = frame {
+            pose = graph.relative(link.node, frame).then(&pose);
+        }
+    }
+    let Some(geometry) = only(tag, "geometry", about, log) else {
+        tag.error((about, "geometry"), Code::MissingTag, "none", format!("<geometry> inside <{}>", tag.name), log);
+        return (pose, None);
+    };
+    (pose, shape(geometry, about, log))
+}
+
+/// The one shape of a `<geometry>`.
+fn shape(geometry: &Element, about: &Subject, log: &mut Diagnostics) -> Option<CollisionShape> {
+    const EXPECTED: &str = "one of <box>, <cylinder>, <sphere>, <capsule> and <mesh>";
+    let [tag] = geometry.children.as_slice() else {
+        let found = format!("{} shapes", geometry.children.len());
+        geometry.error((about, "geometry"), Code::WrongCount, found, EXPECTED, log);
+        return None;
+    };
+    let mut size = |name: &str| {
+        let Some(element) = only(tag, name, about, log) else {
+            tag.error((about, name), Code::MissingTag, "none", format!("<{name}> inside <{}>", tag.name), log);
+            return None;
+        };
+        let [size] = exactly::<1>(element, about, log)?;
+        if size < 0.0 {
+            element.error((about, name), Code::Negative, format!("a negative size, {size}"), "sizes of at least 0 m", log);
+            return None;
+        }
+        Some(size)
+    };
+    match tag.name.as_str() {
+        "sphere" => Some(CollisionShape::Sphere { radius: size("radius")? }),
+        "cylinder" => Some(CollisionShape::Cylinder { radius: size("radius")?, length: size("length")? }),
+        "capsule" | "drake:capsule" => Some(CollisionShape::Capsule { radius: size("radius")?, length: size("length")? }),
+        "box" => {
+            let size = only(tag, "size", about, log).and_then(|size| exactly::<3>(size, about, log))?;
+            if size.iter().any(|side| *side < 0.0) {
+                tag.error((about, "size"), Code::Negative, "a negative size", "sizes of at least 0 m", log);
+                return None;
+            }
+            Some(CollisionShape::Box { size })
+        }
+        "mesh" => {
+            let (_, file) = values::name(tag, "uri", about, log)?;
+            let scale = only(tag, "scale", about, log).and_then(|scale| exactly::<3>(scale, about, &mut log.apart()));
+            Some(CollisionShape::Mesh { file: file.to_owned(), scale: scale.unwrap_or([1.0; 3]) })
+        }
+        _ => {
+            let found = format!("<{}>", tag.name);
+            tag.error((about, "geometry"), Code::Unsupported, found, EXPECTED, log);
+            None
+        }
+    }
+}
