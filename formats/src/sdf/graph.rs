@@ -209,31 +209,30 @@ impl<'a> Graph<'a> {
         let new: Vec<_> = again.errors.into_iter().filter(|error| !is_reported(error)).collect();
         log.extend(new);
         let (Some(above), Some(attached)) = (complete(above), complete(attached)) else { return false };
-        let mut is_good = true;
         // The world is in no other frame. A link, and a model without links, move with nothing else.
-        let is_world = |node: usize| node == WORLD;
-        let moves_alone = |node: usize| matches!(self.nodes[node].attached_to, To::Node(own) if own == node);
-        let both: [(&[usize], &dyn Fn(usize) -> bool, &str); 2] = [
-            (&above, &is_world, "poses that are relative to each other"),
-            (&attached, &|node| is_world(node) || moves_alone(node), "frames that are attached to each other"),
-        ];
-        for (next, is_last, what) in both {
-            let on = |node: usize| (!is_last(node)).then(|| next[node]);
-            for node in cycles(self.nodes.len(), on) {
-                is_good = false;
-                let names = listed(around(node, on).take(10).map(|node| quote(&self.nodes[node].name)));
-                let element = self.nodes[node].element;
-                let expected = "frames of which each depends on the ones before";
-                element.error((&subject(element), "pose"), Code::Ring, format!("{what}: {names}"), expected, log);
-            }
-        }
-        if !is_good {
+        let moves_alone = |node: usize| node == WORLD || matches!(self.nodes[node].attached_to, To::Node(own) if own == node);
+        let in_poses = self.report_rings("poses that are relative to each other", |node| (node != WORLD).then(|| above[node]), log);
+        let in_frames =
+            self.report_rings("frames that are attached to each other", |node| (!moves_alone(node)).then(|| attached[node]), log);
+        if in_poses || in_frames {
             return false;
         }
         self.edges = above.iter().zip(&self.nodes).map(|(above, node)| (*above, node.pose)).collect();
         self.depths = depths(&above);
         self.bodies = self.attach(&attached);
         self.place_models(log)
+    }
+
+    /// Whether there are nodes that depend on themselves, which is reported.
+    fn report_rings(&self, what: &str, on: impl Fn(usize) -> Option<usize>, log: &mut Diagnostics) -> bool {
+        let rings = cycles(self.nodes.len(), &on);
+        for node in &rings {
+            let names = listed(around(*node, &on).take(10).map(|node| quote(&self.nodes[node].name)));
+            let element = self.nodes[*node].element;
+            let expected = "frames of which each depends on the ones before";
+            element.error((&subject(element), "pose"), Code::Ring, format!("{what}: {names}"), expected, log);
+        }
+        !rings.is_empty()
     }
 
     /// The body of each node. The links are their own.
