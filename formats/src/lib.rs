@@ -48,6 +48,7 @@ pub mod mjcf;
 mod reading;
 mod snap;
 pub mod urdf;
+mod xacro;
 mod xml;
 
 #[cfg(doc)]

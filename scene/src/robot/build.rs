@@ -178,6 +178,7 @@ impl RobotRequest<'_> {
             allow_unphysical_inertia: self.options.allow_unphysical_inertia,
             snap_angles: self.options.snap_angles.filter(|x| can_snap(*x)),
             formats: self.options.formats,
+            ..Options::default()
         }
     }
 }
