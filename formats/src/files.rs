@@ -83,6 +83,60 @@ fn list_files(folder: &Path) -> Result<Vec<String>> {
 /// Folders of more files are not searched.
 const MOST_FILES: usize = 10_000;
 
+/// The file system, and packages and variables of the environment: `AMENT_PREFIX_PATH` and
+/// `ROS_PACKAGE_PATH`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Environment;
+
+impl Sources for Environment {
+    fn read(&self, path: &Path) -> Result<Vec<u8>> {
+        Disk.read(path)
+    }
+
+    fn nearest(&self, path: &Path) -> Option<String> {
+        Disk.nearest(path)
+    }
+
+    fn list(&self, folder: &Path) -> Result<Vec<String>> {
+        Disk.list(folder)
+    }
+
+    fn package(&self, name: &str) -> Option<PathBuf> {
+        let folders = |variable| std::env::var_os(variable).map(|all| std::env::split_paths(&all).collect::<Vec<_>>()).unwrap_or_default();
+        let mut shares = folders("AMENT_PREFIX_PATH").into_iter().map(|prefix| prefix.join("share").join(name));
+        shares.find(|folder| folder.is_dir()).or_else(|| folders("ROS_PACKAGE_PATH").iter().find_map(|folder| package_below(folder, name)))
+    }
+
+    fn variable(&self, name: &str) -> Option<String> {
+        std::env::var(name).ok()
+    }
+}
+
+/// The folder of a package below another one: it has a `package.xml` and is called so. The
+/// packages of a folder that is one itself are not searched.
+fn package_below(folder: &Path, name: &str) -> Option<PathBuf> {
+    const MOST_LEVELS: usize = 6;
+    let mut level = vec![folder.to_owned()];
+    for _ in 0..MOST_LEVELS {
+        let mut next = Vec::new();
+        for folder in level {
+            if folder.join("package.xml").is_file() {
+                if folder.file_name().is_some_and(|own| own == name) {
+                    return Some(folder);
+                }
+                continue;
+            }
+            let Ok(entries) = std::fs::read_dir(&folder) else { continue };
+            let mut inside: Vec<PathBuf> = entries.take(MOST_FILES).filter_map(|entry| Some(entry.ok()?.path())).collect();
+            inside.sort_unstable();
+            next.extend(inside.into_iter().filter(|path| path.is_dir() && !path.is_symlink()));
+        }
+        next.truncate(MOST_FILES);
+        level = next;
+    }
+    None
+}
+
 /// No files: each is refused.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoFiles;

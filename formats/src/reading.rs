@@ -1,11 +1,12 @@
 //! How to read a document, and what comes of it.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use articulated_core::description::{Base, Description};
-use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Subject, Unused, quote};
+use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Subject, Unused, quote};
+use articulated_core::suggest::nearest;
 
 use crate::files::Recorder;
 use crate::{Format, Formats, Included, Input, NoFiles, Sources, snap};
@@ -43,6 +44,18 @@ impl Default for Options {
             formats: Formats::default(),
             arguments: BTreeMap::new(),
             packages: BTreeMap::new(),
+        }
+    }
+}
+
+impl Options {
+    /// Warns of arguments other than those that the document declares.
+    pub(crate) fn warn_of_arguments(&self, declared: &BTreeSet<String>, log: &mut Diagnostics) {
+        for name in self.arguments.keys().filter(|name| !declared.contains(*name)) {
+            let near =
+                nearest(name, declared.iter().map(String::as_str)).map(|near| format!(" (did you mean {near:?}?)")).unwrap_or_default();
+            let found = format!("the argument {}, which the file does not have", quote(name));
+            log.warning((At::Nowhere, "args"), Code::Xacro, found, format!("one of its arguments{near}"));
         }
     }
 }

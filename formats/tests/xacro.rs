@@ -228,6 +228,8 @@ fn files_packages_and_yaml_are_found_and_keep_their_names() {
 fn arguments_come_from_the_caller_or_have_defaults() {
     let body = "<xacro:arg name='name' default='base'/><xacro:arg name='n' default='1'/><link name='$(arg name)${int(xacro.arg(\"n\")) + 1}$(eval n * 2)'/>".replace("\"n\"", "&quot;n&quot;");
     assert_eq!(links(&body), "base22");
+    let plain = expanded(&Files::default(), "<link name='base'/>", &[("x", "1")]);
+    assert_eq!(plain.warnings.len(), 1);
     let reading = expanded(&Files::default(), &body, &[("name", "root"), ("nam", "x"), ("n", "3")]);
     assert_eq!(shown(&reading.description), "root46");
     assert_eq!(

@@ -63,6 +63,8 @@ mod unused;
 mod visual;
 mod write;
 
+use std::collections::BTreeSet;
+
 use articulated_core::description::{Base, Description};
 use articulated_core::diagnostic::Code;
 use articulated_core::diagnostic::{Diagnostics, Subject, quote};
@@ -121,6 +123,7 @@ fn draft(input: &Input<'_>, log: &mut Diagnostics) -> Option<ast::Draft> {
     let document = document::parse(&text, &lines, log)?;
     let robot = robot_tag(&document, &lines, log)?;
     if !xacro::is_needed(&document, &input.options.file) {
+        input.options.warn_of_arguments(&BTreeSet::new(), log);
         return Some(robot::draft(&robot, input.options, log));
     }
     let expanded = xacro::expand(&document, &lines, input, log)?;

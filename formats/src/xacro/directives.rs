@@ -393,18 +393,6 @@ impl Expander<'_> {
         };
         self.scopes.set(inner, parameter.name, symbol);
     }
-
-    /// Warns of arguments that the document does not have.
-    pub(super) fn unused_arguments(&mut self) {
-        let names: Vec<String> = self.input.options.arguments.keys().filter(|name| !self.declared.contains(*name)).cloned().collect();
-        for name in names {
-            let near = self.suggester.nearest(&name, self.declared.iter().map(String::as_str));
-            let near = near.map(|near| format!(" (did you mean {near:?}?)")).unwrap_or_default();
-            let place = (At::Nowhere, "args");
-            let found = format!("the argument {}, which the file does not have", quote(&name));
-            self.log.warning(place, Code::Xacro, found, format!("one of its arguments{near}"));
-        }
-    }
 }
 
 /// The tag and the attribute, for messages.

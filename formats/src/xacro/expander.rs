@@ -100,6 +100,8 @@ pub(super) struct Expander<'a> {
     included: usize,
     nodes: usize,
     bytes: usize,
+    /// Files and lines that a warning is about.
+    warned: BTreeSet<(String, u32)>,
 }
 
 impl<'a> Expander<'a> {
@@ -126,6 +128,7 @@ impl<'a> Expander<'a> {
             included: 0,
             nodes: 0,
             bytes: 0,
+            warned: BTreeSet::new(),
         }
     }
 
@@ -607,7 +610,22 @@ impl Names for Expander<'_> {
             return wrong(format!("{}, which is not UTF-8", quote(&shown)), "a file in the encoding UTF-8");
         };
         match yaml::read(text, &mut |text| self.number_of_yaml(text)) {
-            Ok(value) => Ok(value),
+            Ok((value, again)) => {
+                let file = self.log.include(&shown);
+                for (line, key) in again {
+                    let at = file.map_or(At::Nowhere, |file| At::Included { file, line, column: 0 });
+                    // Each use of the file reads it again.
+                    if self.warned.insert((shown.clone(), line)) {
+                        self.log.warning(
+                            (at, "yaml"),
+                            Code::DuplicateName,
+                            format!("a second key {key}"),
+                            "each key once: the last value counts",
+                        );
+                    }
+                }
+                Ok(value)
+            }
             Err(yaml::Fault { line, fault: Fault::Wrong { found, expected } }) => {
                 let file = self.log.include(&shown);
                 let at = file.map_or(At::Nowhere, |file| At::Included { file, line, column: 0 });

@@ -72,7 +72,7 @@ pub(crate) fn expand(document: &Document<'_>, lines: &Lines<'_>, input: &Input<'
     let root = source::tree(document, lines, None, &mut nodes, log)?;
     let mut expander = expander::Expander::new(input, nodes, log);
     let expanded = expander.expand(&root);
-    expander.unused_arguments();
-    let is_complete = !expander.incomplete;
+    let (is_complete, declared) = (!expander.incomplete, std::mem::take(&mut expander.declared));
+    input.options.warn_of_arguments(&declared, log);
     expanded.filter(|_| is_complete).map(|root| source::write(&root))
 }

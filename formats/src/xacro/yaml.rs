@@ -4,6 +4,7 @@
 //! xacro reads. Block scalars, merge keys and several documents are errors with their line.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use super::value::{Result, Value, wrong};
 
@@ -20,11 +21,12 @@ pub(super) struct Fault {
 /// A number with a unit: its text, and the factor to SI units.
 pub(super) type Unit<'a> = &'a mut dyn FnMut(&str) -> Result<f64>;
 
-/// The value of a document. `number` evaluates the expression of a number with a unit.
-pub(super) fn read(text: &str, number: Unit<'_>) -> std::result::Result<Value, Fault> {
-    let mut reader = Reader { lines: lines(text), at: 0, values: 0, anchors: BTreeMap::new(), number, line: 0 };
+/// The value of a document, and the lines of keys that a mapping has already, with the keys.
+/// `number` evaluates the expression of a number with a unit.
+pub(super) fn read(text: &str, number: Unit<'_>) -> std::result::Result<(Value, Vec<(u32, String)>), Fault> {
+    let mut reader = Reader { lines: lines(text), at: 0, values: 0, anchors: BTreeMap::new(), number, line: 0, again: Vec::new() };
     let value = reader.document();
-    value.map_err(|fault| Fault { line: reader.line, fault })
+    value.map(|value| (value, reader.again)).map_err(|fault| Fault { line: reader.line, fault })
 }
 
 /// A line with something in it.
@@ -75,6 +77,8 @@ struct Reader<'a, 'b> {
     number: Unit<'b>,
     /// The line that is read.
     line: u32,
+    /// Keys that their mappings have already.
+    again: Vec<(u32, String)>,
 }
 
 impl<'a> Reader<'a, '_> {
@@ -152,7 +156,7 @@ impl<'a> Reader<'a, '_> {
 
     fn mapping(&mut self, indent: usize, depth: usize) -> Result<Value> {
         let mut entries: Vec<(Value, Value)> = Vec::new();
-        let mut known = std::collections::BTreeSet::new();
+        let mut known: BTreeMap<String, usize> = BTreeMap::new();
         while let Some(line) = self.lines.get(self.at) {
             if line.indent != indent || line.text == "-" || line.text.starts_with("- ") {
                 break;
@@ -166,11 +170,19 @@ impl<'a> Reader<'a, '_> {
             }
             self.at += 1;
             let key = self.scalar(key)?;
-            if !known.insert(key.literal()) {
-                return wrong(format!("a second key {}", key.literal()), "each key once");
-            }
+            let line = self.line;
             let value = self.entry(rest, indent, depth)?;
-            entries.push((key, value));
+            // The last value counts.
+            match known.entry(key.literal()) {
+                Entry::Occupied(place) => {
+                    self.again.push((line, key.literal()));
+                    entries[*place.get()].1 = value;
+                }
+                Entry::Vacant(place) => {
+                    place.insert(entries.len());
+                    entries.push((key, value));
+                }
+            }
         }
         Value::table(entries)
     }
@@ -453,7 +465,9 @@ mod tests {
 
     fn value(text: &str) -> String {
         match read(text, &mut |text| super::super::value::read_float(text).map_or_else(|| wrong(text, "a number"), Ok)) {
-            Ok(value) => value.literal(),
+            Ok((value, again)) => {
+                format!("{}{}", value.literal(), again.iter().map(|(line, key)| format!(" {line} {key}")).collect::<String>())
+            }
             Err(fault) => format!("line {}: {:?}", fault.line, fault.fault),
         }
     }
@@ -466,6 +480,7 @@ mod tests {
                         'list': [{'x': 1, 'y': '1e-3'}, None, {'z': 1000.0}], 'empty': None, 'anchor': 31, 'alias': 31, 'u': 'a#b'}";
         assert_eq!(value(text), expected);
         assert_eq!(value(""), "None");
+        assert_eq!(value("a: 1\nb: 2\na: 3"), "{'a': 3, 'b': 2} 3 'a'");
         assert_eq!(value("[1, [2,\n 3]]"), "[1, [2, 3]]");
         assert_eq!(value("a: 012\nb: 1_000\nc: off\nd: .inf\ne: 1:30"), "{'a': 10, 'b': 1000, 'c': False, 'd': inf, 'e': '1:30'}");
     }
@@ -476,7 +491,6 @@ mod tests {
             ("a: 1\nb: |\n  text", 2),
             ("a: 1\n  b: 2", 2),
             ("a: [1, 2", 1),
-            ("a: 1\na: 2", 2),
             ("a: !unknown 1", 1),
             ("a:\n  - 1\n b: 2", 3),
             ("a: 'b", 1),
