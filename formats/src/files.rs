@@ -196,7 +196,10 @@ fn again<T: Clone>(found: Option<&Found<T>>) -> Option<Result<T>> {
 }
 
 fn kept<T: Clone>(result: &Result<T>) -> Found<T> {
-    result.as_ref().map(Clone::clone).map_err(|error| (error.kind(), error.to_string()))
+    match result {
+        Ok(value) => Ok(value.clone()),
+        Err(error) => Err((error.kind(), error.to_string())),
+    }
 }
 
 impl Sources for Included {

@@ -121,12 +121,12 @@ impl<'a> Loader<'a> {
     /// The root of a document, with the included files in the place of their tags.
     pub(crate) fn root(&mut self, bytes: &[u8], file: &str, log: &mut Diagnostics) -> Option<Element> {
         let mut own = Diagnostics::new(file);
-        let root = self.document(bytes, Rc::new(File { name: file.to_owned(), included: false }), 0, &mut own);
+        let root = self.document(bytes, &Rc::new(File { name: file.to_owned(), included: false }), 0, &mut own);
         log.take(own);
         root
     }
 
-    fn document(&mut self, bytes: &[u8], file: Rc<File>, depth: usize, log: &mut Diagnostics) -> Option<Element> {
+    fn document(&mut self, bytes: &[u8], file: &Rc<File>, depth: usize, log: &mut Diagnostics) -> Option<Element> {
         let text = document::text(bytes, log)?;
         let lines = Lines::of(&text);
         let document = document::parse(&text, &lines, log)?;
@@ -136,7 +136,7 @@ impl<'a> Loader<'a> {
             log.error(root.place(""), Code::NotARobot, found, "the root element <mujoco>");
             return None;
         }
-        Some(self.element(&root, &file, depth, log))
+        Some(self.element(&root, file, depth, log))
     }
 
     fn element(&mut self, tag: &Tag<'_>, file: &Rc<File>, depth: usize, log: &mut Diagnostics) -> Element {
@@ -187,7 +187,7 @@ impl<'a> Loader<'a> {
                     self.included.insert(path.clone());
                     let file = File { name: path.to_string_lossy().into_owned(), included: true };
                     let mut own = Diagnostics::new(&file.name);
-                    let root = self.document(&bytes, Rc::new(file), depth + 1, &mut own);
+                    let root = self.document(&bytes, &Rc::new(file), depth + 1, &mut own);
                     log.take(own);
                     return root.map(|root| root.children).unwrap_or_default();
                 }

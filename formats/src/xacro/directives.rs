@@ -19,30 +19,30 @@ const MOST_PARAMETERS: usize = 1000;
 
 impl Expander<'_> {
     /// Expands a tag.
-    pub(super) fn element(&mut self, element: Rc<Element>) {
+    pub(super) fn element(&mut self, element: &Rc<Element>) {
         let Some(frame) = self.frames.last() else { return };
         let (scope, file) = (frame.scope, frame.file.clone());
-        let Some(directive) = element.directive() else { return self.open(&element, element.name.clone(), scope, file) };
+        let Some(directive) = element.directive() else { return self.open(element, &element.name, scope, file) };
         match directive {
-            "property" => self.property_tag(&element, scope),
-            "macro" => self.macro_tag(&element, scope),
-            "arg" => self.arg_tag(&element, scope),
+            "property" => self.property_tag(element, scope),
+            "macro" => self.macro_tag(element, scope),
+            "arg" => self.arg_tag(element, scope),
             "if" | "unless" => {
-                self.known(&element, &["value"]);
-                let Some(value) = self.required(&element, "value") else { return };
-                let truth = self.truth(&value.value, value.at, &field(&element, "value"), scope);
+                self.known(element, &["value"]);
+                let Some(value) = self.required(element, "value") else { return };
+                let truth = self.truth(&value.value, value.at, &field(element, "value"), scope);
                 if truth == Some(directive == "if") {
-                    self.push(&element, scope, file, Finish::Splice);
+                    self.push(element, scope, file, Finish::Splice);
                 }
             }
-            "include" => self.include_tag(&element, scope),
-            "insert_block" => self.insert_tag(&element, scope, file),
-            "element" => self.element_tag(&element, scope),
-            "attribute" => self.attribute_tag(&element, scope),
-            "call" => self.call_tag(&element, scope, file),
+            "include" => self.include_tag(element, scope),
+            "insert_block" => self.insert_tag(element, scope, file),
+            "element" => self.element_tag(element, scope),
+            "attribute" => self.attribute_tag(element, scope),
+            "call" => self.call_tag(element, scope, file),
             name => {
                 let name = name.into();
-                self.call_of(&element, name, scope, file);
+                self.call_of(element, name, scope, file);
             }
         }
     }
@@ -198,7 +198,7 @@ impl Expander<'_> {
             let block = block.clone();
             return match content_only {
                 true => self.push(&block, scope, file, Finish::Splice),
-                false => self.open(&block, block.name.clone(), scope, file),
+                false => self.open(&block, &block.name, scope, file),
             };
         }
         let found = format!("the unknown block {}", quote(name));
@@ -215,7 +215,7 @@ impl Expander<'_> {
             return self.refused(at, element, &attribute, quote(&name), "the name of another tag");
         }
         let attributes = element.attributes.iter().filter(|own| *own.name != *attribute).cloned().collect();
-        self.element(Rc::new(Element { name: prepared(&name).into(), attributes, ..(**element).clone() }));
+        self.element(&Rc::new(Element { name: prepared(&name).into(), attributes, ..(**element).clone() }));
     }
 
     fn attribute_tag(&mut self, element: &Element, scope: usize) {

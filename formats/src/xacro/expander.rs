@@ -10,12 +10,13 @@ use std::rc::Rc;
 use articulated_core::diagnostic::{At, Code, Diagnostics, Place, Subject, quote};
 use articulated_core::suggest::Suggester;
 
-use super::evaluate::{Names, Work, evaluate};
+use super::evaluate::evaluate;
 use super::files::{self, Packages};
 use super::scope::{GLOBAL, Scopes, Symbol};
 use super::source::{self, Attribute, Element, Node};
 use super::text::{Piece, pieces};
 use super::value::{Fault, Result, Value, read_literal, read_truth, wrong};
+use super::work::{Names, Work};
 use super::{syntax, yaml};
 use crate::Input;
 use crate::xml::document;
@@ -135,12 +136,12 @@ impl<'a> Expander<'a> {
     /// The expanded root. `None`: a bound was reached.
     pub(super) fn expand(&mut self, root: &Rc<Element>) -> Option<Element> {
         let file = Rc::new(File { path: PathBuf::from(&self.input.options.file), depth: 0 });
-        self.open(root, root.name.clone(), GLOBAL, file);
+        self.open(root, &root.name, GLOBAL, file);
         while let Some(frame) = self.frames.last_mut() {
             if let Some(node) = frame.source.children.get(frame.next).cloned() {
                 frame.next += 1;
                 match node {
-                    Node::Element(element) => self.element(element),
+                    Node::Element(element) => self.element(&element),
                     Node::Text(text, at) => self.text(&text, at),
                 }
             } else if let Some(frame) = self.frames.pop()
@@ -251,7 +252,7 @@ impl<'a> Expander<'a> {
     }
 
     /// Opens a tag of the expanded document.
-    pub(super) fn open(&mut self, element: &Rc<Element>, name: Rc<str>, scope: usize, file: Rc<File>) {
+    pub(super) fn open(&mut self, element: &Rc<Element>, name: &Rc<str>, scope: usize, file: Rc<File>) {
         let finish = Finish::Element { name: name.clone(), at: element.at };
         self.push(element, scope, file, finish);
         self.count(1, name.len() * 2 + 8, element.at);
@@ -259,7 +260,7 @@ impl<'a> Expander<'a> {
             if attribute.name.starts_with(source::PREFIX) || &*attribute.name == "xmlns\u{b7}xacro" {
                 continue;
             }
-            let value = self.attribute(&name, attribute, scope);
+            let value = self.attribute(name, attribute, scope);
             self.count(1, attribute.name.len() + value.len() + 8, attribute.at);
             if let Some(frame) = self.frames.last_mut() {
                 frame.content.attributes.push(Attribute { value, ..attribute.clone() });

@@ -160,7 +160,7 @@ pub(super) fn fits(pattern: &str, name: &str) -> bool {
             },
         }
     }
-    pattern[p..].iter().all(|c| *c == '*') && (!name.first().is_some_and(|c| *c == '.') || pattern.first() == Some(&'.'))
+    pattern[p..].iter().all(|c| *c == '*') && (name.first().is_none_or(|c| *c != '.') || pattern.first() == Some(&'.'))
 }
 
 #[cfg(test)]

@@ -2,9 +2,9 @@
 
 use std::rc::Rc;
 
-use super::evaluate::Names;
 use super::operators::length;
 use super::value::{Result, Value, read_float, read_integer, wrong};
+use super::work::Names;
 
 /// The arguments of a call.
 pub(super) struct Arguments {
@@ -46,8 +46,10 @@ const ZIP: &str = "zip";
 const XACRO: [&str; 10] =
     ["load_yaml", "abs_filename", "dotify", "tokenize", "arg", "message", "warning", "error", "fatal", "print_location"];
 
+type Real = fn(f64) -> f64;
+
 /// Functions of the module `math` of one number.
-const MATH: [(&str, fn(f64) -> f64); 22] = [
+const MATH: [(&str, Real); 22] = [
     ("sin", f64::sin),
     ("cos", f64::cos),
     ("tan", f64::tan),
@@ -306,8 +308,8 @@ fn call_python(name: &'static str, arguments: &Arguments, names: &mut dyn Names)
     match (name, values) {
         ("bool", [value]) => Ok(Value::Bool(value.is_true())),
         ("str", []) => Ok(Value::text("")),
-        ("str", [value]) => written(value.written(), names),
-        ("repr", [value]) => written(value.literal(), names),
+        ("str", [value]) => written(&value.written(), names),
+        ("repr", [value]) => written(&value.literal(), names),
         ("len", [value]) => Ok(Value::Int(length(value)? as i128)),
         ("list", []) => Value::list(Vec::new()),
         ("list", [value]) => Value::list(items(value)?),
@@ -373,9 +375,9 @@ fn call_python(name: &'static str, arguments: &Arguments, names: &mut dyn Names)
     }
 }
 
-fn written(text: String, names: &mut dyn Names) -> Result<Value> {
+fn written(text: &str, names: &mut dyn Names) -> Result<Value> {
     names.work().bytes(text.len())?;
-    Ok(Value::text(&text))
+    Ok(Value::text(text))
 }
 
 fn number(name: &str, value: &Value) -> Result<Value> {
@@ -453,7 +455,7 @@ fn call_xacro(name: &str, values: &[Value], names: &mut dyn Names) -> Result<Val
     let words = || values.iter().map(Value::written).collect::<Vec<_>>().join(" ");
     match (name, values) {
         ("load_yaml", [Value::Text(file)]) => names.load_yaml(file),
-        ("abs_filename", [Value::Text(file)]) => written(names.file_name(file), names),
+        ("abs_filename", [Value::Text(file)]) => written(&names.file_name(file), names),
         ("dotify", [table @ Value::Table(_)]) => Ok(table.clone()),
         ("arg", [Value::Text(argument)]) => names.argument(argument),
         ("tokenize", [Value::Text(text)]) => tokens(text, &[',', ';', ' ']),
@@ -551,5 +553,5 @@ fn text_method(text: &str, name: &str, arguments: &[Value], names: &mut dyn Name
         }
         _ => return wrong(called(name, arguments), "arguments as in Python"),
     };
-    written(result, names)
+    written(&result, names)
 }

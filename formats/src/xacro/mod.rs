@@ -43,6 +43,7 @@ mod source;
 mod syntax;
 mod text;
 mod value;
+mod work;
 mod yaml;
 
 use articulated_core::diagnostic::Diagnostics;

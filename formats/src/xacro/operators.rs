@@ -2,9 +2,9 @@
 
 use std::cmp::Ordering;
 
-use super::evaluate::Work;
 use super::syntax::{Binary, Compare, Unary};
 use super::value::{Result, Value, wrong};
+use super::work::Work;
 
 /// Longer texts and lists are refused, items.
 const MOST_ITEMS: usize = 1 << 20;

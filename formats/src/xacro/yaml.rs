@@ -54,11 +54,8 @@ fn without_comment(line: &str) -> &str {
     let mut before = ' ';
     for (at, c) in line.char_indices() {
         match quote {
-            Some(mark) => {
-                if c == mark && !(mark == '"' && before == '\\') {
-                    quote = None;
-                }
-            }
+            Some(mark) if c == mark && (mark == '\'' || before != '\\') => quote = None,
+            Some(_) => {}
             // A quotation mark within a word is part of it.
             None if matches!(c, '"' | '\'') && matches!(before, ' ' | '[' | '{' | ',' | ':') => quote = Some(c),
             None if c == '#' && before.is_whitespace() => return &line[..at],
@@ -301,9 +298,9 @@ impl<'a> Reader<'a, '_> {
             },
             Some(mark @ ('"' | '\'')) => match quoted_length(text, mark) {
                 Some(length) if length == text.len() => Ok(Value::text(&unquoted(&text[1..length - 1], mark))),
-                _ => wrong(format!("{text}"), format!("one text between two signs {mark}")),
+                _ => wrong(text, format!("one text between two signs {mark}")),
             },
-            Some('%' | '@' | '`') => wrong(format!("{text}"), "a value, or a text in quotation marks"),
+            Some('%' | '@' | '`') => wrong(text, "a value, or a text in quotation marks"),
             _ if text.contains(": ") => wrong("a second colon in a line", "KEY: VALUE"),
             _ => Ok(plain(text)),
         }
