@@ -303,3 +303,53 @@ impl Scene {
         Diagnostic::error(&self.file, (self.code.places.robot, key), Code::UnknownName, found, expected)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io::{Error, Result};
+
+    use super::*;
+
+    struct Files(&'static [(&'static str, &'static str)]);
+
+    impl Sources for Files {
+        fn read(&self, path: &Path) -> Result<Vec<u8>> {
+            let found = self.0.iter().find(|(name, _)| Path::new(name) == path);
+            found.map(|(_, text)| text.as_bytes().to_vec()).ok_or_else(|| Error::from(ErrorKind::NotFound))
+        }
+    }
+
+    const FILES: Files = Files(&[
+        (
+            "here/scenes/arm.toml",
+            "file = \"../arm.xacro\"\nargs = { mass = 2, hand = true, side = \"left\" }\npackages = { parts = \"../parts\" }\n\
+             append = { file = \"../tool.xacro\", at = \"left\", prefix = \"t_\" }",
+        ),
+        (
+            "here/scenes/../arm.xacro",
+            "<robot name='arm'><xacro:arg name='mass' default='1'/><xacro:arg name='hand' default='false'/><xacro:arg name='side' default=''/>
+             <xacro:include filename='$(find parts)/part.xacro'/><xacro:if value='$(arg hand)'><xacro:part name='$(arg side)' mass='$(arg mass)'/></xacro:if></robot>",
+        ),
+        (
+            "here/parts/part.xacro",
+            "<robot><xacro:macro name='part' params='name mass'><link name='${name}'><inertial><mass value='${mass}'/>
+             <inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link></xacro:macro></robot>",
+        ),
+        ("here/scenes/../tool.xacro", "<robot name='tool'><xacro:arg name='size' default='big'/><link name='$(arg size)'/></robot>"),
+    ]);
+
+    #[test]
+    fn arguments_and_packages_of_a_scene_are_those_of_its_robot() {
+        let mut log = Diagnostics::new("");
+        let mut loader = Loader { sources: &FILES, root: "here".into(), ..Loader::default() };
+        let scene = loader.scene("scenes/arm.toml".as_ref(), &Span::default(), &mut log);
+        let opened = scene.and_then(|scene| loader.open("scenes".as_ref(), scene, &mut log));
+        let opened = opened.unwrap_or_else(|| panic!("{log}"));
+        let reading = opened.robot().read().unwrap_or_else(|found| panic!("{found}"));
+        let links: Vec<&str> = reading.description.links.iter().map(|link| link.name.as_str()).collect();
+        assert_eq!(links, ["left", "t_big"]);
+        assert_eq!(reading.description.links[0].inertial.map(|inertial| inertial.mass), Some(2.0));
+        assert!(reading.warnings.iter().all(|warning| warning.field != "args"), "{:?}", reading.warnings);
+        assert!(opened.files.contains(&"here/parts/part.xacro".into()), "{:?}", opened.files);
+    }
+}
