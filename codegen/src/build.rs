@@ -428,7 +428,7 @@ fn write_changed(path: &Path, text: &str) -> Result<(), Diagnostics> {
     if fs::read_to_string(path).is_ok_and(|old| old == text) {
         return Ok(());
     }
-    fs::write(path, text).map_err(|e| file_error(&path.display().to_string(), e.to_string()).into())
+    fs::write(path, text).map_err(|e| file_error(&path.display().to_string(), e.to_string()))
 }
 
 /// What this build script has written, to keep a second robot from taking the place of a first.
