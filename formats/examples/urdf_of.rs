@@ -1,7 +1,8 @@
 //! Writes the robot of a file as a plain URDF: what a file of xacro expands to.
 //!
 //! ```text
-//! cargo run -p articulated-formats --example urdf_of -- FILE [--arg NAME=VALUE] [--package NAME=FOLDER]
+//! cargo run -p articulated-formats --example urdf_of -- FILE [--arg NAME=VALUE]
+//!     [--package NAME=FOLDER]
 //! ```
 
 use std::process::ExitCode;

@@ -13,7 +13,8 @@
 //! * A fixed joint with `<mimic>`, `<axis>` or `<limit>`: not used; `<mimic>` with a warning.
 //! * A principal moment of inertia that is negative by rounding, at most 1e-12·m·ℓ², with a
 //!   warning: ℓ is the longest distance from one frame of the file to the next, at most 1 m. A
-//!   moment further below zero is an error, unless [`Options::allow_unphysical_inertia`] is set.
+//!   moment further below zero is an error, unless `allow_unphysical_inertia` of
+//!   [`Options`](crate::Options) is set.
 //! * Joints on a link `world` that the file does not declare, with a warning: the link is added,
 //!   without mass.
 //! * `<collision>` that cannot be read, with a warning: a scene that asks for contact of it is
