@@ -30,8 +30,8 @@
 //! # Bounds
 //!
 //! Depth, steps of evaluation, bytes of texts, included files, and the size of the expanded
-//! document
-//! are bounded: no input makes the reader hang, overflow its stack, or take more than 512 MB.
+//! document are bounded: no input makes the reader hang, overflow its stack, or take more than
+//! 512 MB.
 
 mod directives;
 mod evaluate;
