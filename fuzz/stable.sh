@@ -2,21 +2,22 @@
 # Runs a target, or all, with libFuzzer on a stable compiler: fuzz/stable.sh <target|all> [seconds]
 set -eu
 cd "$(dirname "$0")"
-target=${1:?a target: urdf, mjcf, mjcf_grammar, sdf, scene, dynamics, macro_input or all}
+target=${1:?a target: urdf, xacro, mjcf, mjcf_grammar, sdf, scene, dynamics, macro_input or all}
 seconds=${2:-60}
 if [ "$target" = all ]; then
-    for one in urdf mjcf mjcf_grammar sdf scene dynamics macro_input; do ./stable.sh "$one" "$seconds"; done
+    for one in urdf xacro mjcf mjcf_grammar sdf scene dynamics macro_input; do ./stable.sh "$one" "$seconds"; done
     exit
 fi
 case $target in
     urdf) seeds="../models/urdf ../tests/ui/urdf" limits="-timeout=10 -rss_limit_mb=1024" ;;
+    xacro) seeds="../tests/xacro/models" limits="-timeout=10 -rss_limit_mb=1024" ;;
     mjcf) seeds="../formats/tests/corpus/mjcf" limits="-timeout=10 -rss_limit_mb=1024" ;;
     mjcf_grammar) seeds="" limits="-timeout=10 -rss_limit_mb=1024" ;;
     sdf) seeds="../tests/sdf/models" limits="-timeout=10 -rss_limit_mb=1024" ;;
     scene) seeds="../models/scenes ../tests/ui/scenes" limits="-timeout=10 -rss_limit_mb=1024" ;;
     dynamics) seeds="../models/urdf" limits="-timeout=20 -rss_limit_mb=2048" ;;
     macro_input) seeds="seeds/macro_input" limits="-timeout=20 -rss_limit_mb=2048" ;;
-    *) echo "found $target, expected urdf, mjcf, mjcf_grammar, sdf, scene, dynamics, macro_input or all" >&2; exit 2 ;;
+    *) echo "found $target, expected urdf, xacro, mjcf, mjcf_grammar, sdf, scene, dynamics, macro_input or all" >&2; exit 2 ;;
 esac
 host=$(rustc -vV | sed -n 's/^host: //p')
 pass="-Cllvm-args=-sanitizer-coverage"

@@ -64,6 +64,7 @@ step python3 tests/embedded/measure.py
 step python3 tests/shipped/shipped.py --sample
 step python3 tests/mjcf/oracle.py --sample
 step python3 tests/sdf/oracle.py --sample
+step python3 tests/xacro/oracle.py --sample
 step python_package
 step readme_command
 step browser

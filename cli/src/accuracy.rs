@@ -21,12 +21,14 @@ const COMMIT: &str = match option_env!("ARTICULATED_COMMIT") {
 
 /// Options that do not apply to motions: reading and editing of a robot, which a scene determines,
 /// and functions and states to measure.
-const OF_FUNCTIONS: [&str; 16] = [
+const OF_FUNCTIONS: [&str; 18] = [
     "floating",
     "fixed",
     "gravity",
     "allow_unphysical_inertia",
     "snap_angles",
+    "arg",
+    "package",
     "rename",
     "append",
     "payload",

@@ -45,6 +45,14 @@ pub(crate) struct RobotArguments {
     /// most 0.5 [default: off]
     #[arg(long, value_name = "TOL", value_parser = tolerance)]
     pub(crate) snap_angles: Option<f64>,
+    /// The value of an argument that the file declares (`<xacro:arg>`); repeatable
+    #[arg(long, value_name = "NAME=VALUE", value_parser = argument)]
+    pub(crate) arg: Vec<(String, String)>,
+    /// The folder of a package that the file includes files from (`$(find NAME)`); of a FOLDER
+    /// alone the last component is the name. Packages around the file, and those of
+    /// AMENT_PREFIX_PATH and ROS_PACKAGE_PATH, need none. Repeatable
+    #[arg(long, value_name = "NAME=FOLDER", value_parser = Package::parse)]
+    pub(crate) package: Vec<Package>,
     /// Another name in Rust for a joint or link, where two would be equal; repeatable
     #[arg(long, value_name = "NAME=RUST_NAME", value_parser = renaming)]
     pub(crate) rename: Vec<(String, String)>,
@@ -54,6 +62,32 @@ pub(crate) struct RobotArguments {
     pub(crate) max_code_size: Option<u64>,
     #[command(flatten)]
     pub(crate) edits: Edits,
+}
+
+/// A package of files: its name, and its folder.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Package {
+    pub(crate) name: String,
+    pub(crate) folder: PathBuf,
+}
+
+impl Package {
+    /// `NAME=FOLDER`, or a folder, whose last component is the name.
+    pub(crate) fn parse(text: &str) -> Result<Self, String> {
+        let (name, folder) = match text.split_once('=') {
+            Some((name, folder)) => (name.to_owned(), PathBuf::from(folder)),
+            None => {
+                let folder = PathBuf::from(text);
+                let whole = folder.canonicalize().unwrap_or_else(|_| folder.clone());
+                (whole.file_name().unwrap_or_default().to_string_lossy().into_owned(), folder)
+            }
+        };
+        match (name.is_empty(), folder.is_dir()) {
+            (true, _) => Err(format!("found {text:?}, expected NAME=FOLDER, or a folder with a name")),
+            (_, false) => Err(format!("found no folder {:?}, expected NAME=FOLDER, or a folder", folder.display().to_string())),
+            _ => Ok(Self { name, folder }),
+        }
+    }
 }
 
 impl RobotArguments {
@@ -66,6 +100,8 @@ impl RobotArguments {
             gravity: None,
             allow_unphysical_inertia: false,
             snap_angles: None,
+            arg: Vec::new(),
+            package: Vec::new(),
             rename: Vec::new(),
             max_code_size: None,
             edits: Edits::default(),
@@ -231,6 +267,12 @@ pub(crate) fn names_in_rust(rename: &[(String, String)]) -> Result<(), Failure> 
 
 fn tolerance(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|x| can_snap(*x)).ok_or_else(|| format!("expected {SNAP_EXPECTED}"))
+}
+
+/// `NAME=VALUE`.
+fn argument(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text.split_once('=').filter(|(name, _)| !name.is_empty()).ok_or("expected NAME=VALUE, as in hand=true")?;
+    Ok((name.to_owned(), value.to_owned()))
 }
 
 /// `name=RUST_NAME`; the name in the file may hold such a sign too.

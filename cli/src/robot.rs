@@ -1,6 +1,7 @@
 //! The robot that a command is about: a bundled one by its name, a URDF by its path, or that of a
 //! scene, with its edits and effects.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -9,8 +10,8 @@ use articulated_codegen::{Appended, Generated, MOST_FREEDOMS, Options, Request, 
 use articulated_core::description::Base;
 use articulated_core::diagnostic::{Diagnostic, Diagnostics, summary, values};
 use articulated_core::model::Model;
-use articulated_formats::{Disk, Included, MOST_BYTES, nearest_file, read_at_most};
-use articulated_scene::BuiltRobot;
+use articulated_formats::{Environment, Included, MOST_BYTES, nearest_file, read_at_most};
+use articulated_scene::{BuiltRobot, RobotOptions};
 
 use crate::arguments::{RobotArguments, names_in_rust};
 use crate::console;
@@ -62,7 +63,8 @@ impl Robot {
         options.robot.snap_angles = arguments.snap_angles;
         options.rename = arguments.rename.iter().cloned().map(Into::into).collect();
         options.max_code_size = arguments.max_code_size.unwrap_or(options.max_code_size);
-        options.robot.included = included(&file, &document);
+        of_file(&mut options, arguments);
+        options.robot.included = included(&file, &document, &options.robot);
         edit(&mut options, &arguments.edits)?;
         let files = files(path.iter().cloned(), &arguments.edits, &options);
         Ok(Self { file, scene: None, document, options, effects: None, path, bundled: bundled.is_some(), files })
@@ -84,6 +86,10 @@ impl Robot {
         options.robot.allow_unphysical_inertia |= arguments.allow_unphysical_inertia;
         options.robot.snap_angles = arguments.snap_angles.or(options.robot.snap_angles);
         arguments.rename.iter().for_each(|(from, to)| options.set_name(from, to));
+        if !arguments.arg.is_empty() || !arguments.package.is_empty() {
+            of_file(options, arguments);
+            options.robot.included.extend(included(&request.file, &request.document, &options.robot));
+        }
         options.max_code_size = arguments.max_code_size.unwrap_or(options.max_code_size);
         edit(options, &arguments.edits)?;
         // The scene's effects on all joints are those of the robot as it is now.
@@ -205,7 +211,9 @@ pub(crate) fn has_room(file: &str, nv: usize) -> Result<(), Failure> {
 fn edit(options: &mut Options, edits: &Edits) -> Result<(), Failure> {
     for other in &edits.append {
         let (file, document) = document(&other.file, &[])?;
-        options.robot.included.extend(included(&file, &document));
+        // Arguments are those of the robot.
+        let own = RobotOptions { arguments: BTreeMap::new(), ..options.robot.clone() };
+        options.robot.included.extend(included(&file, &document, &own));
         let (file, at) = (file.into(), other.at.clone().into());
         options.robot.append.push(Appended { document, file, at, prefix: other.prefix.clone(), origin: other.origin });
     }
@@ -221,10 +229,17 @@ fn files(own: impl Iterator<Item = PathBuf>, edits: &Edits, options: &Options) -
     own.chain(appended).chain(options.robot.included.files().map(|(path, _)| path.to_owned())).collect()
 }
 
+/// Takes the arguments of the robot's file, and its packages.
+fn of_file(options: &mut Options, arguments: &RobotArguments) {
+    options.robot.arguments.extend(arguments.arg.iter().cloned());
+    options.robot.packages.extend(arguments.package.iter().map(|package| (package.name.clone(), package.folder.clone())));
+}
+
 /// The files that a document includes.
-fn included(file: &str, document: &[u8]) -> Included {
-    let options = articulated_formats::Options { file: file.to_owned(), ..articulated_formats::Options::default() };
-    articulated_formats::included(&Disk, Path::new(""), document, &options)
+fn included(file: &str, document: &[u8], robot: &RobotOptions) -> Included {
+    let (arguments, packages) = (robot.arguments.clone(), robot.packages.clone());
+    let options = articulated_formats::Options { file: file.to_owned(), arguments, packages, ..articulated_formats::Options::default() };
+    articulated_formats::included(&Environment, Path::new(""), document, &options)
 }
 
 /// A file's name for messages, and its bytes: of a bundled robot by its name, the standard input,

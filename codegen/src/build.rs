@@ -1,6 +1,6 @@
 //! The build-script interface.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -9,7 +9,9 @@ use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Spa
 use articulated_scene::{Loader, Robot, beside};
 
 use crate::cache::Cache;
-use crate::{Appended, Base, Coupling, Generated, Origin, Payload, Real, Reference, Request, Target, check_words, generate, scene};
+use crate::{
+    Appended, Base, Coupling, Generated, Origin, Payload, Real, Reference, Request, RobotOptions, Target, check_words, generate, scene,
+};
 
 /// Generates a robot's code from a build script.
 ///
@@ -135,6 +137,21 @@ impl Build {
     #[must_use]
     pub fn snap_angles(mut self, tolerance: f64) -> Self {
         self.request.options.robot.snap_angles = Some(tolerance);
+        self
+    }
+
+    /// The value of an argument that the robot's file declares (`<xacro:arg>`).
+    #[must_use]
+    pub fn arg(mut self, name: impl Into<String>, value: impl Into<String>) -> Self {
+        self.request.options.robot.arguments.insert(name.into(), value.into());
+        self
+    }
+
+    /// The folder of a package that the robot's file includes files from (`$(find name)`), relative
+    /// to the crate's folder. Packages around the file need none.
+    #[must_use]
+    pub fn package(mut self, name: impl Into<String>, folder: impl AsRef<Path>) -> Self {
+        self.request.options.robot.packages.insert(name.into(), folder.as_ref().to_owned());
         self
     }
 
@@ -375,14 +392,18 @@ impl Build {
             (None, "") => {}
             (_, file) => {
                 request.document = loader.read(file.as_ref(), &self.robot, "urdf", &mut log).unwrap_or_default();
-                loader.include(file, &request.document, request.options.robot.formats);
+                loader.include(file, &request.document, &request.options.robot);
             }
         }
-        for other in &mut request.options.robot.append {
+        let mut append = std::mem::take(&mut request.options.robot.append);
+        // Arguments are those of the robot.
+        let own = RobotOptions { arguments: BTreeMap::new(), ..request.options.robot.clone() };
+        for other in &mut append {
             let span = other.file.span.clone().unwrap_or_default();
             other.document = loader.read(other.file.value.as_ref(), &span, "append.urdf", &mut log).unwrap_or_default();
-            loader.include(&other.file.value, &other.document, request.options.robot.formats);
+            loader.include(&other.file.value, &other.document, &own);
         }
+        request.options.robot.append = append;
         request.options.robot.included = loader.included.clone();
         if !log.is_ok() {
             // Mistakes in the words of the request are mistakes without the robot too.

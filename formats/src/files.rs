@@ -26,6 +26,24 @@ pub trait Sources {
     fn nearest(&self, _path: &Path) -> Option<String> {
         None
     }
+
+    /// The names of the files of a folder.
+    ///
+    /// # Errors
+    /// Those of the system; sources that do not know folders.
+    fn list(&self, _folder: &Path) -> Result<Vec<String>> {
+        Err(Error::new(ErrorKind::Unsupported, "names with wildcards are not read here"))
+    }
+
+    /// The folder of a package, where these sources know it.
+    fn package(&self, _name: &str) -> Option<PathBuf> {
+        None
+    }
+
+    /// A variable of the environment, where these sources have one.
+    fn variable(&self, _name: &str) -> Option<String> {
+        None
+    }
 }
 
 /// The file system.
@@ -40,6 +58,83 @@ impl Sources for Disk {
     fn nearest(&self, path: &Path) -> Option<String> {
         nearest_file(path)
     }
+
+    fn list(&self, folder: &Path) -> Result<Vec<String>> {
+        list_files(folder)
+    }
+}
+
+/// The names of the regular files of a folder, and of links; at most 10 000 of them.
+fn list_files(folder: &Path) -> Result<Vec<String>> {
+    let folder = if folder == Path::new("") { Path::new(".") } else { folder };
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder)? {
+        let entry = entry?;
+        if entry.path().is_file() {
+            names.push(entry.file_name().to_string_lossy().into_owned());
+        }
+        if names.len() > MOST_FILES {
+            return Err(Error::new(ErrorKind::FileTooLarge, format!("found a folder of very many files, expected at most {MOST_FILES}")));
+        }
+    }
+    Ok(names)
+}
+
+/// Folders of more files are not searched.
+const MOST_FILES: usize = 10_000;
+
+/// The file system, and packages and variables of the environment: `AMENT_PREFIX_PATH` and
+/// `ROS_PACKAGE_PATH`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Environment;
+
+impl Sources for Environment {
+    fn read(&self, path: &Path) -> Result<Vec<u8>> {
+        Disk.read(path)
+    }
+
+    fn nearest(&self, path: &Path) -> Option<String> {
+        Disk.nearest(path)
+    }
+
+    fn list(&self, folder: &Path) -> Result<Vec<String>> {
+        Disk.list(folder)
+    }
+
+    fn package(&self, name: &str) -> Option<PathBuf> {
+        let folders = |variable| std::env::var_os(variable).map(|all| std::env::split_paths(&all).collect::<Vec<_>>()).unwrap_or_default();
+        let mut shares = folders("AMENT_PREFIX_PATH").into_iter().map(|prefix| prefix.join("share").join(name));
+        shares.find(|folder| folder.is_dir()).or_else(|| folders("ROS_PACKAGE_PATH").iter().find_map(|folder| package_below(folder, name)))
+    }
+
+    fn variable(&self, name: &str) -> Option<String> {
+        std::env::var(name).ok()
+    }
+}
+
+/// The folder of a package below another one: it has a `package.xml` and is called so. The
+/// packages of a folder that is one itself are not searched.
+fn package_below(folder: &Path, name: &str) -> Option<PathBuf> {
+    const MOST_LEVELS: usize = 6;
+    let mut level = vec![folder.to_owned()];
+    for _ in 0..MOST_LEVELS {
+        let mut next = Vec::new();
+        for folder in level {
+            if folder.join("package.xml").is_file() {
+                if folder.file_name().is_some_and(|own| own == name) {
+                    return Some(folder);
+                }
+                continue;
+            }
+            let Ok(entries) = std::fs::read_dir(&folder) else { continue };
+            let mut inside: Vec<PathBuf> = entries.take(MOST_FILES).filter_map(|entry| Some(entry.ok()?.path())).collect();
+            inside.sort_unstable();
+            next.extend(inside.into_iter().filter(|path| path.is_dir() && !path.is_symlink()));
+        }
+        next.truncate(MOST_FILES);
+        level = next;
+    }
+    None
 }
 
 /// No files: each is refused.
@@ -55,41 +150,73 @@ impl Sources for NoFiles {
 /// The files that a document includes, read before it is: the document can be read again, without
 /// the file system. Cheap to clone.
 #[derive(Clone, Default, PartialEq)]
-pub struct Included(Arc<BTreeMap<PathBuf, Found>>);
+pub struct Included(Arc<Known>);
+
+/// What sources answered.
+#[derive(Clone, Default, PartialEq)]
+pub(crate) struct Known {
+    files: BTreeMap<PathBuf, Found<Vec<u8>>>,
+    folders: BTreeMap<PathBuf, Found<Vec<String>>>,
+    packages: BTreeMap<String, Option<PathBuf>>,
+    variables: BTreeMap<String, Option<String>>,
+}
 
 /// The bytes of a file, or why there are none.
-type Found = std::result::Result<Vec<u8>, (ErrorKind, String)>;
+type Found<T> = std::result::Result<T, (ErrorKind, String)>;
 
 impl Included {
     /// Names and bytes of the files, in the order of their names.
     pub fn files(&self) -> impl Iterator<Item = (&Path, &[u8])> {
-        self.0.iter().filter_map(|(path, found)| Some((path.as_path(), found.as_deref().ok()?)))
+        self.0.files.iter().filter_map(|(path, found)| Some((path.as_path(), found.as_deref().ok()?)))
     }
 
     /// These files and others.
     pub fn extend(&mut self, other: Self) {
-        if self.0.is_empty() {
+        if *self.0 == Known::default() {
             *self = other;
-        } else if !other.0.is_empty() {
+        } else if *other.0 != Known::default() {
             let others = Arc::unwrap_or_clone(other.0);
-            Arc::make_mut(&mut self.0).extend(others);
+            let own = Arc::make_mut(&mut self.0);
+            own.files.extend(others.files);
+            own.folders.extend(others.folders);
+            own.packages.extend(others.packages);
+            own.variables.extend(others.variables);
         }
     }
 }
 
 impl fmt::Debug for Included {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_list().entries(self.0.keys()).finish()
+        f.debug_list().entries(self.0.files.keys()).finish()
+    }
+}
+
+fn again<T: Clone>(found: Option<&Found<T>>) -> Option<Result<T>> {
+    found.map(|found| found.clone().map_err(|(kind, message)| Error::new(kind, message)))
+}
+
+fn kept<T: Clone>(result: &Result<T>) -> Found<T> {
+    match result {
+        Ok(value) => Ok(value.clone()),
+        Err(error) => Err((error.kind(), error.to_string())),
     }
 }
 
 impl Sources for Included {
     fn read(&self, path: &Path) -> Result<Vec<u8>> {
-        match self.0.get(path) {
-            Some(Ok(bytes)) => Ok(bytes.clone()),
-            Some(Err((kind, message))) => Err(Error::new(*kind, message.clone())),
-            None => NoFiles.read(path),
-        }
+        again(self.0.files.get(path)).unwrap_or_else(|| NoFiles.read(path))
+    }
+
+    fn list(&self, folder: &Path) -> Result<Vec<String>> {
+        again(self.0.folders.get(folder)).unwrap_or_else(|| NoFiles.list(folder))
+    }
+
+    fn package(&self, name: &str) -> Option<PathBuf> {
+        self.0.packages.get(name).cloned().flatten()
+    }
+
+    fn variable(&self, name: &str) -> Option<String> {
+        self.0.variables.get(name).cloned().flatten()
     }
 }
 
@@ -98,20 +225,37 @@ pub(crate) struct Recorder<'a> {
     pub(crate) sources: &'a dyn Sources,
     /// The folder that names start from.
     pub(crate) root: &'a Path,
-    pub(crate) found: RefCell<BTreeMap<PathBuf, Found>>,
+    pub(crate) known: RefCell<Known>,
 }
 
 impl Recorder<'_> {
     pub(crate) fn included(self) -> Included {
-        Included(Arc::new(self.found.into_inner()))
+        Included(Arc::new(self.known.into_inner()))
     }
 }
 
 impl Sources for Recorder<'_> {
     fn read(&self, path: &Path) -> Result<Vec<u8>> {
         let result = self.sources.read(&self.root.join(path));
-        let kept = result.as_ref().map(Clone::clone).map_err(|error| (error.kind(), error.to_string()));
-        self.found.borrow_mut().insert(path.to_owned(), kept);
+        self.known.borrow_mut().files.insert(path.to_owned(), kept(&result));
+        result
+    }
+
+    fn list(&self, folder: &Path) -> Result<Vec<String>> {
+        let result = self.sources.list(&self.root.join(folder));
+        self.known.borrow_mut().folders.insert(folder.to_owned(), kept(&result));
+        result
+    }
+
+    fn package(&self, name: &str) -> Option<PathBuf> {
+        let result = self.sources.package(name);
+        self.known.borrow_mut().packages.insert(name.to_owned(), result.clone());
+        result
+    }
+
+    fn variable(&self, name: &str) -> Option<String> {
+        let result = self.sources.variable(name);
+        self.known.borrow_mut().variables.insert(name.to_owned(), result.clone());
         result
     }
 }
@@ -120,7 +264,6 @@ impl Sources for Recorder<'_> {
 /// there is no such file; none in a folder of very many.
 #[must_use]
 pub fn nearest_file(path: &Path) -> Option<String> {
-    const MOST_FILES: usize = 10_000;
     if path.exists() {
         return None;
     }

@@ -50,6 +50,7 @@ mod reading;
 pub mod sdf;
 mod snap;
 pub mod urdf;
+mod xacro;
 mod xml;
 
 #[cfg(doc)]
@@ -57,7 +58,7 @@ use articulated_core::description::Description;
 #[cfg(doc)]
 use articulated_core::diagnostic::Diagnostics;
 
-pub use files::{AtMost, Disk, Included, MOST_BYTES, NoFiles, Sources, nearest_file, open_file, read_at_most, read_file};
+pub use files::{AtMost, Disk, Environment, Included, MOST_BYTES, NoFiles, Sources, nearest_file, open_file, read_at_most, read_file};
 pub use format::{FORMATS, Format, Formats, Input};
 pub use reading::{Options, Reading, included, read, read_with};
 pub use snap::{MOST_SNAPPED, SNAP_EXPECTED, can_snap, nearly_right_angles};

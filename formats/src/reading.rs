@@ -1,10 +1,12 @@
 //! How to read a document, and what comes of it.
 
 use std::cell::RefCell;
-use std::path::Path;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
 use articulated_core::description::{Base, Description};
-use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Subject, Unused, quote};
+use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Subject, Unused, quote};
+use articulated_core::suggest::nearest;
 
 use crate::files::Recorder;
 use crate::{Format, Formats, Included, Input, NoFiles, Sources, snap};
@@ -25,11 +27,36 @@ pub struct Options {
     pub snap_angles: Option<f64>,
     /// The formats to choose from.
     pub formats: Formats,
+    /// Values of arguments of the file, as `<xacro:arg>` declares them. One that the file does not
+    /// have is a warning.
+    pub arguments: BTreeMap<String, String>,
+    /// Folders of packages, for files that the file includes from them.
+    pub packages: BTreeMap<String, PathBuf>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { file: "<robot>".into(), base: Base::Fixed, allow_unphysical_inertia: false, snap_angles: None, formats: Formats::default() }
+        Self {
+            file: "<robot>".into(),
+            base: Base::Fixed,
+            allow_unphysical_inertia: false,
+            snap_angles: None,
+            formats: Formats::default(),
+            arguments: BTreeMap::new(),
+            packages: BTreeMap::new(),
+        }
+    }
+}
+
+impl Options {
+    /// Warns of arguments other than those that the document declares.
+    pub(crate) fn warn_of_arguments(&self, declared: &BTreeSet<String>, log: &mut Diagnostics) {
+        for name in self.arguments.keys().filter(|name| !declared.contains(*name)) {
+            let near =
+                nearest(name, declared.iter().map(String::as_str)).map(|near| format!(" (did you mean {near:?}?)")).unwrap_or_default();
+            let found = format!("the argument {}, which the file does not have", quote(name));
+            log.warning((At::Nowhere, "args"), Code::Xacro, found, format!("one of its arguments{near}"));
+        }
     }
 }
 
@@ -71,7 +98,7 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Reading, Diagnostics> {
 /// The files that a document includes, for reading it again with [`read_with`]. Their names are as
 /// the document and `options.file` make them; `root` is the folder that they start from.
 pub fn included(sources: &dyn Sources, root: &Path, bytes: &[u8], options: &Options) -> Included {
-    let recorder = Recorder { sources, root, found: RefCell::default() };
+    let recorder = Recorder { sources, root, known: RefCell::default() };
     if options.formats.of(&options.file, bytes).is_some_and(Format::includes_files) {
         // What is wrong with the document is reported when it is read.
         drop(read_with(&recorder, bytes, options));

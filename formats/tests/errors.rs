@@ -103,7 +103,7 @@ const MISTAKES: &[Mistake] = &[
     ("type=\"continuous\"", "type=\"$(arg type)\"", Code::Xacro, 19, &["joint \"slew\": joint type:"]),
     ("<child link=\"lamp\"/>", "<child link=\"${lamp}\"/>", Code::Xacro, 40, &["joint \"mount\": child link:"]),
     ("value=\"40\"", "value=\"$(arg mass)\"", Code::Xacro, 7, &["xacro"]),
-    ("<link name=\"lamp\"/>", "<xacro:lamp/>", Code::Xacro, 18, &["xacro:lamp", "run xacro first"]),
+    ("<link name=\"lamp\"/>", "<xacro:lamp/>", Code::Xacro, 18, &["xacro:lamp", "which is no macro"]),
 ];
 
 #[test]
@@ -183,7 +183,7 @@ fn joints_of_other_programs_are_named_where_links_hang_on_nothing() {
 
 #[test]
 fn all_expressions_of_xacro_are_listed_with_the_other_mistakes() {
-    let text = crane("0 0 12\" rpy=\"0 0 0\"", "0 0 $(optenv Z 1)\" rpy=\"$(arg r) 0 0\"")
+    let text = crane("0 0 12\" rpy=\"0 0 0\"", "0 0 $(env Z)\" rpy=\"$(arg r) 0 0\"")
         .replace("value=\"40\"", "value=\"${m}\"")
         .replace("iyy=\"30\"", "iyy=\"bad\"");
     let problems = refused(&text);

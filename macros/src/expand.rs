@@ -108,7 +108,7 @@ impl Reader<'_> {
             return (scene, None);
         }
         let robot = self.robot(folder, &scene);
-        let appended = self.loader.append(folder, &mut options.robot.append, &mut self.log);
+        let appended = self.loader.append(folder, &mut options.robot, &mut self.log);
         options.robot.included = self.loader.included.clone();
         let is_complete = robot.is_some() && appended;
         let (file, document) = robot.unwrap_or_default();

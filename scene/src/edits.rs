@@ -124,6 +124,23 @@ pub(crate) fn renamings(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<(String, 
     entries.iter().filter_map(|e| Some((e.name.clone(), spot.of(e).text(log, "a name in Rust")?.to_owned()))).collect()
 }
 
+/// Arguments of a file: values are texts, or numbers and truth values as they are written.
+pub(crate) fn arguments(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<(String, String)> {
+    let entries = spot.entries(log, "a table of arguments, as { hand = true, prefix = \"left_\" }");
+    let value = |spot: Spot<'_>, log: &mut Diagnostics| match &spot.node.value {
+        Value::Number(number) => Some(number.to_string()),
+        Value::Bool(value) => Some(value.to_string()),
+        _ => spot.text(log, "a text, a number, true or false").map(str::to_owned),
+    };
+    entries.iter().filter_map(|e| Some((e.name.clone(), value(spot.of(e), log)?))).collect()
+}
+
+/// Folders of packages.
+pub(crate) fn packages(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<(String, String)> {
+    let entries = spot.entries(log, "a table of folders, as { arm_description = \"../arm_description\" }");
+    entries.iter().filter_map(|e| Some((e.name.clone(), spot.of(e).text(log, "the path of a folder")?.to_owned()))).collect()
+}
+
 /// Where the items of a list, or the entries of a table, stand.
 pub(crate) fn places(spot: &Spot<'_>) -> Vec<At> {
     match &spot.node.value {

@@ -84,6 +84,10 @@ pub struct CodeOptions {
     pub append: Vec<Append>,
     /// Rust names to use: (name in the URDF, name in Rust).
     pub rename: Vec<(String, String)>,
+    /// Arguments of the robot's file: (name, value).
+    pub args: Vec<(String, String)>,
+    /// Packages that the robot's file includes files from: (name, folder).
+    pub packages: Vec<(String, String)>,
     /// Accept inertias with a principal moment below zero.
     pub allow_unphysical_inertia: Option<bool>,
     /// Take angles this near to a multiple of π/2 as that, rad.
@@ -116,6 +120,8 @@ pub struct Places {
     pub frames: Vec<At>,
     /// Of [`CodeOptions::rename`].
     pub rename: Vec<At>,
+    /// Of [`CodeOptions::packages`].
+    pub packages: Vec<At>,
 }
 
 impl Scene {
@@ -352,6 +358,25 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         read: |s, spot, log| {
             s.code.rename = edits::renamings(spot, log);
             s.code.places.rename = edits::places(spot);
+        },
+    },
+    Row {
+        name: "args",
+        required: false,
+        value: "table: name = text, number, true or false",
+        default: "those of the file",
+        what: "values of the arguments that the robot's file declares (`<xacro:arg>`)",
+        read: |s, spot, log| s.code.args = edits::arguments(spot, log),
+    },
+    Row {
+        name: "packages",
+        required: false,
+        value: "table: name = text",
+        default: "those around the file",
+        what: "folders of packages that the robot's file includes files from (`$(find name)`), seen from the scene's folder",
+        read: |s, spot, log| {
+            s.code.packages = edits::packages(spot, log);
+            s.code.places.packages = edits::places(spot);
         },
     },
     Row {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
 
-use super::page::Package;
+use crate::arguments::Package;
 
 #[derive(Args, Debug, Default)]
 #[command(group = ArgGroup::new("written").args(["output", "mcap"]).multiple(true))]

@@ -11,10 +11,11 @@ use articulated_motion::field;
 use articulated_scene::When;
 
 use super::motion::Motion;
-use super::page::{self, Meshes, Package, Projectile, Setting};
+use super::page::{self, Meshes, Projectile, Setting};
 use super::recording::Recording;
 use super::summary::{Summary, Unit};
 use super::{mcap, plot, table};
+use crate::arguments::Package;
 use crate::failure::Failure;
 use crate::{console, output};
 

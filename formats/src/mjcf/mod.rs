@@ -31,6 +31,8 @@ mod mesh;
 mod settings;
 mod values;
 
+use std::collections::BTreeSet;
+
 use articulated_core::description::Description;
 use articulated_core::diagnostic::Diagnostics;
 
@@ -59,6 +61,7 @@ impl Format for Mjcf {
     }
 
     fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Description> {
+        input.options.warn_of_arguments(&BTreeSet::new(), diagnostics);
         let documents = documents::Documents::read(input, diagnostics)?;
         let name = documents.root(0).text("model").filter(|name| !name.trim().is_empty()).unwrap_or("robot");
         let bodies = bodies::bodies(&documents, diagnostics);

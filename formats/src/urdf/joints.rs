@@ -7,7 +7,7 @@ use articulated_core::suggest::nearest;
 
 use super::ast::{DraftJoint, DraftMimic, Reference, has_one_coordinate};
 use super::robot::{Context, Version};
-use super::{frame, limits, unused, xacro};
+use super::{frame, limits, unused};
 use crate::xml::element::Tag;
 use crate::xml::number::{self, attribute, attribute_list};
 
@@ -66,7 +66,7 @@ fn of_any_kind(tag: &Tag<'_>, version: Version, log: &mut Diagnostics) {
 fn kind(tag: &Tag<'_>, log: &mut Diagnostics) -> Option<JointKind> {
     let (name, at) = tag.required_attribute("type", log)?;
     let kind = JointKind::ALL.iter().copied().find(|kind| kind.name() == name);
-    if kind.is_none() && !xacro::is_expression(name) {
+    if kind.is_none() && !number::is_expression(name) {
         let hint = hint(elsewhere(name).map(str::to_owned).or_else(|| nearest(name, JointKind::ALL.iter().map(|k| k.name()))).as_deref());
         let expected = format!("{}{hint}", kinds_with(|_| true));
         let place = Place { at, ..tag.place("type") };

@@ -9,8 +9,8 @@ use articulated_core::suggest::Suggester;
 
 use super::ast::{DraftJoint, DraftMimic, has_one_coordinate};
 use super::joints::kinds_with;
-use super::xacro::is_expression;
 use crate::cycles::{around, cycles};
+use crate::xml::number::is_expression;
 
 /// For each joint, the joints that it follows.
 pub(crate) struct Leaders {

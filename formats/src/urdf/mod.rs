@@ -13,12 +13,15 @@
 //! * A fixed joint with `<mimic>`, `<axis>` or `<limit>`: not used; `<mimic>` with a warning.
 //! * A principal moment of inertia that is negative by rounding, at most 1e-12·m·ℓ², with a
 //!   warning: ℓ is the longest distance from one frame of the file to the next, at most 1 m. A
-//!   moment further below zero is an error, unless [`Options::allow_unphysical_inertia`] is set.
+//!   moment further below zero is an error, unless `allow_unphysical_inertia` of
+//!   [`Options`](crate::Options) is set.
 //! * Joints on a link `world` that the file does not declare, with a warning: the link is added,
 //!   without mass.
 //! * `<collision>` that cannot be read, with a warning: a scene that asks for contact of it is
 //!   refused.
-//! * Expressions of xacro in names of files (meshes, textures). Elsewhere each one is an error.
+//! * Expressions of xacro in names of files (meshes, textures), where the file has no others.
+//!
+//! A file with tags or other expressions of xacro is expanded first: see `docs/xacro.md`.
 //!
 //! What the file states about closed loops, springs, followers and gravity where it is not read
 //! (inside `<gazebo>`, under a prefix, `<loop_joint>`, links inside `<group>`) is a warning of the
@@ -60,7 +63,8 @@ mod tree;
 mod unused;
 mod visual;
 mod write;
-mod xacro;
+
+use std::collections::BTreeSet;
 
 use articulated_core::description::{Base, Description};
 use articulated_core::diagnostic::Code;
@@ -77,7 +81,7 @@ use crate::xml::document;
 use crate::xml::element::Tag;
 use crate::xml::lines::Lines;
 use crate::xml::markup;
-use crate::{Format, Input, Options};
+use crate::{Format, Input, xacro};
 
 /// The format of URDF files.
 #[derive(Clone, Copy, Debug)]
@@ -96,8 +100,12 @@ impl Format for Urdf {
         markup::root(bytes) == Some(b"robot")
     }
 
+    fn includes_files(&self) -> bool {
+        true
+    }
+
     fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Description> {
-        let draft = draft(input.bytes, input.options, diagnostics)?;
+        let draft = draft(input, diagnostics)?;
         let tree = tree::connect(&draft, diagnostics);
         let leaders = mimic::leaders(&draft.joints, diagnostics);
         let tree = tree.filter(|_| diagnostics.is_ok())?;
@@ -111,15 +119,21 @@ impl Format for Urdf {
     }
 }
 
-fn draft(bytes: &[u8], options: &Options, log: &mut Diagnostics) -> Option<ast::Draft> {
-    let text = document::text(bytes, log)?;
-    let lines = Lines::of(&text).with_expressions_reported();
+fn draft(input: &Input<'_>, log: &mut Diagnostics) -> Option<ast::Draft> {
+    let text = document::text(input.bytes, log)?;
+    let lines = Lines::of(&text);
     let document = document::parse(&text, &lines, log)?;
     let robot = robot_tag(&document, &lines, log)?;
-    if xacro::report(&robot, log) {
-        return None;
+    if !xacro::is_needed(&document, &input.options.file) {
+        input.options.warn_of_arguments(&BTreeSet::new(), log);
+        return Some(robot::draft(&robot, input.options, log));
     }
-    Some(robot::draft(&robot, options, log))
+    let expanded = xacro::expand(&document, &lines, input, log)?;
+    // An expression that is left over has an error of its own, or is meant.
+    let lines = Lines::expanded(&expanded.text, expanded.origins, !log.is_ok());
+    let document = document::parse(&expanded.text, &lines, log)?;
+    let robot = robot_tag(&document, &lines, log)?;
+    Some(robot::draft(&robot, input.options, log))
 }
 
 /// The root element, if it is `<robot>`.

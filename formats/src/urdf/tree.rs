@@ -9,8 +9,8 @@ use articulated_core::listed;
 use articulated_core::suggest::Suggester;
 
 use super::ast::{Draft, DraftJoint, Reference};
-use super::xacro::is_expression;
 use crate::cycles::{around, cycles};
+use crate::xml::number::is_expression;
 
 /// Which links each joint connects.
 pub(crate) struct Tree {

@@ -8,22 +8,29 @@ pub(crate) struct Lines<'a> {
     starts: Vec<usize>,
     /// Whether expressions of xacro in this text have errors of their own.
     pub(super) expressions_reported: bool,
+    /// Of an expanded text: positions, in order, and the places that the text from there on comes
+    /// from.
+    origins: Vec<(usize, At)>,
 }
 
 impl<'a> Lines<'a> {
     pub(crate) fn of(text: &'a str) -> Self {
         let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
-        Self { text, starts, expressions_reported: false }
+        Self { text, starts, expressions_reported: false, origins: Vec::new() }
     }
 
-    /// The same, where expressions of xacro have errors of their own: they are no second error as
-    /// numbers.
-    pub(crate) fn with_expressions_reported(self) -> Self {
-        Self { expressions_reported: true, ..self }
+    /// Of a text that was expanded from others: places are those of the source.
+    /// `expressions_reported`: expressions that are left over have errors of their own, and are no
+    /// second error as numbers.
+    pub(crate) fn expanded(text: &'a str, origins: Vec<(usize, At)>, expressions_reported: bool) -> Self {
+        Self { text, starts: vec![0], expressions_reported, origins }
     }
 
     /// The place of a byte.
     pub(crate) fn at(&self, position: usize) -> At {
+        if let Some(index) = self.origins.partition_point(|(start, _)| *start <= position).checked_sub(1) {
+            return self.origins[index].1;
+        }
         let line = self.starts.partition_point(|start| *start <= position).max(1);
         let start = self.starts[line - 1];
         // A line of many columns is not counted again for each of its tags.

@@ -178,6 +178,8 @@ impl RobotRequest<'_> {
             allow_unphysical_inertia: self.options.allow_unphysical_inertia,
             snap_angles: self.options.snap_angles.filter(|x| can_snap(*x)),
             formats: self.options.formats,
+            arguments: self.options.arguments.clone(),
+            packages: self.options.packages.clone(),
         }
     }
 }
@@ -266,7 +268,9 @@ impl Editing<'_> {
 
     fn append(&mut self, other: &Appended, editor: &mut Editor<'_>, log: &mut Diagnostics) {
         // Its root moves with the link that carries it.
-        let options = Options { file: other.file.value.clone(), base: Base::Floating, ..self.request.reader_options() };
+        // Arguments are those of the robot.
+        let arguments = Default::default();
+        let options = Options { file: other.file.value.clone(), base: Base::Floating, arguments, ..self.request.reader_options() };
         let reading = match read_with(&self.request.options.included, &other.document, &options) {
             Ok(reading) => reading,
             Err(findings) => return log.take(findings),

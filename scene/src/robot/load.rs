@@ -1,13 +1,14 @@
 //! The loader: a scene and a robot with all files that they name. The macro, the build script, the
 //! command and tests share it.
 
+use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use articulated_core::description::Base;
 use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Span, Spanned};
 use articulated_core::suggest::nearest;
-use articulated_formats::{Disk, Formats, Included, Options, Sources, included};
+use articulated_formats::{Disk, Environment, Included, Options, Sources, included};
 
 use super::build::BuiltRobot;
 use super::options::{Appended, RobotOptions, RobotRequest};
@@ -63,7 +64,7 @@ pub struct Opened {
 /// All findings, if one of them is an error.
 pub fn open(path: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, Diagnostics> {
     let mut log = Diagnostics::new(&path.display().to_string());
-    let mut loader = Loader { bundled, ..Loader::default() };
+    let mut loader = Loader { sources: &Environment, bundled, ..Loader::default() };
     let scene = loader.scene(path, &Span::default(), &mut log);
     let opened = scene.and_then(|scene| loader.open(folder_of(path), scene, &mut log));
     opened.ok_or_else(|| log.result(()).err().unwrap_or_default())
@@ -76,7 +77,7 @@ pub fn open(path: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, Diagnostics>
 /// All findings, if one of them is an error.
 pub fn open_in(scene: Scene, folder: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, Diagnostics> {
     let mut log = Diagnostics::new(&scene.file);
-    let mut loader = Loader { bundled, ..Loader::default() };
+    let mut loader = Loader { sources: &Environment, bundled, ..Loader::default() };
     let opened = loader.open(folder, scene, &mut log);
     opened.ok_or_else(|| log.result(()).err().unwrap_or_default())
 }
@@ -116,9 +117,12 @@ impl Loader<'_> {
         }
     }
 
-    /// Reads the files that a robot's document includes; `name`: the document's.
-    pub fn include(&mut self, name: &str, document: &[u8], formats: Formats) {
-        let options = Options { file: name.to_owned(), formats, ..Options::default() };
+    /// Reads the files that a robot's document includes; `name`: the document's, `robot`: the
+    /// arguments and packages that it is read with later.
+    pub fn include(&mut self, name: &str, document: &[u8], robot: &RobotOptions) {
+        let RobotOptions { formats, arguments, packages, .. } = robot;
+        let (arguments, packages) = (arguments.clone(), packages.clone());
+        let options = Options { file: name.to_owned(), formats: *formats, arguments, packages, ..Options::default() };
         let found = included(self.sources, &self.root, document, &options);
         self.files.extend(found.files().map(|(path, _)| self.root.join(path)));
         self.included.extend(found);
@@ -136,7 +140,7 @@ impl Loader<'_> {
         let robot = self.robot(folder, &scene, log);
         let mut options = RobotOptions { base: robot.as_ref().map_or(Base::Fixed, |robot| robot.2), ..RobotOptions::default() };
         scene.fill_robot(&mut options);
-        let appended = self.append(folder, &mut options.append, log);
+        let appended = self.append(folder, &mut options, log);
         let (file, document, _) = robot.filter(|_| appended)?;
         options.included = self.included.clone();
         Some(Opened { scene, file, document, options, files: self.files.clone() })
@@ -150,7 +154,9 @@ impl Loader<'_> {
                 let name = seen_from(at, folder, name);
                 let document = self.read(&name, &Span { file: scene.file.clone(), at }, "urdf", log)?;
                 let name = name.display().to_string();
-                self.include(&name, &document, Formats::default());
+                let mut options = RobotOptions::default();
+                scene.fill_robot(&mut options);
+                self.include(&name, &document, &options);
                 Some((name, document, Base::Fixed))
             }
             Robot::Bundled(name) => match self.bundled.iter().find(|one| one.name == name) {
@@ -168,19 +174,23 @@ impl Loader<'_> {
     }
 
     /// Reads the robots to append; `folder`: the scene's. Whether all are there.
-    pub fn append(&mut self, folder: &Path, append: &mut [Appended], log: &mut Diagnostics) -> bool {
+    pub fn append(&mut self, folder: &Path, options: &mut RobotOptions, log: &mut Diagnostics) -> bool {
         let mut all = true;
-        for other in append {
+        let mut append = std::mem::take(&mut options.append);
+        // Arguments are those of the robot.
+        let own = RobotOptions { arguments: BTreeMap::new(), ..options.clone() };
+        for other in &mut append {
             let span = other.file.span.clone().unwrap_or_default();
             let name = seen_from(span.at, folder, &other.file);
             match self.read(&name, &span, "append.urdf", log) {
                 Some(document) => {
                     (other.document, other.file.value) = (document, name.display().to_string());
-                    self.include(&other.file.value, &other.document, Formats::default());
+                    self.include(&other.file.value, &other.document, &own);
                 }
                 None => all = false,
             }
         }
+        options.append = append;
         all
     }
 
@@ -267,6 +277,13 @@ impl Scene {
         options.lock = code.lock.into_iter().map(|lock| self.span((lock.joint, lock.at), lock.place)).collect();
         options.allow_unphysical_inertia = code.allow_unphysical_inertia.unwrap_or(options.allow_unphysical_inertia);
         options.snap_angles = code.snap_angles;
+        options.arguments.extend(code.args);
+        let folder = folder_of(Path::new(&self.file));
+        let packages = code.packages.into_iter().enumerate().map(|(i, (name, path))| {
+            let at = places.packages.get(i).copied().unwrap_or_default();
+            (name, seen_from(at, folder, &path))
+        });
+        options.packages.extend(packages);
     }
 
     /// A value with its place in the scene.
@@ -285,5 +302,55 @@ impl Scene {
     pub fn without_robot(&self, found: &str, expected: &str) -> Diagnostic {
         let key = if self.robot == Robot::Given { "" } else { "robot" };
         Diagnostic::error(&self.file, (self.code.places.robot, key), Code::UnknownName, found, expected)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{Error, Result};
+
+    use super::*;
+
+    struct Files(&'static [(&'static str, &'static str)]);
+
+    impl Sources for Files {
+        fn read(&self, path: &Path) -> Result<Vec<u8>> {
+            let found = self.0.iter().find(|(name, _)| Path::new(name) == path);
+            found.map(|(_, text)| text.as_bytes().to_vec()).ok_or_else(|| Error::from(ErrorKind::NotFound))
+        }
+    }
+
+    const FILES: Files = Files(&[
+        (
+            "here/scenes/arm.toml",
+            "file = \"../arm.xacro\"\nargs = { mass = 2, hand = true, side = \"left\" }\npackages = { parts = \"../parts\" }\n\
+             append = { file = \"../tool.xacro\", at = \"left\", prefix = \"t_\" }",
+        ),
+        (
+            "here/scenes/../arm.xacro",
+            "<robot name='arm'><xacro:arg name='mass' default='1'/><xacro:arg name='hand' default='false'/><xacro:arg name='side' default=''/>
+             <xacro:include filename='$(find parts)/part.xacro'/><xacro:if value='$(arg hand)'><xacro:part name='$(arg side)' mass='$(arg mass)'/></xacro:if></robot>",
+        ),
+        (
+            "here/parts/part.xacro",
+            "<robot><xacro:macro name='part' params='name mass'><link name='${name}'><inertial><mass value='${mass}'/>
+             <inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link></xacro:macro></robot>",
+        ),
+        ("here/scenes/../tool.xacro", "<robot name='tool'><xacro:arg name='size' default='big'/><link name='$(arg size)'/></robot>"),
+    ]);
+
+    #[test]
+    fn arguments_and_packages_of_a_scene_are_those_of_its_robot() {
+        let mut log = Diagnostics::new("");
+        let mut loader = Loader { sources: &FILES, root: "here".into(), ..Loader::default() };
+        let scene = loader.scene("scenes/arm.toml".as_ref(), &Span::default(), &mut log);
+        let opened = scene.and_then(|scene| loader.open("scenes".as_ref(), scene, &mut log));
+        let opened = opened.unwrap_or_else(|| panic!("{log}"));
+        let reading = opened.robot().read().unwrap_or_else(|found| panic!("{found}"));
+        let links: Vec<&str> = reading.description.links.iter().map(|link| link.name.as_str()).collect();
+        assert_eq!(links, ["left", "t_big"]);
+        assert_eq!(reading.description.links[0].inertial.map(|inertial| inertial.mass), Some(2.0));
+        assert!(reading.warnings.iter().all(|warning| warning.field != "args"), "{:?}", reading.warnings);
+        assert!(opened.files.contains(&"here/parts/part.xacro".into()), "{:?}", opened.files);
     }
 }

@@ -1,5 +1,8 @@
 //! What is requested of a robot before anything is computed.
 
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
 use articulated_core::description::{Base, Coupling, Origin, Payload, Shaft};
 use articulated_core::diagnostic::Spanned;
 use articulated_core::effect::Applied;
@@ -50,6 +53,10 @@ pub struct RobotOptions {
     pub formats: Formats,
     /// The files that the documents of the robot and of appended robots include.
     pub included: Included,
+    /// Values of arguments that the robot's document declares, by their names.
+    pub arguments: BTreeMap<String, String>,
+    /// Folders of packages that documents include files from, by their names.
+    pub packages: BTreeMap<String, PathBuf>,
 }
 
 /// Another robot, such as a gripper, to be fixed to a link. Its links and joints get a prefix
@@ -102,6 +109,8 @@ impl Default for RobotOptions {
             snap_angles: None,
             formats: Formats::default(),
             included: Included::default(),
+            arguments: BTreeMap::new(),
+            packages: BTreeMap::new(),
         }
     }
 }

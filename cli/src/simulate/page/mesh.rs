@@ -7,6 +7,8 @@ use std::rc::Rc;
 
 use articulated_core::diagnostic::{Code, Diagnostics, Place, Subject};
 use articulated_formats::{Disk, Sources};
+
+use crate::arguments::Package;
 use mesh_loader::Loader;
 
 use super::geometry::Geometry;
@@ -16,32 +18,6 @@ const MOST: usize = 20_000;
 const MOST_OF_ALL: usize = 120_000;
 /// A mesh of a larger robot still has this many.
 const LEAST: usize = 200;
-
-/// A package of files: its name, and its folder.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Package {
-    name: String,
-    folder: PathBuf,
-}
-
-impl Package {
-    /// `NAME=FOLDER`, or a folder, whose last component is the name.
-    pub(crate) fn parse(text: &str) -> Result<Self, String> {
-        let (name, folder) = match text.split_once('=') {
-            Some((name, folder)) => (name.to_owned(), PathBuf::from(folder)),
-            None => {
-                let folder = PathBuf::from(text);
-                let whole = folder.canonicalize().unwrap_or_else(|_| folder.clone());
-                (whole.file_name().unwrap_or_default().to_string_lossy().into_owned(), folder)
-            }
-        };
-        match (name.is_empty(), folder.is_dir()) {
-            (true, _) => Err(format!("found {text:?}, expected NAME=FOLDER, or a folder with a name")),
-            (_, false) => Err(format!("found no folder {:?}, expected NAME=FOLDER, or a folder", folder.display().to_string())),
-            _ => Ok(Self { name, folder }),
-        }
-    }
-}
 
 /// Finds and reads meshes; each is read once.
 pub(crate) struct Meshes<'a> {

@@ -21,7 +21,7 @@ use serde::Serialize;
 use super::recording::{EventRecord, Recording};
 use animation::Room;
 use figure::Figure;
-pub(crate) use mesh::{Meshes, Package};
+pub(crate) use mesh::Meshes;
 pub(crate) use track::placement;
 use track::{Track, base64};
 

@@ -26,6 +26,8 @@ pub struct Diagnostics {
     /// Content that is not used.
     pub unused: Vec<Unused>,
     file: String,
+    /// Files that the document includes, by their numbers in [`At::Included`].
+    included: Vec<String>,
     more_errors: usize,
     more_warnings: usize,
     more_unused: usize,
@@ -42,7 +44,40 @@ impl Diagnostics {
     /// None yet, of the same file.
     #[must_use]
     pub fn apart(&self) -> Self {
-        Self::new(&self.file)
+        Self { included: self.included.clone(), ..Self::new(&self.file) }
+    }
+
+    /// The number of a file that the document includes, for [`At::Included`]; `None` beyond 65 536
+    /// files.
+    pub fn include(&mut self, file: &str) -> Option<u16> {
+        let index = self.included.iter().position(|known| known == file).unwrap_or_else(|| {
+            self.included.push(file.to_string());
+            self.included.len() - 1
+        });
+        u16::try_from(index).ok()
+    }
+
+    /// The file of a place, and the place in it.
+    fn resolve(&self, at: At) -> (&str, At) {
+        match at {
+            At::Included { file, line, column } => {
+                (self.included.get(usize::from(file)).map_or(&self.file, |name| name), At::Text { line, column })
+            }
+            at => (&self.file, at),
+        }
+    }
+
+    /// An error at a place of the file, which is not reported.
+    pub fn finding<'a>(
+        &self,
+        place: impl Into<Place<'a>>,
+        code: Code,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> Diagnostic {
+        let place = place.into();
+        let (file, at) = self.resolve(place.at);
+        Diagnostic::error(file, Place { at, ..place }, code, found, expected)
     }
 
     /// The file that reports are about.
@@ -54,7 +89,7 @@ impl Diagnostics {
     /// Reports an error at a place of the file.
     pub fn error<'a>(&mut self, place: impl Into<Place<'a>>, code: Code, found: impl Into<String>, expected: impl Into<String>) {
         if self.errors.len() < MOST {
-            self.errors.push(Diagnostic::error(&self.file, place, code, found, expected));
+            self.errors.push(self.finding(place, code, found, expected));
         } else {
             self.more_errors += 1;
         }
@@ -63,7 +98,7 @@ impl Diagnostics {
     /// Reports a warning at a place of the file.
     pub fn warning<'a>(&mut self, place: impl Into<Place<'a>>, code: Code, found: impl Into<String>, expected: impl Into<String>) {
         if self.warnings.len() < MOST {
-            self.warnings.push(Diagnostic::error(&self.file, place, code, found, expected).into_warning());
+            self.warnings.push(self.finding(place, code, found, expected).into_warning());
         } else {
             self.more_warnings += 1;
         }
@@ -78,17 +113,18 @@ impl Diagnostics {
         names: impl IntoIterator<Item = &'n str>,
     ) {
         let nearest = self.suggester.nearest(name, names).map(str::to_string);
-        self.push(Diagnostic::error(&self.file, place, code, found, expected).meant(nearest));
+        self.push(self.finding(place, code, found, expected).meant(nearest));
     }
 
     /// Reports a number that was replaced, as requested.
     pub fn replaced<'a>(&mut self, place: impl Into<Place<'a>>, code: Code, found: f64, replaced_by: &str) {
-        let note = Diagnostic::error(&self.file, place, code, format!("{found}"), format!("{replaced_by}, which was used"));
+        let note = self.finding(place, code, format!("{found}"), format!("{replaced_by}, which was used"));
         self.notes.push(Diagnostic { severity: Severity::Note, ..note });
     }
 
-    /// Reports content that is not used.
+    /// Reports content that is not used; of an included file with the name of that file.
     pub fn unused_at(&mut self, at: At, subject: &Subject, tag: String, why: impl Into<String>) {
+        let tag = if let At::Included { .. } = at { format!("{tag} of {}", self.resolve(at).0) } else { tag };
         self.push_unused(Unused { line: at.line(), subject: subject.clone(), tag, why: why.into() });
     }
 

@@ -74,6 +74,16 @@ pub enum At {
         /// The column in characters, from 1; 0 for the whole line.
         column: u32,
     },
+    /// A place in a file that the document includes. A collector replaces it by the place in that
+    /// file, see [`Diagnostics::include`].
+    Included {
+        /// The number of the file in the collector.
+        file: u16,
+        /// The line, from 1.
+        line: u32,
+        /// The column in characters, from 1; 0 for the whole line.
+        column: u32,
+    },
     /// A word of a macro's invocation, by its number there.
     Word(u32),
 }
@@ -133,13 +143,16 @@ impl At {
     /// The line, if it is in a file.
     #[must_use]
     pub fn line(self) -> Option<u32> {
-        if let Self::Text { line, .. } = self { Some(line) } else { None }
+        if let Self::Text { line, .. } | Self::Included { line, .. } = self { Some(line) } else { None }
     }
 
     /// The column, if it is known.
     #[must_use]
     pub fn column(self) -> Option<u32> {
-        if let Self::Text { column: column @ 1.., .. } = self { Some(column) } else { None }
+        match self {
+            Self::Text { column: column @ 1.., .. } | Self::Included { column: column @ 1.., .. } => Some(column),
+            _ => None,
+        }
     }
 }
 

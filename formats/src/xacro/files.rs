@@ -1,0 +1,191 @@
+//! Names of files and packages.
+//!
+//! `$(find NAME)` stands for a mark and the name of the package, and not for a folder: the expanded
+//! document is the same wherever the package is. The mark becomes a folder where a file is opened,
+//! and `package://NAME` in the expanded document.
+
+use std::collections::BTreeMap;
+use std::path::{Component, Path, PathBuf};
+
+use crate::Input;
+
+/// Around the name of a package.
+const MARKS: [char; 2] = ['\u{f0000}', '\u{f0001}'];
+/// Before a folder, in the place of a package.
+const FOLDER: char = '=';
+
+/// Folders above the one that names start from, in which packages are looked for.
+const MOST_ABOVE: usize = 6;
+
+/// The packages that were found.
+#[derive(Default)]
+pub(super) struct Packages {
+    found: BTreeMap<String, Option<PathBuf>>,
+}
+
+/// The text of `$(find name)`.
+pub(super) fn package(name: &str) -> String {
+    format!("{}{name}{}", MARKS[0], MARKS[1])
+}
+
+/// The text of `$(dirname)`.
+pub(super) fn folder(path: &Path) -> String {
+    format!("{}{FOLDER}{}{}", MARKS[0], path.display(), MARKS[1])
+}
+
+/// A text of the expanded document, with names of packages in the place of marks.
+pub(super) fn written(text: &str) -> String {
+    if !text.contains(MARKS[0]) {
+        return text.to_owned();
+    }
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some((before, name, after)) = split(rest) {
+        match name.strip_prefix(FOLDER) {
+            Some(folder) => out.extend([before, folder]),
+            None => {
+                let before = before.strip_suffix("file://").unwrap_or(before);
+                out.extend([before, "package://", name]);
+            }
+        }
+        rest = after;
+    }
+    out.push_str(rest);
+    out.replace(MARKS, "")
+}
+
+/// A text up to the first mark, what the mark encloses, and the rest.
+fn split(text: &str) -> Option<(&str, &str, &str)> {
+    let (before, rest) = text.split_once(MARKS[0])?;
+    let (name, after) = rest.split_once(MARKS[1])?;
+    Some((before, name, after))
+}
+
+impl Packages {
+    /// The path of a file that a file in `beside` names; the package that is not found otherwise.
+    pub(super) fn path(&mut self, name: &str, beside: &Path, input: &Input<'_>) -> Result<PathBuf, String> {
+        let name = name.strip_prefix("file://").unwrap_or(name);
+        if let Some(("", inner, rest)) = split(name) {
+            let rest = rest.trim_start_matches('/');
+            return match inner.strip_prefix(FOLDER) {
+                Some(folder) => Ok(tidy(&Path::new(folder).join(rest))),
+                None => Ok(tidy(&self.folder(inner, beside, input).ok_or_else(|| inner.to_owned())?.join(rest))),
+            };
+        }
+        if let Some(rest) = name.strip_prefix("package://") {
+            let (package, rest) = rest.split_once('/').unwrap_or((rest, ""));
+            return Ok(tidy(&self.folder(package, beside, input).ok_or_else(|| package.to_owned())?.join(rest)));
+        }
+        Ok(tidy(&beside.join(name)))
+    }
+
+    /// The folder of a package: as requested, as the sources know it, or one around `beside` with
+    /// a `package.xml`.
+    pub(super) fn folder(&mut self, name: &str, beside: &Path, input: &Input<'_>) -> Option<PathBuf> {
+        if let Some(found) = self.found.get(name) {
+            return found.clone();
+        }
+        let folder =
+            input.options.packages.get(name).cloned().or_else(|| input.sources.package(name)).or_else(|| around(name, beside, input));
+        self.found.insert(name.to_owned(), folder.clone());
+        folder
+    }
+}
+
+/// The folder of a package that contains `beside` or is in a folder around it.
+fn around(name: &str, beside: &Path, input: &Input<'_>) -> Option<PathBuf> {
+    if name.is_empty() || name.contains(['/', '\\', '\0']) || name.starts_with('.') {
+        return None;
+    }
+    let above = (1..=MOST_ABOVE).filter(|_| beside.is_relative()).map(|count| PathBuf::from(vec![".."; count].join("/")));
+    for folder in beside.ancestors().map(Path::to_owned).chain(above) {
+        if let Ok(bytes) = input.sources.read(&folder.join("package.xml"))
+            && declares(&bytes, name)
+        {
+            return Some(folder);
+        }
+        let inner = folder.join(name);
+        if input.sources.read(&inner.join("package.xml")).is_ok() {
+            return Some(inner);
+        }
+    }
+    None
+}
+
+/// Whether a `package.xml` declares the package of this name.
+fn declares(bytes: &[u8], name: &str) -> bool {
+    let text = String::from_utf8_lossy(bytes);
+    let own = text.split_once("<name>").and_then(|(_, rest)| rest.split_once("</name>"));
+    own.is_some_and(|(own, _)| own.trim() == name)
+}
+
+/// A path without `.` and without `NAME/..`.
+fn tidy(path: &Path) -> PathBuf {
+    let mut out = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir if matches!(out.components().next_back(), Some(Component::Normal(_))) => {
+                out.pop();
+            }
+            part => out.push(part),
+        }
+    }
+    out
+}
+
+/// Whether a name of a file has wildcards.
+pub(super) fn is_pattern(name: &str) -> bool {
+    name.contains(['*', '?', '['])
+}
+
+/// Whether a name of a file is of a pattern with `*` and `?`.
+pub(super) fn fits(pattern: &str, name: &str) -> bool {
+    let (pattern, name): (Vec<char>, Vec<char>) = (pattern.chars().collect(), name.chars().collect());
+    // Where the last `*` stands, and what it was tried with.
+    let (mut p, mut n, mut star) = (0, 0, None);
+    while n < name.len() {
+        match pattern.get(p) {
+            Some('*') => {
+                star = Some((p, n));
+                p += 1;
+            }
+            Some(c) if *c == '?' || *c == name[n] => (p, n) = (p + 1, n + 1),
+            _ => match star {
+                Some((at, tried)) => {
+                    (p, n) = (at + 1, tried + 1);
+                    star = Some((at, tried + 1));
+                }
+                None => return false,
+            },
+        }
+    }
+    pattern[p..].iter().all(|c| *c == '*') && (name.first().is_none_or(|c| *c != '.') || pattern.first() == Some(&'.'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn packages_are_named_in_the_expanded_document() {
+        let find = package("ur");
+        assert_eq!(written(&format!("file://{find}/a.stl")), "package://ur/a.stl");
+        assert_eq!(written(&format!("{find}/a.stl {}/b", folder("x".as_ref()))), "package://ur/a.stl x/b");
+        assert_eq!(written("plain"), "plain");
+    }
+
+    #[test]
+    fn names_fit_patterns() {
+        for (pattern, name, is_so) in [
+            ("*.xacro", "a.xacro", true),
+            ("*.xacro", "a.urdf", false),
+            ("a?c*", "abc", true),
+            ("*a*b", "xaab", true),
+            ("*", ".a", false),
+            ("", "a", false),
+        ] {
+            assert_eq!(fits(pattern, name), is_so, "{pattern} {name}");
+        }
+    }
+}
