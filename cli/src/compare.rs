@@ -29,7 +29,8 @@ pub(crate) struct CompareArguments {
     /// Also compare batches of many states, with these number types: f64, f32
     #[arg(long, value_name = "TYPES", value_delimiter = ',', value_parser = real)]
     pub(crate) batch: Vec<Real>,
-    /// Also compare the same functions in this language, by each of its compilers that is installed: c
+    /// Also compare the same functions in this language, by each of its compilers that is
+    /// installed: c
     #[arg(long, value_enum, default_value = "rust")]
     pub(crate) language: Language,
     /// A peer library to time beside them; may be given several times. It is run: name only

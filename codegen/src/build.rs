@@ -247,8 +247,10 @@ impl Build {
     /// // build.rs, beside the crate `cc`
     /// use articulated_codegen::{Build, COptions, Target};
     ///
-    /// Build::new("robots/arm.urdf").functions(["inverse_dynamics"]).language(Target::C(COptions::default())).write("arm");
-    /// // cc::Build::new().file(format!("{}/arm.c", std::env::var("OUT_DIR").unwrap())).compile("arm");
+    /// let c = Target::C(COptions::default());
+    /// Build::new("robots/arm.urdf").functions(["inverse_dynamics"]).language(c).write("arm");
+    /// let source = format!("{}/arm.c", std::env::var("OUT_DIR").unwrap());
+    /// // cc::Build::new().file(source).compile("arm");
     /// ```
     #[must_use]
     pub fn language(mut self, target: Target) -> Self {

@@ -57,12 +57,15 @@ mod tree;
 ///         parameters = [payload(tool), inertia(fore), origin(wrist)], // default: none. Constants that become inputs
 ///         frames = [tool, "left foot"], // default: all. The links whose frames are computed
 ///         wrenches_in = body, // the reference of wrench arguments; or world, world_aligned
-///         coupling = { pitch = { joint = [m1, m2], coefficients = [0.5, -0.5], offset = 0.0 } }, // default: none. A joint that follows others
+///         // default: none. A joint that follows others
+///         coupling = { pitch = { joint = [m1, m2], coefficients = [0.5, -0.5], offset = 0.0 } },
 ///         lock = { elbow = 0.5, ball = [0.0, 0.0, 0.0, 1.0] }, // default: none. rad or m; a quaternion as x, y, z, w
 ///         payload = { link = tool, mass = 1.2, center_of_mass = [0.0, 0.0, 0.1] }, // default: none. One or a list; also `inertia` (six numbers), `name`
 ///         append = { urdf = "gripper.urdf", at = tool, prefix = "left_" }, // default: none. Another robot, or a list; also `xyz`, `rpy`
-///         args = { hand = true, prefix = "left_" }, // default: those of the file. Arguments of a xacro file
-///         packages = { parts = "../parts" }, // default: those around the file. Folders for `$(find parts)`
+///         // default: those of the file. Arguments of a xacro file
+///         args = { hand = true, prefix = "left_" },
+///         // default: those around the file. Folders for `$(find parts)`
+///         packages = { parts = "../parts" },
 ///         rename = { "a-b" = A_MINUS_B }, // default: none. Names in Rust for names of the URDF
 ///         allow_unphysical_inertia = false, // true: negative principal moments are a warning
 ///         snap_angles = 1e-9, // default: none. rad, above 0, at most 0.5: angles this near to a multiple of π/2 become that multiple

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use articulated::algorithm::{Function, Needs, functions};
 use articulated::description::{Description, Limit, Origin, Payload};
-use articulated::formats::{Disk, Included};
+use articulated::formats::{Environment, Included};
 use articulated::model::FLOATING_BASE;
 use articulated::spatial::Reference;
 use articulated::{Base, Model};
@@ -86,7 +86,7 @@ fn links(description: &Description, model: &Model<f64>) -> Vec<String> {
 /// The files that a document of a file includes; none, with which they are refused, of a text.
 fn included(file: &str, document: &[u8], is_file: bool) -> Included {
     let options = articulated::formats::Options { file: file.to_owned(), ..articulated::formats::Options::default() };
-    if is_file { articulated::formats::included(&Disk, Path::new(""), document, &options) } else { Included::default() }
+    if is_file { articulated::formats::included(&Environment, Path::new(""), document, &options) } else { Included::default() }
 }
 
 /// The model with these frames. Errors: those that it does not have.
@@ -294,8 +294,8 @@ impl Robot {
         Ok(Self::made(model, request, (about, built.reading.warnings, unused)))
     }
 
-    /// C99 of functions: its files, each with a name and a text. All names begin with `prefix`. `batch`:
-    /// functions of many states too.
+    /// C99 of functions: its files, each with a name and a text. All names begin with `prefix`.
+    /// `batch`: functions of many states too.
     fn _generate_c(&self, py: Python<'_>, functions: Vec<String>, prefix: String, batch: bool) -> PyResult<Vec<(String, String)>> {
         let mut request = self.request.clone();
         request.options.functions = functions.into_iter().map(Into::into).collect();

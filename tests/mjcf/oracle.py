@@ -48,7 +48,7 @@ LEFT_BY_MUJOCO = 1.5e-6
 def main():
     arguments = parse()
     python = environment()
-    if Path(sys.executable).resolve() != python.resolve() and "MJCF_ORACLE" not in os.environ:
+    if "MJCF_ORACLE" not in os.environ:
         build()
         words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in sys.argv]
         # MuJoCo writes a log into the folder that it runs in.

@@ -159,8 +159,8 @@ impl Recorded {
     }
 
     /// Writes a folder with all files, or a page alone where the path ends with `.html`.
-    /// `packages`: folders of ROS packages, `NAME=FOLDER` or `FOLDER`, for meshes. The paths or names
-    /// of what is written.
+    /// `packages`: folders of ROS packages, `NAME=FOLDER` or `FOLDER`, for meshes. The paths or
+    /// names of what is written.
     pub fn write<P: AsRef<OsStr>>(&self, path: &Path, packages: &[P]) -> WithWarnings<Vec<String>> {
         warned(|| {
             let package = |text: &P| Package::parse(&text.as_ref().to_string_lossy());

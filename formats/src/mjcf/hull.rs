@@ -115,8 +115,8 @@ fn assign(points: &[Vector], point: u32, faces: &mut [Face], from: usize, least:
 /// Edges around faces, and points that were outside of them.
 type Removed = (Vec<(u32, u32)>, Vec<u32>);
 
-/// Removes all faces that a point sees, from one of them on; also those in whose plane it is, so that
-/// no triangle without area is made at their edges.
+/// Removes all faces that a point sees, from one of them on; also those in whose plane it is, so
+/// that no triangle without area is made at their edges.
 fn remove_seen(
     (point, least): (Vector, f64),
     start: usize,

@@ -209,7 +209,8 @@ impl<'a> Graph<'a> {
         let new: Vec<_> = again.errors.into_iter().filter(|error| !is_reported(error)).collect();
         log.extend(new);
         let (Some(above), Some(attached)) = (complete(above), complete(attached)) else { return false };
-        // The world is in no other frame. A link, and a model without links, move with nothing else.
+        // The world is in no other frame. A link, and a model without links, move with nothing
+        // else.
         let moves_alone = |node: usize| node == WORLD || matches!(self.nodes[node].attached_to, To::Node(own) if own == node);
         let in_poses = self.report_rings("poses that are relative to each other", |node| (node != WORLD).then(|| above[node]), log);
         let in_frames =

@@ -417,7 +417,36 @@ fn plain(text: &str) -> Value {
         ".nan" | ".NaN" | ".NAN" => return Value::Float(f64::NAN),
         _ => {}
     }
-    integer(text).map(Value::Int).or_else(|| float(text).map(Value::Float)).unwrap_or_else(|| Value::text(text))
+    let number = integer(text).map(Value::Int).or_else(|| float(text).map(Value::Float)).or_else(|| sexagesimal(text));
+    number.unwrap_or_else(|| Value::text(text))
+}
+
+/// A number to base 60: 1:30 is 90, and 1:30.5 is 90.5.
+fn sexagesimal(text: &str) -> Option<Value> {
+    let (sign, digits) = match text.strip_prefix('-') {
+        Some(digits) => (-1, digits),
+        None => (1, text.strip_prefix('+').unwrap_or(text)),
+    };
+    let (whole, fraction) = digits.split_once('.').map_or((digits, None), |(whole, fraction)| (whole, Some(fraction)));
+    let (first, rest) = whole.split_once(':')?;
+    // Digits and `_` after a digit; without a fraction not after a zero.
+    let is_first = first.starts_with(|c: char| c.is_ascii_digit() && (c != '0' || fraction.is_some()));
+    let all_digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit() || b == b'_');
+    if !is_first || !all_digits(first) || !fraction.is_none_or(all_digits) {
+        return None;
+    }
+    let mut sum: i128 = first.replace('_', "").parse().ok()?;
+    for part in rest.split(':') {
+        let digit: i128 = Some(part).filter(|p| matches!(p.len(), 1..=2) && p.bytes().all(|b| b.is_ascii_digit()))?.parse().ok()?;
+        sum = sum.checked_mul(60)?.checked_add(Some(digit).filter(|d| *d < 60)?)?;
+    }
+    Some(match fraction {
+        None => Value::Int(sign * sum),
+        Some(fraction) => {
+            let rest: f64 = format!("0.{}", fraction.replace('_', "")).parse().ok()?;
+            Value::Float(sign as f64 * (sum as f64 + rest))
+        }
+    })
 }
 
 fn integer(text: &str) -> Option<i128> {
@@ -479,7 +508,9 @@ mod tests {
         assert_eq!(value(""), "None");
         assert_eq!(value("a: 1\nb: 2\na: 3"), "{'a': 3, 'b': 2} 3 'a'");
         assert_eq!(value("[1, [2,\n 3]]"), "[1, [2, 3]]");
-        assert_eq!(value("a: 012\nb: 1_000\nc: off\nd: .inf\ne: 1:30"), "{'a': 10, 'b': 1000, 'c': False, 'd': inf, 'e': '1:30'}");
+        assert_eq!(value("a: 012\nb: 1_000\nc: off\nd: .inf\ne: 1:30"), "{'a': 10, 'b': 1000, 'c': False, 'd': inf, 'e': 90}");
+        // As PyYAML reads them.
+        assert_eq!(value("[1:30.5, -2:00:01, 1:60, 0:30, a:30]"), "[90.5, -7201, '1:60', '0:30', 'a:30']");
     }
 
     #[test]

@@ -95,7 +95,8 @@ impl Session {
     }
 
     /// Runs the motion, by generated code or by the generic library; `look` sees the time and the
-    /// counts after each step, and returns false to stop the run. The outcome, and what the scene looks for and the code has not.
+    /// counts after each step, and returns false to stop the run. The outcome, and what the scene
+    /// looks for and the code has not.
     pub fn run(
         &self,
         initial: &InitialState,

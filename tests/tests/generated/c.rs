@@ -110,8 +110,8 @@ static WAYS: LazyLock<Vec<(Vectors, Program)>> = LazyLock::new(|| {
 /// States one after the other, and in blocks of which the last is not full.
 #[test]
 fn c_of_many_states_gives_what_the_generic_library_gives() {
-    // In units of roundoff of the type: 3.6 were seen in f64, and 17 in f32, of a Coriolis matrix without fused
-    // multiply-adds.
+    // In units of roundoff of the type: 3.6 were seen in f64, and 17 in f32, of a Coriolis matrix
+    // without fused multiply-adds.
     const ALLOWED: [f64; 2] = [8.0, 32.0];
     for (vectors, program) in WAYS.iter() {
         for (robot, real) in MANY.iter().flat_map(|r| [(r, Real::F64), (r, Real::F32)]) {

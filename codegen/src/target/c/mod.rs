@@ -38,7 +38,8 @@ pub struct COptions {
     pub no_libm: bool,
 }
 
-/// Numbers, and vectors where compilers have them; in pieces where a function is long. The compiler decides what waits in memory.
+/// Numbers, and vectors where compilers have them; in pieces where a function is long. The compiler
+/// decides what waits in memory.
 pub(super) fn capabilities(options: &Options, c: &COptions) -> Capabilities {
     let (vectors, states) = (options.level.has_lanes(), !options.batch.is_empty());
     // CasADi needs to know which numbers are zero, which loops hide.

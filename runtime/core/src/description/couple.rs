@@ -15,8 +15,8 @@ use super::{Description, EditError, Editor, Joint, Link, Mimic, Origin};
 pub struct Coupling {
     /// The joint that follows: revolute, continuous, prismatic or helical.
     pub joint: String,
-    /// The joints that it follows, each of one coordinate, with d(own)/d(leader's): dimensionless, m/rad, or
-    /// rad/m.
+    /// The joints that it follows, each of one coordinate, with d(own)/d(leader's): dimensionless,
+    /// m/rad, or rad/m.
     pub leaders: Vec<(String, f64)>,
     /// Own coordinate where all leaders' are zero, rad or m.
     pub offset: f64,
@@ -61,9 +61,9 @@ impl Editor<'_> {
     /// Lets a joint follow others. It has no coordinate any more.
     ///
     /// # Errors
-    /// A joint that does not exist; one without exactly one coordinate; a follower that is locked, follows others
-    /// already or is followed; a leader that follows several joints, or the follower itself; no leader; numbers
-    /// that are not finite.
+    /// A joint that does not exist; one without exactly one coordinate; a follower that is locked,
+    /// follows others already or is followed; a leader that follows several joints, or the follower
+    /// itself; no leader; numbers that are not finite.
     pub fn couple(&mut self, coupling: &Coupling) -> Result<(), EditError> {
         let Coupling { joint, leaders, offset } = coupling;
         let refuse = |what: String| Err(EditError::Coupling { joint: joint.clone(), what });

@@ -47,7 +47,8 @@ impl Cc {
     pub fn flags(&self) -> Vec<&'static str> {
         let mut flags = vec!["-std=gnu99", "-O2", "-ffp-contract=fast", "-fno-math-errno"];
         if self.program == "gcc" {
-            // GCC 12 puts numbers of a result together in vectors at a loss: a mass matrix takes half as long again.
+            // GCC 12 puts numbers of a result together in vectors at a loss: a mass matrix takes
+            // half as long again.
             flags.push("-fno-tree-slp-vectorize");
         }
         if Processors::differ() {
