@@ -21,8 +21,8 @@ pub(crate) struct Edits {
     /// be given several times
     #[arg(long, value_name = "LINK=MASS[@X,Y,Z[:XX,XY,XZ,YY,YZ,ZZ]]", value_parser = payload)]
     pub(crate) payload: Vec<Payload>,
-    /// Let a joint follow others: its coordinate is the sum of coefficient times coordinate of each,
-    /// and the offset; may be given several times
+    /// Let a joint follow others: its coordinate is the sum of coefficient times coordinate of
+    /// each, and the offset; may be given several times
     #[arg(long, value_name = "JOINT=LEADER:COEFFICIENT[,…][,OFFSET]", value_parser = coupling)]
     pub(crate) coupling: Vec<Coupling>,
     /// Lock a joint at its coordinates (rad or m; a quaternion as x,y,z,w); may be given several
