@@ -316,7 +316,7 @@ fn documents_that_are_no_robots_are_refused() {
         (b"robot", Code::Xml),
         (b"<robot name='r'/>", Code::NoLinks),
         (b"<robot name='r'></robot>", Code::NoLinks),
-        (b"<sdf><link name='l'/></sdf>", Code::NotARobot),
+        (b"<crane><link name='l'/></crane>", Code::NotARobot),
         (b"<Robot name='r'><link name='l'/></Robot>", Code::NotARobot),
         (b"<robot name='r'><link name='\xe9'/></robot>", Code::NotUtf8),
         (b"\xff\xfe<\0r\0/\0>\0", Code::NotUtf8),
