@@ -231,7 +231,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         name: "robot",
         required: false,
         value: "text",
-        default: "given by who uses the scene",
+        default: "given by the user of the scene",
         what: "a bundled robot",
         read: |s, spot, log| {
             s.robot = edits::name(spot, log, "the name of a bundled robot").map_or(Robot::Given, Robot::Bundled);
@@ -242,7 +242,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         name: "urdf",
         required: false,
         value: "text",
-        default: "given by who uses the scene",
+        default: "given by the user of the scene",
         what: "a URDF, seen from the scene's folder; instead of `robot`",
         read: |s, spot, log| {
             s.robot = edits::name(spot, log, "the path of a URDF").map_or(Robot::Given, Robot::File);
@@ -253,7 +253,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         name: "file",
         required: false,
         value: "text",
-        default: "given by who uses the scene",
+        default: "given by the user of the scene",
         what: "a file of a robot in any format, as `urdf`: both keys are one",
         read: |s, spot, log| {
             s.robot = edits::name(spot, log, "the path of a robot's file").map_or(Robot::Given, Robot::File);

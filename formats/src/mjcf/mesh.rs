@@ -75,7 +75,7 @@ impl Body {
     }
 }
 
-/// All meshes that were asked for.
+/// All meshes that geoms refer to.
 pub(crate) struct Meshes<'a> {
     sources: &'a dyn Sources,
     /// By the place of the tag in memory.
