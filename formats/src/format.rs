@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use articulated_core::description::Description;
 use articulated_core::diagnostic::Diagnostics;
 
+use crate::world::Document;
 use crate::{Options, Sources, mjcf, sdf, urdf};
 
 /// A format of robot files. Each has one row in [`FORMATS`].
@@ -23,8 +23,8 @@ pub trait Format: Sync + std::panic::RefUnwindSafe {
         false
     }
 
-    /// The robot of a document. Reports all findings; `None` if there is an error, or no robot.
-    fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Description>;
+    /// The robot of a document, and its world. Reports all findings; `None` if there is an error, or no robot.
+    fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Document>;
 }
 
 /// A document to read.

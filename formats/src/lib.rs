@@ -50,6 +50,7 @@ mod reading;
 pub mod sdf;
 mod snap;
 pub mod urdf;
+pub mod world;
 mod xacro;
 mod xml;
 

@@ -9,6 +9,7 @@ use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Sub
 use articulated_core::suggest::nearest;
 
 use crate::files::Recorder;
+use crate::world::{Document, World};
 use crate::{Format, Formats, Included, Input, NoFiles, Sources, snap};
 
 /// How to read.
@@ -67,6 +68,8 @@ pub struct Reading {
     /// continuous joint, `effort` and `velocity` that are not given. `axis` is (1, 0, 0) and
     /// `limit` and `dynamics` are `None` for joints that have no use for them.
     pub description: Description,
+    /// What the file says beside it.
+    pub world: World,
     /// What looks wrong; the values were used as written.
     pub warnings: Vec<Diagnostic>,
     /// What the file says and the description leaves out, or what only some scenes use.
@@ -118,9 +121,9 @@ pub fn read_with(sources: &dyn Sources, bytes: &[u8], options: &Options) -> Resu
         return Err(log);
     };
     match format.read(&Input { bytes, options, sources }, &mut log) {
-        Some(description) if log.is_ok() => {
+        Some(Document { description, world }) if log.is_ok() => {
             let Diagnostics { warnings, notes, unused, .. } = log.finished();
-            Ok(Reading { description, warnings, unused, snapped: notes })
+            Ok(Reading { description, world, warnings, unused, snapped: notes })
         }
         _ => Err(log.finished()),
     }

@@ -33,9 +33,11 @@ mod values;
 
 use std::collections::BTreeSet;
 
+#[cfg(doc)]
 use articulated_core::description::Description;
 use articulated_core::diagnostic::Diagnostics;
 
+use crate::world::Document;
 use crate::xml::markup;
 use crate::{Format, Input};
 
@@ -60,12 +62,12 @@ impl Format for Mjcf {
         true
     }
 
-    fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Description> {
+    fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Document> {
         input.options.warn_of_arguments(&BTreeSet::new(), diagnostics);
         let documents = documents::Documents::read(input, diagnostics)?;
         let name = documents.root(0).text("model").filter(|name| !name.trim().is_empty()).unwrap_or("robot");
         let bodies = bodies::bodies(&documents, diagnostics);
         let mut meshes = mesh::Meshes::new(input.sources);
-        lower::lower(name, &bodies, &mut meshes, input.options, diagnostics)
+        lower::lower(name, &bodies, &mut meshes, input.options, diagnostics).map(Document::from)
     }
 }

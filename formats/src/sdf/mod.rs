@@ -30,11 +30,12 @@ mod names;
 mod shapes;
 mod values;
 
+#[cfg(doc)]
 use articulated_core::description::Description;
 use articulated_core::diagnostic::Diagnostics;
 
 use crate::xml::markup;
-use crate::{Format, Input};
+use crate::{Format, Input, world};
 
 /// The format of SDF files.
 #[derive(Clone, Copy, Debug)]
@@ -57,10 +58,10 @@ impl Format for Sdf {
         true
     }
 
-    fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Description> {
+    fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<world::Document> {
         let root = load::Loader::new(input.sources).root(input.bytes, &input.options.file, diagnostics)?;
         grammar::check(&root, diagnostics);
         let graph = graph::Graph::of(&root, input.options, diagnostics)?;
-        lower::lower(&graph, input.options, diagnostics)
+        lower::lower(&graph, input.options, diagnostics).map(Into::into)
     }
 }

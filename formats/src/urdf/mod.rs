@@ -66,7 +66,9 @@ mod write;
 
 use std::collections::BTreeSet;
 
-use articulated_core::description::{Base, Description};
+use articulated_core::description::Base;
+#[cfg(doc)]
+use articulated_core::description::Description;
 use articulated_core::diagnostic::Code;
 use articulated_core::diagnostic::{Diagnostics, Subject, quote};
 use roxmltree::Document;
@@ -81,7 +83,7 @@ use crate::xml::document;
 use crate::xml::element::Tag;
 use crate::xml::lines::Lines;
 use crate::xml::markup;
-use crate::{Format, Input, xacro};
+use crate::{Format, Input, world, xacro};
 
 /// The format of URDF files.
 #[derive(Clone, Copy, Debug)]
@@ -104,7 +106,7 @@ impl Format for Urdf {
         true
     }
 
-    fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Description> {
+    fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<world::Document> {
         let draft = draft(input, diagnostics)?;
         let tree = tree::connect(&draft, diagnostics);
         let leaders = mimic::leaders(&draft.joints, diagnostics);
@@ -115,7 +117,7 @@ impl Format for Urdf {
         let description = lower::lower(&draft, &tree, &leaders)?;
         #[cfg(feature = "second-reader")]
         bridge::compare(&description, &draft, &tree, &leaders.first, diagnostics);
-        Some(description)
+        Some(description.into())
     }
 }
 

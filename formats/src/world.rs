@@ -1,0 +1,114 @@
+//! What a file says beside its robot: gravity, settings of a simulation, states, actuators.
+//!
+//! Nothing of it changes the description. A scene uses the parts that it asks for. Numbers are in
+//! SI units and in the conventions of the library: quaternions (x, y, z, w), rates of a floating
+//! joint as the twist [ω; v] in axes of its link.
+
+use articulated_core::description::{Coupling, Description};
+use articulated_core::diagnostic::At;
+
+/// A robot and its world, as a format reads them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Document {
+    /// The robot.
+    pub description: Description,
+    /// The rest.
+    pub world: World,
+}
+
+impl From<Description> for Document {
+    fn from(description: Description) -> Self {
+        Self { description, world: World::default() }
+    }
+}
+
+/// What a file says beside its robot. `None`, or an empty list: the file does not say.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct World {
+    /// Gravity in the world frame, m/s².
+    pub gravity: Option<[f64; 3]>,
+    /// Time step of a simulation, s.
+    pub step: Option<f64>,
+    /// Integrator of a simulation, as the file calls it.
+    pub integrator: Option<String>,
+    /// States, in the order of the file.
+    pub keyframes: Vec<Keyframe>,
+    /// Actuators, in the order of the file.
+    pub actuators: Vec<Actuator>,
+    /// Springs and dampers across several joints, such as those of tendons: actuators without gain.
+    pub passive: Vec<Actuator>,
+    /// Bounds of the sum of all actuators on a joint of one degree of freedom, N·m or N.
+    pub joint_forces: Vec<(String, [f64; 2])>,
+    /// Joints that follow others, by linear equations of the file.
+    pub couplings: Vec<(Coupling, At)>,
+    /// Planes that do not move, against which links collide.
+    pub planes: Vec<Plane>,
+    /// Equations of the file that close loops, or are not linear: nothing applies them.
+    pub loops: Vec<Loop>,
+}
+
+/// A state of the file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Keyframe {
+    /// Its name, or `key_N` by its number from 0.
+    pub name: String,
+    /// Coordinates by joint, as many as the joint has. Empty: those of the joints at rest.
+    pub q: Vec<(String, Vec<f64>)>,
+    /// Rates by joint, as many as the joint has. Empty: all 0.
+    pub v: Vec<(String, Vec<f64>)>,
+    /// Controls, one for each of [`World::actuators`]. Empty: all 0.
+    pub control: Vec<f64>,
+    /// Where the file says so.
+    pub place: At,
+}
+
+/// A force with an affine law on a sum of coordinates:
+///
+/// ```text
+/// length l = Σ gear · q        (of a ball joint: gear · log q, the rotation vector)
+/// force  f = clamp(gain(l, l̇) · clamp(u) + bias(l, l̇)),   gain(l, l̇) = g₀ + g₁ l + g₂ l̇
+/// τ += gear · f
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Actuator {
+    /// Its name, or `actuator_N` by its number from 0.
+    pub name: String,
+    /// The joints that it drives: the name, and a number for each degree of freedom.
+    pub drives: Vec<(String, Vec<f64>)>,
+    /// g₀, g₁, g₂: force for each unit of control, of length, and of rate of length.
+    pub gain: [f64; 3],
+    /// b₀, b₁, b₂: force without control.
+    pub bias: [f64; 3],
+    /// Bounds of the control u.
+    pub control_range: Option<[f64; 2]>,
+    /// Bounds of the force f.
+    pub force_range: Option<[f64; 2]>,
+    /// Where the file says so.
+    pub place: At,
+}
+
+/// A plane that does not move.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Plane {
+    /// Its name; may be empty.
+    pub name: String,
+    /// A point of it in the world frame, m.
+    pub point: [f64; 3],
+    /// Its normal in the world frame, of norm one: the side on which links are.
+    pub normal: [f64; 3],
+    /// Where the file says so.
+    pub place: At,
+}
+
+/// An equation of the file that is not part of the tree.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Loop {
+    /// Its name; may be empty.
+    pub name: String,
+    /// Its kind, as the file calls it: `connect`, `weld`, `joint`, `tendon`.
+    pub kind: String,
+    /// The links or joints that it is about.
+    pub between: Vec<String>,
+    /// Where the file says so.
+    pub place: At,
+}
