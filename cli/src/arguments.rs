@@ -34,7 +34,7 @@ pub(crate) struct RobotArguments {
     /// The root link is fixed
     #[arg(long)]
     pub(crate) fixed: bool,
-    /// Gravity in the world frame, m/s² [default: 0,0,-9.81]
+    /// Gravity in the world frame, m/s² [default: that of the file, or else 0,0,-9.81]
     #[arg(long, value_name = "X,Y,Z", value_parser = gravity, allow_hyphen_values = true)]
     pub(crate) gravity: Option<Gravity>,
     /// Accept negative principal moments, with a warning (moments that break the triangle

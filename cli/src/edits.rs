@@ -22,9 +22,10 @@ pub(crate) struct Edits {
     #[arg(long, value_name = "LINK=MASS[@X,Y,Z[:XX,XY,XZ,YY,YZ,ZZ]]", value_parser = payload)]
     pub(crate) payload: Vec<Payload>,
     /// Let a joint follow others: its coordinate is the sum of coefficient times coordinate of
-    /// each, and the offset; may be given several times
-    #[arg(long, value_name = "JOINT=LEADER:COEFFICIENT[,…][,OFFSET]", value_parser = coupling)]
-    pub(crate) coupling: Vec<Coupling>,
+    /// each, and the offset; may be given several times. The word `file`: joints follow as linear
+    /// equations of the robot's file say (MJCF)
+    #[arg(long, value_name = "JOINT=LEADER:COEFFICIENT[,…][,OFFSET]|file", value_parser = coupling)]
+    pub(crate) coupling: Vec<CouplingArgument>,
     /// Lock a joint at its coordinates (rad or m; a quaternion as x,y,z,w); may be given several
     /// times. Links that nothing moves any more count as the base's: energy and centre of mass are
     /// of the links that move
@@ -71,7 +72,19 @@ fn lock(text: &str) -> Result<Lock, String> {
     Ok(Lock { joint: joint.to_owned(), at: numbers(at)? })
 }
 
-fn coupling(text: &str) -> Result<Coupling, String> {
+/// How joints follow others.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum CouplingArgument {
+    /// As the robot's file says.
+    File,
+    /// One joint.
+    Joint(Coupling),
+}
+
+fn coupling(text: &str) -> Result<CouplingArgument, String> {
+    if text == "file" {
+        return Ok(CouplingArgument::File);
+    }
     const EXPECTED: &str =
         "expected JOINT=LEADER:COEFFICIENT,LEADER:COEFFICIENT, as pitch=m1:0.5,m2:-0.5, with an offset at the end if there is one";
     let (joint, rest) = text.split_once('=').ok_or(EXPECTED)?;
@@ -86,7 +99,7 @@ fn coupling(text: &str) -> Result<Coupling, String> {
         let [coefficient] = exactly(coefficient, "one number for the coefficient")?;
         coupling.leaders.push((leader.to_owned(), coefficient));
     }
-    if coupling.leaders.is_empty() { Err(EXPECTED.to_owned()) } else { Ok(coupling) }
+    if coupling.leaders.is_empty() { Err(EXPECTED.to_owned()) } else { Ok(CouplingArgument::Joint(coupling)) }
 }
 
 fn payload(text: &str) -> Result<Payload, String> {
@@ -153,8 +166,9 @@ mod tests {
     fn a_coupling_is_a_name_and_leaders_with_coefficients() {
         let leaders = vec![("m1".to_owned(), 0.5), ("m:2".to_owned(), -0.5)];
         let expected = Coupling { joint: "pitch".into(), leaders, offset: 0.1 };
-        assert_eq!(coupling("pitch=m1:0.5,m:2:-0.5,0.1"), Ok(expected.clone()));
-        assert_eq!(coupling("pitch=m1:0.5,m:2:-0.5"), Ok(Coupling { offset: 0.0, ..expected }));
+        assert_eq!(coupling("pitch=m1:0.5,m:2:-0.5,0.1"), Ok(CouplingArgument::Joint(expected.clone())));
+        assert_eq!(coupling("pitch=m1:0.5,m:2:-0.5"), Ok(CouplingArgument::Joint(Coupling { offset: 0.0, ..expected })));
+        assert_eq!(coupling("file"), Ok(CouplingArgument::File));
         assert!(["pitch", "pitch=", "pitch=0.1", "pitch=m1:x", "pitch=m1,m2:1"].into_iter().all(|text| coupling(text).is_err()));
     }
 

@@ -15,7 +15,7 @@ use articulated_scene::{BuiltRobot, RobotOptions};
 
 use crate::arguments::{RobotArguments, names_in_rust};
 use crate::console;
-use crate::edits::{Edits, FrameArguments};
+use crate::edits::{CouplingArgument, Edits, FrameArguments};
 use crate::failure::Failure;
 use crate::{named_scene, output};
 pub(crate) use articulated_lab::robot::{named, note_of_parameters};
@@ -58,7 +58,7 @@ impl Robot {
         };
         let mut options = Options::default();
         options.robot.base = base;
-        options.robot.gravity = arguments.gravity.map_or(options.robot.gravity, |g| g.0);
+        options.robot.gravity = arguments.gravity.map(|g| g.0).or(options.robot.gravity);
         options.robot.allow_unphysical_inertia = arguments.allow_unphysical_inertia;
         options.robot.snap_angles = arguments.snap_angles;
         options.rename = arguments.rename.iter().cloned().map(Into::into).collect();
@@ -82,7 +82,7 @@ impl Robot {
             (_, true) => Base::Fixed,
             _ => options.robot.base,
         };
-        options.robot.gravity = arguments.gravity.map_or(options.robot.gravity, |g| g.0);
+        options.robot.gravity = arguments.gravity.map(|g| g.0).or(options.robot.gravity);
         options.robot.allow_unphysical_inertia |= arguments.allow_unphysical_inertia;
         options.robot.snap_angles = arguments.snap_angles.or(options.robot.snap_angles);
         arguments.rename.iter().for_each(|(from, to)| options.set_name(from, to));
@@ -218,7 +218,12 @@ fn edit(options: &mut Options, edits: &Edits) -> Result<(), Failure> {
         options.robot.append.push(Appended { document, file, at, prefix: other.prefix.clone(), origin: other.origin });
     }
     options.robot.payloads.extend(edits.payload.iter().cloned().map(Into::into));
-    options.robot.coupling.extend(edits.coupling.iter().cloned().map(Into::into));
+    for coupling in &edits.coupling {
+        match coupling {
+            CouplingArgument::File => options.robot.file_coupling = true,
+            CouplingArgument::Joint(one) => options.robot.coupling.push(one.clone().into()),
+        }
+    }
     options.robot.lock.extend(edits.lock.iter().map(|lock| (lock.joint.clone(), lock.at.clone()).into()));
     Ok(())
 }

@@ -172,7 +172,7 @@ impl Build {
     /// Gravity in the world frame, m/s².
     #[must_use]
     pub fn gravity(mut self, gravity: [f64; 3]) -> Self {
-        self.request.options.robot.gravity = gravity;
+        self.request.options.robot.gravity = Some(gravity);
         self
     }
 
@@ -210,6 +210,13 @@ impl Build {
     #[must_use]
     pub fn coupling(mut self, coupling: Coupling) -> Self {
         self.request.options.robot.coupling.push(coupling.into());
+        self
+    }
+
+    /// Lets joints follow others as linear equations of the robot's file say (MJCF).
+    #[must_use]
+    pub fn file_coupling(mut self) -> Self {
+        self.request.options.robot.file_coupling = true;
         self
     }
 

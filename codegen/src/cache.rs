@@ -127,7 +127,7 @@ mod tests {
             |r| r.document.push(b' '),
             |r| r.file.push('2'),
             |r| r.options.robot.base = Base::Floating,
-            |r| r.options.robot.gravity[0] = -0.0,
+            |r| r.options.robot.gravity = Some([-0.0, 0.0, 0.0]),
             |r| r.options.functions.push("mass_matrix".into()),
             |r| r.options.robot.payloads.push(Payload { link: "tool".into(), mass: 1.0, ..Payload::default() }.into()),
             |r| r.options.robot.coupling.push(crate::Coupling { joint: "elbow".into(), ..crate::Coupling::default() }.into()),

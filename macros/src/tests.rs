@@ -27,7 +27,7 @@ fn macro_build_script_and_library_give_the_same_tokens() {
 
     let mut request = Request::new(URDF, std::fs::read(URDF).unwrap());
     request.options.robot.base = Base::Floating;
-    request.options.robot.gravity = [0.0, 1.5, -9.0];
+    request.options.robot.gravity = Some([0.0, 1.5, -9.0]);
     request.options.functions = vec!["gravity_torque".into(), "placements".into()];
     request.options.rename = rename.iter().cloned().map(Into::into).collect();
     request.options.robot.snap_angles = Some(1e-9);

@@ -5,7 +5,7 @@ use std::fmt;
 use articulated::Dynamics;
 use articulated_core::Plain;
 use articulated_core::effect::{Applied, EffectId, unit};
-use articulated_scene::Controller;
+use articulated_scene::{Controller, RobotInWorld};
 
 use crate::error::MotionErrors;
 use crate::freedom::Freedom;
@@ -41,8 +41,9 @@ impl Session {
     /// Initial state and control of the scene. Errors: entries that do not fit the robot, and
     /// unreadable tables.
     pub fn initial_state(&self) -> Result<InitialState, MotionErrors> {
-        let start = self.scene.start(&self.model).map_err(MotionErrors::from);
-        let controller = self.scene.controller(&self.model, &mut |file| self.file(file)).map_err(MotionErrors::from);
+        let robot = RobotInWorld { model: &self.model, world: &self.world };
+        let start = self.scene.start(robot).map_err(MotionErrors::from);
+        let controller = self.scene.controller(robot, &mut |file| self.file(file)).map_err(MotionErrors::from);
         let ((q, v), controller) = MotionErrors::both(start, controller)?;
         Ok(InitialState { q, v, controller })
     }

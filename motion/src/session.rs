@@ -7,6 +7,7 @@ use articulated_core::description::Description;
 use articulated_core::diagnostic::{Diagnostic, Diagnostics};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
+use articulated_formats::world::World;
 use articulated_formats::{Reading, open_file};
 use articulated_scene::{BuiltRobot, Opened, Report, Scene};
 
@@ -28,6 +29,8 @@ pub struct Session {
     pub report: Report,
     /// Warnings about the robot.
     pub warnings: Vec<Diagnostic>,
+    /// What the robot's file says beside the robot: actuators, keyframes.
+    pub world: World,
     folder: PathBuf,
 }
 
@@ -45,17 +48,26 @@ impl Session {
     /// Errors: as [`Session::open`].
     pub fn of(opened: Opened) -> Result<Self, Diagnostics> {
         let BuiltRobot { reading, model, resolved, .. } = opened.build()?;
-        let Reading { description, mut warnings, snapped, .. } = reading;
+        let Reading { description, mut warnings, snapped, world, .. } = reading;
         warnings.extend(snapped);
         let session = Self::new(opened.scene, description, model, resolved.effects);
-        Ok(Self { warnings, report: resolved.report, ..session })
+        Ok(Self { warnings, report: resolved.report, world, ..session })
     }
 
     /// From matching parts: `model` is that of `description` and has `effects`, as
     /// [`Scene::resolve`] returns them; the report is empty. Paths in the scene are relative to the
     /// working directory, see [`Session::in_folder`].
     pub fn new(scene: Scene, description: Description, model: Model<f64>, effects: Vec<Applied>) -> Self {
-        Self { scene, description, model, effects, report: Report::default(), warnings: Vec::new(), folder: PathBuf::new() }
+        Self {
+            scene,
+            description,
+            model,
+            effects,
+            report: Report::default(),
+            warnings: Vec::new(),
+            world: World::default(),
+            folder: PathBuf::new(),
+        }
     }
 
     /// Resolves paths in the scene relative to this folder, that of the scene's file.

@@ -79,7 +79,7 @@ def bundled_names() -> dict[str, str]: ...
 def load(
     path: Union[str, bytes, PathLike[str], PathLike[bytes]],
     base: str = "fixed",
-    gravity: ArrayLike = ...,
+    gravity: Optional[ArrayLike] = ...,
     frames: Optional[Iterable[str]] = None,
     wrenches_in: str = "body",
 ) -> Robot: ...
@@ -87,14 +87,14 @@ def loads(
     text: Union[str, bytes, bytearray, memoryview],
     name: str = "robot.urdf",
     base: str = "fixed",
-    gravity: ArrayLike = ...,
+    gravity: Optional[ArrayLike] = ...,
     frames: Optional[Iterable[str]] = None,
     wrenches_in: str = "body",
 ) -> Robot: ...
 def bundled(
     name: str,
     base: Optional[str] = None,
-    gravity: ArrayLike = ...,
+    gravity: Optional[ArrayLike] = ...,
     frames: Optional[Iterable[str]] = None,
     wrenches_in: str = "body",
 ) -> Robot: ...

@@ -34,7 +34,7 @@ def wheel(words):
     options.add_argument("-o", "--output", metavar="FOLDER", default="dist", help="where the wheel goes [default: dist]")
     options.add_argument("--functions", type=_list, default=list(_wheel.FUNCTIONS), help=f"names [default: {','.join(_wheel.FUNCTIONS)}]")
     options.add_argument("--floating", action="store_true", help="the root link has six degrees of freedom")
-    options.add_argument("--gravity", type=_numbers, default=(0.0, 0.0, -9.81), metavar="X,Y,Z", help="m/s² in the world frame")
+    options.add_argument("--gravity", type=_numbers, metavar="X,Y,Z", help="m/s² in the world frame; default: that of the file, or else 0,0,-9.81")
     options.add_argument("--frames", type=_list, help="the links whose frames functions give [default: all]")
     options.add_argument("--name", help="the name of the package and of its module [default: the robot's]")
     options.add_argument("--version", default="0.1.0", help="the version of the package [default: 0.1.0]")

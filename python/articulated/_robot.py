@@ -10,8 +10,6 @@ from . import _native, _wheel
 from ._compiled import CompiledRobot
 from ._errors import RobotWarning, as_numbers
 
-GRAVITY = (0.0, 0.0, -9.81)
-
 
 class Joint(NamedTuple):
     """A joint that has coordinates of its own."""
@@ -119,7 +117,7 @@ class _Source(NamedTuple):
     file: str
     document: bytes
     base: str
-    gravity: tuple
+    gravity: Optional[tuple]
     includes: bool
     wrenches_in: str = "body"
     frames: Optional[tuple] = None
@@ -412,7 +410,7 @@ for _index, _function in enumerate(_TABLE):
 def _robot(file, document, base, gravity, frames, wrenches_in, includes):
     if base not in ("fixed", "floating"):
         raise ValueError(f'base: found {base!r}, expected "fixed" or "floating"')
-    gravity = _vector("gravity", gravity, "three finite numbers, m/s² in the world frame")
+    gravity = None if gravity is None else _vector("gravity", gravity, "three finite numbers, m/s² in the world frame")
     frames = None if frames is None else tuple(_names("frames", frames))
     robot = Robot._made(_Source(file, document, base, gravity, includes, _reference(wrenches_in), frames))
     for finding in robot._warnings:
@@ -420,13 +418,13 @@ def _robot(file, document, base, gravity, frames, wrenches_in, includes):
     return robot
 
 
-def load(path, base="fixed", gravity=GRAVITY, frames=None, wrenches_in="body"):
+def load(path, base="fixed", gravity=None, frames=None, wrenches_in="body"):
     """The robot of a file.
 
     Args:
-        path: The file, a URDF.
+        path: The file: URDF, xacro, MJCF or SDF.
         base: "fixed" if the root link does not move, "floating" if it has six degrees of freedom.
-        gravity: (3,), m/s² in the world frame.
+        gravity: (3,), m/s² in the world frame; None for that of the file, or else (0, 0, -9.81).
         frames: Names of the frames (links) to compute, in this order; None for all.
         wrenches_in: What external wrenches are given in, see ``Robot.with_wrenches_in``.
 
@@ -440,7 +438,7 @@ def load(path, base="fixed", gravity=GRAVITY, frames=None, wrenches_in="body"):
     return _robot(path, _native.read(path), base, gravity, frames, wrenches_in, True)
 
 
-def loads(text, name="robot.urdf", base="fixed", gravity=GRAVITY, frames=None, wrenches_in="body"):
+def loads(text, name="robot.urdf", base="fixed", gravity=None, frames=None, wrenches_in="body"):
     """The robot of a text, str or bytes; ``name`` is the name of its file in messages. See ``load``."""
     if isinstance(text, str):
         text = text.encode("utf-8", "surrogatepass")
@@ -453,7 +451,7 @@ def loads(text, name="robot.urdf", base="fixed", gravity=GRAVITY, frames=None, w
     return _robot(name, text, base, gravity, frames, wrenches_in, False)
 
 
-def bundled(name, base=None, gravity=GRAVITY, frames=None, wrenches_in="body"):
+def bundled(name, base=None, gravity=None, frames=None, wrenches_in="body"):
     """One of the robots that come with the package; ``bundled_names`` lists them. ``base``: None for its own."""
     robots = {robot: (urdf, own) for robot, urdf, own, _ in _native.bundled_robots()}
     if not isinstance(name, str) or name not in robots:

@@ -244,7 +244,7 @@ impl Robot {
         file: &str,
         document: &[u8],
         base: &str,
-        gravity: [f64; 3],
+        gravity: Option<[f64; 3]>,
         includes: bool,
         wrenches_in: &str,
         frames: Option<Vec<String>>,
@@ -258,7 +258,10 @@ impl Robot {
             let like = like.get();
             let mut request = like.request.clone();
             (request.options.robot.gravity, request.options.robot.wrench_reference) = (gravity, reference);
-            let mut model = like.model.clone().with_gravity(gravity).with_wrenches_in(reference);
+            let mut model = like.model.clone().with_wrenches_in(reference);
+            if let Some(gravity) = gravity {
+                model = model.with_gravity(gravity);
+            }
             if let Some(frames) = frames {
                 model = framed(py, model, &frames)?;
                 request.set_frames(&frames);

@@ -1,17 +1,19 @@
 //! `[control]`: the controller of the joints.
 
-use articulated_core::control::{Aim, Controller};
+use articulated_core::control::{Actuators, Aim, Controller, Signal};
 use articulated_core::diagnostic::{At, Code, Diagnostics};
 use articulated_core::effect::Range;
 use articulated_core::model::{FLOATING_BASE, Model};
 
 use crate::edits::{name, places};
-use crate::initial::{Coordinates, Named, Side, counted, fill, neutral, no_joint, normalise, values};
+use crate::initial::{Coordinates, Named, counted, fill, neutral, no_joint, normalise, values};
 use crate::scene::Scene;
 use crate::series::{Reader, Source};
 use crate::simulation::set;
+use crate::slots::{Side, Slots};
 use crate::table::{Row, Spot};
 use crate::tree::Value;
+use crate::world::RobotInWorld;
 
 /// The controller of the joints.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,6 +22,8 @@ pub struct Control {
     pub drive: Drive,
     /// Sampling period, s, over which torques are held; `None`: continuous control.
     pub period: Option<f64>,
+    /// Where the scene says so.
+    pub place: At,
 }
 
 /// Kinds of control.
@@ -43,6 +47,22 @@ pub enum Drive {
         /// Torque besides, N·m or N.
         torque: PerJoint,
     },
+    /// The actuators of the robot's file.
+    Actuators(Controls),
+}
+
+/// Controls of the actuators of the robot's file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Controls {
+    /// The same all the time: those of a state of the file, or else 0, and these instead.
+    Still {
+        /// The state of the file, and where the scene names it.
+        keyframe: Option<(String, At)>,
+        /// Controls by actuator.
+        control: Coordinates,
+    },
+    /// Over time.
+    Moving(Source),
 }
 
 /// The target of a controller.
@@ -86,6 +106,8 @@ pub(crate) struct Keys {
     kd: PerJoint,
     source: Source,
     period: Option<f64>,
+    ctrl: Option<Coordinates>,
+    keyframe: Option<(String, At)>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -95,9 +117,11 @@ enum Sort {
     Torque,
     Table,
     Pd,
+    Actuators,
 }
 
-const SORTS: &[(&str, Sort)] = &[("none", Sort::None), ("torque", Sort::Torque), ("table", Sort::Table), ("pd", Sort::Pd)];
+const SORTS: &[(&str, Sort)] =
+    &[("none", Sort::None), ("torque", Sort::Torque), ("table", Sort::Table), ("pd", Sort::Pd), ("actuators", Sort::Actuators)];
 
 /// Keys of each kind beside `kind`.
 const OF_SORT: &[(Sort, &[&str])] = &[
@@ -105,15 +129,16 @@ const OF_SORT: &[(Sort, &[&str])] = &[
     (Sort::Torque, &["torque"]),
     (Sort::Table, &["file", "columns", "rows", "interpolation", "period"]),
     (Sort::Pd, &["target", "kp", "kd", "torque", "file", "columns", "rows", "interpolation", "period"]),
+    (Sort::Actuators, &["ctrl", "keyframe", "file", "columns", "rows", "interpolation", "period"]),
 ];
 
 pub(crate) const KEYS: &[Row<Keys>] = &[
     Row {
         name: "kind",
         required: true,
-        value: "`\"none\"`, `\"torque\"`, `\"table\"` or `\"pd\"`",
+        value: "`\"none\"`, `\"torque\"`, `\"table\"`, `\"pd\"` or `\"actuators\"`",
         default: "",
-        what: "no torque; the same torques all the time; torques over time; τ = kp (target ⊖ q) + kd (target' − v) + torque",
+        what: "no torque; the same torques all the time; torques over time; τ = kp (target ⊖ q) + kd (target' − v) + torque; the actuators of the robot's file (MJCF)",
         read: |x, s, log| set(&mut x.kind, s.word(log, SORTS)),
     },
     Row {
@@ -149,11 +174,27 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
         read: |x, s, log| x.kd = per_joint(s, Range::NOT_NEGATIVE, log),
     },
     Row {
+        name: "ctrl",
+        required: false,
+        value: "numbers, or table: actuator = number",
+        default: "0",
+        what: "`actuators`: their controls; or a table over time, by the keys below",
+        read: |x, s, log| x.ctrl = Some(values(s, log)),
+    },
+    Row {
+        name: "keyframe",
+        required: false,
+        value: "text",
+        default: "none",
+        what: "`actuators`: a state of the robot's file, whose controls `ctrl` changes",
+        read: |x, s, log| x.keyframe = name(s, log, "the name of a keyframe of the robot's file").map(|name| (name, s.at)),
+    },
+    Row {
         name: "file",
         required: false,
         value: "text",
         default: "none",
-        what: "`table`, `pd`: a CSV, a regular file of at most 10 000 000 rows, seen from the scene's folder; its first line names the columns, the first of which is `t`, s; the others, at least one, are joints (`joint[k]` for the k-th number of one that has several)",
+        what: "`table`, `pd`, `actuators`: a CSV, a regular file of at most 10 000 000 rows, seen from the scene's folder; its first line names the columns, the first of which is `t`, s; the others, at least one, are joints (`joint[k]` for the k-th number of one that has several), or actuators",
         read: |x, s, log| {
             x.source.file = name(s, log, "the path of a CSV");
             x.source.place = s.at;
@@ -164,7 +205,7 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
         required: false,
         value: "texts",
         default: "none",
-        what: "`table`, `pd`: instead of a file: names of the columns after the time",
+        what: "`table`, `pd`, `actuators`: instead of a file: names of the columns after the time",
         read: |x, s, log| {
             x.source.columns = s.texts(log, "a list of joints").unwrap_or_default();
             x.source.column_places = places(s);
@@ -176,7 +217,7 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
         required: false,
         value: "list of lists of numbers",
         default: "none",
-        what: "`table`, `pd`: instead of a file: the time, s, and a number for each column",
+        what: "`table`, `pd`, `actuators`: instead of a file: the time, s, and a number for each column",
         read: |x, s, log| {
             x.source.rows = rows(s, log);
             x.source.row_places = places(s);
@@ -187,7 +228,7 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
         required: false,
         value: "`\"linear\"` or `\"hold\"`",
         default: "`\"linear\"`",
-        what: "`table`, `pd`: between rows (a quaternion by the shortest rotation, at one rate); before the first and after the last the nearest row holds",
+        what: "`table`, `pd`, `actuators`: between rows (a quaternion by the shortest rotation, at one rate); before the first and after the last the nearest row holds",
         read: |x, s, log| set(&mut x.source.hold, s.word(log, &[("linear", false), ("hold", true)])),
     },
     Row {
@@ -195,7 +236,7 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
         required: false,
         value: "number, s",
         default: "none",
-        what: "`table`, `pd`: the torques are kept for so long, above 0, as by a digital controller",
+        what: "`table`, `pd`, `actuators`: the torques are kept for so long, above 0, as by a digital controller",
         read: |x, s, log| x.period = s.positive(log),
     },
 ];
@@ -211,7 +252,7 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Control {
     if log.count() > before {
         return Control::default();
     }
-    let Keys { kind, torque, target, kp, kd, source, period } = keys;
+    let Keys { kind, torque, target, kp, kd, source, period, ctrl, keyframe } = keys;
     let moving = source.file.is_some() || !source.rows.is_empty();
     let drive = match kind {
         Sort::None => Drive::None,
@@ -219,8 +260,10 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Control {
         Sort::Table => Drive::Table(source),
         Sort::Pd if moving => Drive::Pd { target: Target::Moving(source), kp, kd, torque },
         Sort::Pd => Drive::Pd { target: Target::Still(target.unwrap_or_default()), kp, kd, torque },
+        Sort::Actuators if moving => Drive::Actuators(Controls::Moving(source)),
+        Sort::Actuators => Drive::Actuators(Controls::Still { keyframe, control: ctrl.unwrap_or_default() }),
     };
-    Control { drive, period }
+    Control { drive, period, place: spot.at }
 }
 
 /// Checks that the keys are those of the kind; `right`: the accepted keys of a table.
@@ -234,7 +277,7 @@ fn check(keys: &Keys, spot: &Spot<'_>, right: &[&str], log: &mut Diagnostics) {
     }
     let is_there = |key: &str| spot.get(key).is_some();
     let over_time = ["file", "columns", "rows", "interpolation"].into_iter().any(is_there);
-    if keys.kind == Sort::Table || (keys.kind == Sort::Pd && over_time) {
+    if keys.kind == Sort::Table || (matches!(keys.kind, Sort::Pd | Sort::Actuators) && over_time) {
         match (is_there("file"), is_there("rows") || is_there("columns")) {
             (true, true) => spot.clash(log, "a file and rows", "one of them"),
             (false, false) => spot.clash(log, "neither file nor rows", "one of them"),
@@ -243,6 +286,9 @@ fn check(keys: &Keys, spot: &Spot<'_>, right: &[&str], log: &mut Diagnostics) {
         }
         if keys.kind == Sort::Pd && is_there("target") {
             spot.clash(log, "a target and a table of targets", "one of them");
+        }
+        if keys.kind == Sort::Actuators && (is_there("ctrl") || is_there("keyframe")) {
+            spot.clash(log, "controls and a table of controls", "one of them");
         }
     }
 }
@@ -307,19 +353,20 @@ fn all_within(spot: &Spot<'_>, range: Range, log: &mut Diagnostics) {
 impl Scene {
     /// The control with names resolved and files read by `read`, which receives their names as in
     /// the scene. Errors: all entries that do not fit the robot.
-    pub fn controller(&self, model: &Model<f64>, read: &mut Reader<'_>) -> Result<Controller, Diagnostics> {
+    pub fn controller<'a>(&self, robot: impl Into<RobotInWorld<'a>>, read: &mut Reader<'_>) -> Result<Controller, Diagnostics> {
         let mut log = Diagnostics::new(&self.file);
-        let controller = self.controlled(model, Some(read), &mut log);
+        let controller = self.controlled(robot.into(), Some(read), &mut log);
         log.result(controller)
     }
 
     /// Without `read`, files are not opened.
-    fn controlled(&self, model: &Model<f64>, read: Option<&mut Reader<'_>>, log: &mut Diagnostics) -> Controller {
+    fn controlled(&self, robot: RobotInWorld<'_>, read: Option<&mut Reader<'_>>, log: &mut Diagnostics) -> Controller {
+        let model = robot.model;
         let vector = |from: &PerJoint, key: &str, log: &mut Diagnostics| self.vector(from, key, model, log);
         match &self.control.drive {
             Drive::None => Controller::None,
             Drive::Torque(torque) => Controller::Torque(vector(torque, TORQUE, log)),
-            Drive::Table(source) => Controller::Table(source.series(model, Side::V, read, log)),
+            Drive::Table(source) => Controller::Table(source.series(&Slots::of_joints(model, Side::V), read, log)),
             Drive::Pd { target, kp, kd, torque } => Controller::Pd {
                 kp: vector(kp, "control.kp", log),
                 kd: vector(kd, "control.kd", log),
@@ -331,9 +378,10 @@ impl Scene {
                         normalise(model, &mut q, ("control.target", &|joint| target.place(joint)), log);
                         Aim::Still(q)
                     }
-                    Target::Moving(source) => Aim::Moving(source.series(model, Side::Q, read, log)),
+                    Target::Moving(source) => Aim::Moving(source.series(&Slots::of_joints(model, Side::Q), read, log)),
                 },
             },
+            Drive::Actuators(controls) => Controller::Actuators(self.actuators(robot, controls, read, log)),
         }
     }
 }
@@ -341,11 +389,34 @@ impl Scene {
 impl Scene {
     /// Checks that the initial state and control fit the robot, without opening files. Errors: all
     /// entries that do not.
-    pub fn fits(&self, model: &Model<f64>) -> Result<(), Diagnostics> {
-        let mut log = Diagnostics::new(&self.file);
-        self.started(model, &mut log);
-        self.controlled(model, None, &mut log);
+    pub fn fits<'a>(&self, robot: impl Into<RobotInWorld<'a>>) -> Result<(), Diagnostics> {
+        let (mut log, robot) = (Diagnostics::new(&self.file), robot.into());
+        self.started(robot, &mut log);
+        self.controlled(robot, None, &mut log);
         log.result(())
+    }
+
+    /// The actuators of the robot's file, with the scene's controls.
+    fn actuators(&self, robot: RobotInWorld<'_>, controls: &Controls, read: Option<&mut Reader<'_>>, log: &mut Diagnostics) -> Actuators {
+        let actuators = &robot.world.actuators;
+        let place = (self.control.place, "control.kind");
+        if actuators.is_empty() && robot.world.passive.is_empty() {
+            log.error(place, Code::Robot, "actuators, of which the robot's file has none", "another kind of control");
+        }
+        let signal = match controls {
+            Controls::Moving(source) => Signal::Moving(source.series(&Slots::of_actuators(actuators), read, log)),
+            Controls::Still { keyframe, control } => {
+                let mut still = vec![0.0; actuators.len()];
+                if let Some((name, place)) = keyframe
+                    && let Some(keyframe) = robot.keyframe(name, (*place, "control.keyframe"), log)
+                {
+                    still.iter_mut().zip(&keyframe.control).for_each(|(still, u)| *still = *u);
+                }
+                robot.put_controls(control, &mut still, log);
+                Signal::Still(still)
+            }
+        };
+        robot.actuators(signal, place, log)
     }
 
     /// `[nv]`. A gain, one number, of a joint of several degrees of freedom is for all of them;

@@ -7,10 +7,10 @@ use std::io::{BufRead, Read};
 
 use articulated_core::control::Series;
 use articulated_core::effect::Range;
-use articulated_core::model::Model;
 
-use crate::initial::{Side, counted, normalise};
-use crate::series::{Places, ROW, Source, listed};
+use crate::initial::counted;
+use crate::series::{Places, ROW, Source};
+use crate::slots::Slots;
 
 /// What bounds a table.
 #[derive(Clone, Copy)]
@@ -32,24 +32,23 @@ const MOST: Most = Most { rows: 10_000_000, numbers: 1 << 28, line: 1 << 20, lin
 /// The table of a CSV for a robot; columns that are not there are neutral. What is wrong with it is
 /// told of its lines, and no more of them than the number or the name that is wrong; then the table
 /// is empty.
-pub(crate) fn read(from: Box<dyn BufRead>, hold: bool, robot: (&Model<f64>, Side), log: &mut Diagnostics) -> Series {
-    read_at_most(MOST, from, hold, robot, log)
+pub(crate) fn read(from: Box<dyn BufRead>, hold: bool, slots: &Slots<'_>, log: &mut Diagnostics) -> Series {
+    read_at_most(MOST, from, hold, slots, log)
 }
 
-fn read_at_most(most: Most, from: Box<dyn BufRead>, hold: bool, (model, side): (&Model<f64>, Side), log: &mut Diagnostics) -> Series {
+fn read_at_most(most: Most, from: Box<dyn BufRead>, hold: bool, slots: &Slots<'_>, log: &mut Diagnostics) -> Series {
     let mut lines = Lines { from, count: 0, most };
     let Some((at, head)) = lines.next(log) else {
         if log.count() == 0 {
-            log.error((At::Nowhere, ""), Code::Syntax, "nothing", "a first line that names the columns, t and joints");
+            log.error((At::Nowhere, ""), Code::Syntax, "nothing", format!("a first line that names the columns, t and {}", slots.kind()));
         }
         return Series::default();
     };
-    let Some(columns) = columns(&head, at, (model, side), log) else { return Series::default() };
+    let Some(columns) = columns(&head, at, slots, log) else { return Series::default() };
     let source = Source { column_places: vec![at; columns.len()], columns, ..Source::default() };
     source.check_columns(&|_| String::new(), log);
-    let places = source.places(model, side, &|_| String::new(), log);
-    let mut table =
-        Table { columns: &source.columns, places: &places, model, side, series: Series { hold, ..Series::default() }, last: None };
+    let places = source.places(slots, &|_| String::new(), log);
+    let mut table = Table { columns: &source.columns, places: &places, slots, series: Series { hold, ..Series::default() }, last: None };
     table.fill(&mut lines, most, log);
     if table.last.is_none() && log.count() == 0 {
         log.error((At::Nowhere, ""), Code::Syntax, "no rows", format!("lines of numbers: {ROW}"));
@@ -58,7 +57,7 @@ fn read_at_most(most: Most, from: Box<dyn BufRead>, hold: bool, (model, side): (
 }
 
 /// The names of the columns after the time; none of what is no table.
-fn columns(text: &str, at: At, (model, side): (&Model<f64>, Side), log: &mut Diagnostics) -> Option<Vec<String>> {
+fn columns(text: &str, at: At, slots: &Slots<'_>, log: &mut Diagnostics) -> Option<Vec<String>> {
     let mut names = fields(text).into_iter();
     let first = names.next().unwrap_or_default();
     if !["t", "time"].contains(&first.as_str()) {
@@ -67,7 +66,7 @@ fn columns(text: &str, at: At, (model, side): (&Model<f64>, Side), log: &mut Dia
     }
     let columns: Vec<String> = names.collect();
     if columns.is_empty() {
-        let expected = format!("columns of joints that move after t: {}", listed(model, side));
+        let expected = format!("columns of {}", slots.listed());
         log.error((at, ""), Code::MissingKey, "a single column", expected);
         return None;
     }
@@ -78,8 +77,7 @@ fn columns(text: &str, at: At, (model, side): (&Model<f64>, Side), log: &mut Dia
 struct Table<'a> {
     columns: &'a [String],
     places: &'a Places,
-    model: &'a Model<f64>,
-    side: Side,
+    slots: &'a Slots<'a>,
     series: Series,
     /// Time of the last row, s.
     last: Option<f64>,
@@ -89,7 +87,7 @@ impl Table<'_> {
     /// Takes the lines up to the end, to what bounds a table, or to so many mistakes that the rest
     /// is left alone.
     fn fill(&mut self, lines: &mut Lines, most: Most, log: &mut Diagnostics) {
-        let neutral = self.places.neutral(self.model, self.side);
+        let neutral = &self.slots.neutral;
         let rows = most.rows.min(most.numbers / neutral.len().max(1));
         let mut count = 0;
         while let Some((at, text)) = lines.next(log) {
@@ -105,8 +103,8 @@ impl Table<'_> {
             self.in_order(numbers[0], at, log);
             let mut row = neutral.clone();
             self.places.put(&numbers[1..], &mut row);
-            if self.side == Side::Q && self.places.are_all() {
-                normalise(self.model, &mut row, ("", &|_| at), log);
+            if self.places.are_all() {
+                self.slots.normalise(&mut row, ("", &|_| at), log);
             }
             // Of a table that is wrong nothing is used.
             if log.count() == 0 {
@@ -230,8 +228,10 @@ mod tests {
     use std::io::{Cursor, Error};
 
     use articulated_core::description::Base;
+    use articulated_core::model::Model;
 
     use super::*;
+    use crate::slots::Side;
 
     const ARM: &str = "<robot name='r'><link name='base'/><link name='l'/>
         <joint name='elbow' type='continuous'><parent link='base'/><child link='l'/></joint></robot>";
@@ -244,7 +244,7 @@ mod tests {
     /// Read within bounds: the table, or all that is told.
     fn read_within(most: Most, from: impl BufRead + 'static) -> Result<Series, String> {
         let mut log = Diagnostics::new("t.csv");
-        let series = read_at_most(most, Box::new(from), false, (&arm(), Side::V), &mut log);
+        let series = read_at_most(most, Box::new(from), false, &Slots::of_joints(&arm(), Side::V), &mut log);
         log.result(series).map_err(|e| e.to_string())
     }
 

@@ -66,7 +66,16 @@ pub(crate) fn locks(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Lock> {
 }
 
 /// `{ joint = { joint = […], coefficients = […], offset = 0 }, … }`.
-pub(crate) fn followers(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Follower> {
+/// The same, or the word `file`: the couplings of the scene, and whether those of the robot's file
+/// count.
+pub(crate) fn couplings(spot: &Spot<'_>, log: &mut Diagnostics) -> (Vec<Follower>, bool) {
+    match &spot.node.value {
+        Value::Text(word) if word == "file" => (Vec::new(), true),
+        _ => (followers(spot, log), false),
+    }
+}
+
+fn followers(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Follower> {
     let entries = spot.entries(log, "a table of joints, as { pitch = { joint = [\"m1\", \"m2\"], coefficients = [0.5, -0.5] } }");
     let follower = |entry| {
         let (value, mut one) = (spot.of(entry), Follower { place: entry.at, ..Follower::default() });

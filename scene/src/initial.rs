@@ -6,10 +6,12 @@ use articulated_core::diagnostic::{At, Code, Diagnostics};
 use articulated_core::model::{FLOATING_BASE, Model};
 use articulated_core::spatial::normalise_input;
 
-use crate::edits::coordinates;
+use crate::edits::{coordinates, name};
 use crate::scene::Scene;
+use crate::slots::Side;
 use crate::table::{Row, Spot};
 use crate::tree::Value;
+use crate::world::RobotInWorld;
 
 /// The state at the start.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,6 +22,8 @@ pub struct Initial {
     pub v: Coordinates,
     /// Pose and velocity of a floating base.
     pub base: Option<BaseState>,
+    /// The state of the robot's file that the others change, and where the scene names it.
+    pub keyframe: Option<(String, At)>,
 }
 
 /// Numbers of joints.
@@ -98,6 +102,14 @@ pub(crate) const KEYS: &[Row<Initial>] = &[
         default: "0",
         what: "rates: all in the robot's order (a floating base's ω and v in its own axes first), or by joint",
         read: |x, s, log| x.v = values(s, log),
+    },
+    Row {
+        name: "keyframe",
+        required: false,
+        value: "text",
+        default: "none",
+        what: "a state of the robot's file (MJCF), which `q`, `v` and `base` change",
+        read: |x, s, log| x.keyframe = name(s, log, "the name of a keyframe of the robot's file").map(|name| (name, s.at)),
     },
     Row {
         name: "base",
@@ -216,15 +228,26 @@ fn unit(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<[f64; 4]> {
 impl Scene {
     /// The initial state: q `[nq]`, v `[nv]`. Errors, all at once: unknown joints, wrong numbers of
     /// coordinates, a base that does not float.
-    pub fn start(&self, model: &Model<f64>) -> Result<(Vec<f64>, Vec<f64>), Diagnostics> {
+    pub fn start<'a>(&self, robot: impl Into<RobotInWorld<'a>>) -> Result<(Vec<f64>, Vec<f64>), Diagnostics> {
         let mut log = Diagnostics::new(&self.file);
-        let state = self.started(model, &mut log);
+        let state = self.started(robot.into(), &mut log);
         log.result(state)
     }
 
-    pub(crate) fn started(&self, model: &Model<f64>, log: &mut Diagnostics) -> (Vec<f64>, Vec<f64>) {
+    pub(crate) fn started(&self, robot: RobotInWorld<'_>, log: &mut Diagnostics) -> (Vec<f64>, Vec<f64>) {
+        let model = robot.model;
         let mut q = neutral(model);
         let mut v = vec![0.0; model.nv()];
+        if let Some(home) = &robot.world.home {
+            robot.put(&home.q, false, &mut q);
+            robot.put(&home.v, true, &mut v);
+        }
+        if let Some((name, place)) = &self.initial.keyframe
+            && let Some(keyframe) = robot.keyframe(name, (*place, "initial.keyframe"), log)
+        {
+            robot.put(&keyframe.q, false, &mut q);
+            robot.put(&keyframe.v, true, &mut v);
+        }
         self.place_base(model, (&mut q, &mut v), log);
         fill(&self.initial.q, "initial.q", model, Side::Q, &mut q, log);
         fill(&self.initial.v, "initial.v", model, Side::V, &mut v, log);
@@ -244,13 +267,6 @@ impl Scene {
         v[..3].copy_from_slice(&base.angular);
         v[3..6].copy_from_slice(&base.linear);
     }
-}
-
-/// Coordinates or rates.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Side {
-    Q,
-    V,
 }
 
 /// The neutral configuration, `[nq]`.

@@ -49,10 +49,12 @@ mod scene;
 mod series;
 mod shaft;
 mod simulation;
+mod slots;
 mod table;
 mod tree;
+mod world;
 
-pub use articulated_core::control::{Aim, Controller, Series};
+pub use articulated_core::control::{ActuatorLaw, Actuators, Aim, Controller, Series, Signal, Transmission};
 pub use articulated_core::settings::{Output, Settings, Stiffness};
 pub use calls::Calls;
 pub use control::{Control, Drive, PerJoint, Target};
@@ -69,3 +71,4 @@ pub use series::{Reader, Source};
 pub use shaft::ShaftRequest;
 pub use simulation::{EventClass, Simulation};
 pub use tree::{Entry, Node, Value};
+pub use world::RobotInWorld;

@@ -32,7 +32,8 @@ pub struct Scene {
     pub robot: Robot,
     /// The base; `None`: that which a bundled robot is meant for, fixed for others.
     pub base: Option<Base>,
-    /// Gravity in the world frame, m/s²; `None`: standard gravity.
+    /// Gravity in the world frame, m/s²; `None`: that of the robot's file, or else
+    /// standard gravity.
     pub gravity: Option<[f64; 3]>,
     /// Edits of the robot, and what code to make of it.
     pub code: CodeOptions,
@@ -76,6 +77,8 @@ pub struct CodeOptions {
     pub wrenches_in: Option<Reference>,
     /// Joints that follow others.
     pub coupling: Vec<Follower>,
+    /// Joints that follow others by linear equations of the robot's file.
+    pub file_coupling: bool,
     /// Joints to lock.
     pub lock: Vec<Lock>,
     /// Loads.
@@ -272,7 +275,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         name: "gravity",
         required: false,
         value: "3 numbers, m/s²",
-        default: "[0, 0, -9.81]",
+        default: "that of the robot's file, or else [0, 0, -9.81]",
         what: "in the world frame",
         read: |s, spot, log| s.gravity = spot.numbers(log),
     },
@@ -320,10 +323,10 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
     Row {
         name: "coupling",
         required: false,
-        value: "table: joint = { joint, coefficients, offset }",
+        value: "table: joint = { joint, coefficients, offset }, or `\"file\"`",
         default: "none",
-        what: "joints that follow others: q = Σ coefficient · q of each + offset",
-        read: |s, spot, log| s.code.coupling = edits::followers(spot, log),
+        what: "joints that follow others: q = Σ coefficient · q of each + offset; `\"file\"`: as linear equations of the robot's file say (MJCF)",
+        read: |s, spot, log| (s.code.coupling, s.code.file_coupling) = edits::couplings(spot, log),
     },
     Row {
         name: "lock",

@@ -6,10 +6,10 @@ use std::io::BufRead;
 use std::path::Path;
 
 use articulated_core::control::Series;
-use articulated_core::model::{JointInfo, Model};
 
 use crate::csv;
-use crate::initial::{Side, counted, neutral, normalise};
+use crate::initial::counted;
+use crate::slots::Slots;
 
 /// Where a table over time is to be had.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -104,16 +104,16 @@ impl Source {
         }
     }
 
-    /// The table for a robot; columns that are not there are neutral. Without `read` a file is left
-    /// alone.
-    pub(crate) fn series(&self, model: &Model<f64>, side: Side, read: Option<&mut Reader<'_>>, log: &mut Diagnostics) -> Series {
+    /// The table with rows of these numbers; those without a column are neutral. Without `read` a
+    /// file is left alone.
+    pub(crate) fn series(&self, slots: &Slots<'_>, read: Option<&mut Reader<'_>>, log: &mut Diagnostics) -> Series {
         let Some(file) = &self.file else {
             let keys: [&Key; 2] = [&|i| format!("control.columns[{i}]"), &|i| format!("control.rows[{i}]")];
-            return self.placed(model, side, keys, log);
+            return self.placed(slots, keys, log);
         };
         let Some(read) = read else { return Series::default() };
         match read(file) {
-            Ok(from) => self.parsed(file, from, (model, side), log),
+            Ok(from) => self.parsed(file, from, slots, log),
             Err(reason) => {
                 let found = format!("{}, which cannot be read ({reason})", quote(file));
                 log.error((self.place, "control.file"), Code::UnknownName, found, "a CSV with a first line that names its columns");
@@ -123,17 +123,17 @@ impl Source {
     }
 
     /// The table of a CSV. What is wrong with it is told of its own lines.
-    fn parsed(&self, file: &str, from: Box<dyn BufRead>, robot: (&Model<f64>, Side), log: &mut Diagnostics) -> Series {
+    fn parsed(&self, file: &str, from: Box<dyn BufRead>, slots: &Slots<'_>, log: &mut Diagnostics) -> Series {
         let folder = Path::new(log.file()).parent().unwrap_or(Path::new(""));
         let mut own = Diagnostics::new(&folder.join(file).display().to_string());
-        let series = csv::read(from, self.hold, robot, &mut own);
+        let series = csv::read(from, self.hold, slots, &mut own);
         log.take(own);
         series
     }
 
     /// Where the numbers of each column go: each to a place of its own.
-    pub(crate) fn places(&self, model: &Model<f64>, side: Side, key: &Key, log: &mut Diagnostics) -> Places {
-        let column = |(i, name): (usize, &String)| place_of(name, model, side, (at(&self.column_places, i), &key(i)), log);
+    pub(crate) fn places(&self, slots: &Slots<'_>, key: &Key, log: &mut Diagnostics) -> Places {
+        let column = |(i, name): (usize, &String)| slots.place(name, (at(&self.column_places, i), &key(i)), log);
         let places = Places(self.columns.iter().enumerate().map(column).collect());
         self.check_places(&places, key, log);
         places
@@ -152,25 +152,25 @@ impl Source {
         }
     }
 
-    /// The columns in the places of their joints; `keys`: those of a column and of a row.
-    fn placed(&self, model: &Model<f64>, side: Side, [column, key]: [&Key; 2], log: &mut Diagnostics) -> Series {
-        let places = self.places(model, side, column, log);
-        let neutral = places.neutral(model, side);
+    /// The columns in their places; `keys`: those of a column and of a row.
+    fn placed(&self, slots: &Slots<'_>, [column, key]: [&Key; 2], log: &mut Diagnostics) -> Series {
+        let places = self.places(slots, column, log);
+        let neutral = &slots.neutral;
         let row = |numbers: &Vec<f64>| {
             let mut row = neutral.clone();
             places.put(&numbers[1..], &mut row);
             row
         };
         let mut rows: Vec<Vec<f64>> = self.rows.iter().map(row).collect();
-        if side == Side::Q && places.are_all() {
+        if places.are_all() {
             let place = |i: usize| at(&self.row_places, i);
-            rows.iter_mut().enumerate().for_each(|(i, row)| normalise(model, row, (&key(i), &|_| place(i)), log));
+            rows.iter_mut().enumerate().for_each(|(i, row)| slots.normalise(row, (&key(i), &|_| place(i)), log));
         }
         Series { times: self.rows.iter().map(|r| r[0]).collect(), rows, hold: self.hold }
     }
 }
 
-/// Where in a row of the robot the number of each column goes; nowhere if there is no such joint.
+/// Where in a row the number of each column goes; nowhere if no number has such a name.
 pub(crate) struct Places(Vec<Option<usize>>);
 
 impl Places {
@@ -179,64 +179,12 @@ impl Places {
         self.0.iter().all(Option::is_some)
     }
 
-    /// A row of the robot, `[nq]` or `[nv]`, without any column.
-    pub(crate) fn neutral(&self, model: &Model<f64>, side: Side) -> Vec<f64> {
-        if side == Side::Q { neutral(model) } else { vec![0.0; model.nv()] }
-    }
-
-    /// Puts the numbers of the columns into a row of the robot.
+    /// Puts the numbers of the columns into a row.
     pub(crate) fn put(&self, numbers: &[f64], row: &mut [f64]) {
         for (place, x) in self.0.iter().zip(numbers) {
             if let Some(place) = place {
                 row[*place] = *x;
             }
         }
-    }
-}
-
-/// The columns that a robot has.
-pub(crate) fn listed(model: &Model<f64>, side: Side) -> String {
-    let count = |j: &JointInfo| if side == Side::Q { j.q.1 } else { j.v.1 };
-    let name = |j: &JointInfo| match count(j) {
-        1 => j.name.clone(),
-        n => format!("{0}[0] to {0}[{1}]", j.name, n - 1),
-    };
-    articulated_core::listed(model.joints().iter().map(name))
-}
-
-/// The place of `joint` or `joint[k]`.
-fn place_of(name: &str, model: &Model<f64>, side: Side, (at, key): (At, &str), log: &mut Diagnostics) -> Option<usize> {
-    let range = |joint: &str| model.joints().iter().find(|j| j.name == joint).map(|j| if side == Side::Q { j.q } else { j.v });
-    if let Some((first, 1)) = range(name) {
-        return Some(first);
-    }
-    let indexed = name.strip_suffix(']').and_then(|name| name.rsplit_once('['));
-    if let Some((joint, k)) = indexed
-        && let (Some((first, count)), Ok(k)) = (range(joint), k.parse::<usize>())
-        && k < count
-    {
-        return Some(first + k);
-    }
-    let names = model.joints().iter().map(|j| j.name.as_str());
-    let found = format!("the column {}", quote(name));
-    log.unknown(((at, key), Code::UnknownName), (found, name), "a joint that moves, as elbow, or one of its numbers, as ball[0]", names);
-    None
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_long_list_of_columns_is_cut() {
-        let link = |i: usize| {
-            let kind = if i == 0 { "spherical" } else { "continuous" };
-            format!("<link name='l{i}'/><joint name='j{i}' type='{kind}'><parent link='base'/><child link='l{i}'/></joint>")
-        };
-        let urdf = format!("<robot name='r'><link name='base'/>{}</robot>", (0..14).map(link).collect::<String>());
-        let description = articulated_formats::read(urdf.as_bytes(), &Default::default()).unwrap().description;
-        let model = Model::new(&description, articulated_core::description::Base::Fixed).unwrap();
-        assert_eq!(listed(&model, Side::Q), "j0[0] to j0[3], j1, j2, j3, j4, j5, j6, j7, j8, j9, j10, j11 and 2 more");
-        assert!(listed(&model, Side::V).starts_with("j0[0] to j0[2], j1"));
     }
 }

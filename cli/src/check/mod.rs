@@ -58,6 +58,7 @@ fn examine(robot: &Robot, scene: Option<&Path>, functions: &[String]) -> Report 
 }
 
 fn describe(robot: &Robot, built: &BuiltRobot, report: &mut Report) {
+    report.gravity = built.model.gravity().into();
     report.describe(&built.reading.description, &built.model);
     let request = robot.whole_request(&values(&robot.options.functions));
     let mut findings = Diagnostics::new(&robot.file);

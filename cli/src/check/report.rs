@@ -4,6 +4,7 @@ use articulated_core::description::{Description, JointKind, Link};
 use articulated_core::diagnostic::{Diagnostic as Finding, summary};
 use articulated_core::eigen::eigenvalues;
 use articulated_core::model::{FLOATING_BASE, Model};
+use articulated_formats::world::World;
 use serde::Serialize;
 
 use super::base::Base;
@@ -117,7 +118,7 @@ impl Report {
             usable: false,
             robot: None,
             base: robot.base(),
-            gravity: robot.options.robot.gravity,
+            gravity: robot.options.robot.gravity_in(&World::default()),
             errors: Vec::new(),
             warnings: Vec::new(),
             warning_lines: Vec::new(),

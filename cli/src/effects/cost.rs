@@ -62,16 +62,16 @@ pub(super) fn parts(session: &Session, functions: &[String]) -> Result<Vec<Part>
 }
 
 fn variant(session: &Session, what: &str, effects: Vec<Applied>) -> Variant {
-    let gravity = session.request.options.robot.gravity;
+    let gravity = session.model.gravity().into();
     Variant { what: what.to_owned(), places: effects.len(), effects, gravity, against: FIRST }
 }
 
 /// The scene without effects, the same without gravity, with each effect, and with all.
 fn variants(session: &Session) -> Vec<Variant> {
-    let (all, gravity) = (&session.effects, session.request.options.robot.gravity);
+    let (all, gravity) = (&session.effects, session.model.gravity());
     let variant = |what: &str, effects: Vec<Applied>| variant(session, what, effects);
     let mut variants = vec![variant("", Vec::new())];
-    if gravity != [0.0; 3] {
+    if gravity.norm() > 0.0 {
         variants.push(Variant { gravity: [0.0; 3], ..variant("gravity", Vec::new()) });
     }
     let mut kinds: Vec<EffectId> = all.iter().map(|a| a.effect).collect();
@@ -97,7 +97,7 @@ impl Part {
         let made = parallel::map(&self.variants, |variant| {
             let mut request = session.request.clone();
             let o = &mut request.options;
-            (o.robot.effects, o.robot.gravity) = (variant.effects.clone(), variant.gravity);
+            (o.robot.effects, o.robot.gravity) = (variant.effects.clone(), Some(variant.gravity));
             (o.functions, o.robot.frames, o.rust_mut().runtime, o.stages) =
                 (self.functions.iter().cloned().map(Into::into).collect(), None, None, false);
             (o.parameters, o.batch) = (Vec::new(), Vec::new());

@@ -36,7 +36,8 @@ pub(crate) fn run(arguments: &EvalArguments, format: Format) -> Result<u8, Failu
     let names = names::flat(&arguments.function);
     let functions = functions(&names);
     let states = read_states(&arguments.states, &model, &functions)?;
-    let mut report = Report::new(&robot, &built.effects, states.warnings.into_iter().chain(note_of_parameters(&robot.options)).collect());
+    let mut report =
+        Report::new(&robot, &model, &built.effects, states.warnings.into_iter().chain(note_of_parameters(&robot.options)).collect());
     report.warnings.iter().for_each(|w| console::warn(w));
     let massless = articulated_codegen::massless(&model);
     functions.iter().try_for_each(|f| articulated_codegen::defined(&robot.file, &model, &massless, f))?;

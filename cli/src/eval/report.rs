@@ -145,12 +145,12 @@ struct DifferenceInJson {
 }
 
 impl Report {
-    pub(super) fn new(robot: &Robot, effects: &[Applied], warnings: Vec<String>) -> Self {
+    pub(super) fn new(robot: &Robot, model: &Model<f64>, effects: &[Applied], warnings: Vec<String>) -> Self {
         Self {
             robot: robot.file.clone(),
             scene: robot.scene.clone(),
             base: robot.base(),
-            gravity: robot.options.robot.gravity,
+            gravity: model.gravity().into(),
             effects: sorts(effects),
             compiler: None,
             warnings,

@@ -19,7 +19,7 @@ fn flags_arrive_in_the_request() {
     let robot = articulated_models::robot("cart_pole").unwrap();
     let mut request = Request::new("cart_pole.urdf", robot.urdf);
     request.options.functions = vec!["gravity_torque".into(), "bias_forces".into()];
-    request.options.robot.gravity = [0.0, -1.5, 2.0];
+    request.options.robot.gravity = Some([0.0, -1.5, 2.0]);
     request.options.rust_mut().runtime = Some("::articulated".into());
     let source = generate(&request).unwrap().source;
     let words =

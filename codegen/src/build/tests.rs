@@ -110,7 +110,7 @@ fn a_scene_without_a_robot_asks_for_one() {
     let build = Build::scene(&scene);
     let error = build.request().unwrap_err().to_string();
     assert!(error.contains("Build::urdf"), "{error}");
-    assert_eq!(build.urdf(folder.join("arm.urdf")).request().unwrap().options.robot.gravity, [0.0; 3]);
+    assert_eq!(build.urdf(folder.join("arm.urdf")).request().unwrap().options.robot.gravity, Some([0.0; 3]));
     fs::remove_dir_all(folder).unwrap();
 }
 

@@ -94,7 +94,7 @@ fn other_gravity_and_other_effects_are_those_of_a_request_that_asks_for_them() {
             parameters: parameters.to_vec(),
         };
         let [damping, loss, speed, inertia, ratio] = numbers;
-        request.options.robot.gravity = gravity;
+        request.options.robot.gravity = Some(gravity);
         request.options.robot.effects = vec![
             on(EffectId::damping, "slide", &[damping]),
             on(EffectId::friction, "shoulder", &[loss, speed]),

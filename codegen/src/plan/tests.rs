@@ -69,7 +69,7 @@ fn functions_that_nobody_knows_are_told_of_a_robot_that_cannot_be_read_too() {
 #[test]
 fn numbers_that_cannot_be_are_told_once_and_with_all_else() {
     let told = error_of(|o| {
-        o.robot.gravity = [0.0, f64::NAN, 0.0];
+        o.robot.gravity = Some([0.0, f64::NAN, 0.0]);
         o.robot.snap_angles = Some(2.0);
         o.functions = vec!["no_such".into()];
     });

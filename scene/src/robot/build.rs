@@ -6,7 +6,7 @@
 
 use std::collections::HashSet;
 
-use articulated_core::description::{Base, Description, EditError, Editor};
+use articulated_core::description::{Base, EditError, Editor};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Span, Spanned, Subject, Unused};
 use articulated_core::effect::Applied;
 use articulated_core::model::{Model, ModelError};
@@ -15,6 +15,7 @@ use articulated_formats::{Options, Reading, SNAP_EXPECTED, can_snap, read_with};
 
 use super::options::{Appended, RobotOptions, RobotRequest};
 use crate::effects::{Edited, Resolved};
+use crate::world::RobotInWorld;
 
 /// A robot as requested.
 #[derive(Clone, Debug)]
@@ -89,8 +90,8 @@ impl RobotRequest<'_> {
     /// Numbers that cannot be, whatever the robot.
     fn check_numbers(&self, log: &mut Diagnostics) {
         let wrong = |key, found, expected| Diagnostic::error("", (Default::default(), key), Code::Number, found, expected);
-        if self.options.gravity.iter().any(|x| !x.is_finite()) {
-            log.push(wrong("gravity", format!("{:?}", self.options.gravity), "three finite numbers in m/s²"));
+        if let Some(gravity) = self.options.gravity.filter(|gravity| gravity.iter().any(|x| !x.is_finite())) {
+            log.push(wrong("gravity", format!("{gravity:?}"), "three finite numbers in m/s²"));
         }
         if let Some(x) = self.options.snap_angles.filter(|x| !can_snap(*x)) {
             log.push(wrong("snap_angles", x.to_string(), SNAP_EXPECTED));
@@ -115,14 +116,14 @@ impl RobotRequest<'_> {
 
     fn bare_model(&self, editing: &Editing<'_>, log: &mut Diagnostics) -> Option<Model<f64>> {
         let refusal = |error: ModelError| Diagnostic::refusal(self.file, Place::DOCUMENT, Code::Model, error.to_string());
-        self.model(&editing.reading.description).map_err(|error| log.push(refusal(error))).ok()
+        self.model(&editing.reading).map_err(|error| log.push(refusal(error))).ok()
     }
 
-    /// The model of a description, with the gravity and the reference of wrenches of the request,
+    /// The model of what was read, with the gravity and the reference of wrenches of the request,
     /// without effects.
-    fn model(&self, description: &Description) -> Result<Model<f64>, ModelError> {
-        let gravity = self.options.gravity.map(|x| if x.is_finite() { x } else { 0.0 });
-        let model = Model::new(description, self.options.base)?;
+    fn model(&self, reading: &Reading) -> Result<Model<f64>, ModelError> {
+        let gravity = self.options.gravity_in(&reading.world).map(|x| if x.is_finite() { x } else { 0.0 });
+        let model = Model::new(&reading.description, self.options.base)?;
         Ok(model.with_gravity(gravity).with_wrenches_in(self.options.wrench_reference))
     }
 
@@ -130,7 +131,7 @@ impl RobotRequest<'_> {
     /// `None`: it is not a robot any more.
     #[must_use]
     pub fn model_of(&self, robot: &BuiltRobot) -> Option<Model<f64>> {
-        self.model(&robot.reading.description).ok()?.with_effects(&robot.effects).ok()
+        self.model(&robot.reading).ok()?.with_effects(&robot.effects).ok()
     }
 
     /// The model with the scene's effects and the request's, without those that are refused.
@@ -141,7 +142,7 @@ impl RobotRequest<'_> {
             let robot = Edited { description, base: self.options.base, unused, shafts: &editing.springs };
             let resolved = scene.resolve_into(&robot, &mut own);
             if self.checks_motion {
-                own.take(scene.fits(&model).err().unwrap_or_default());
+                own.take(scene.fits(RobotInWorld { model: &model, world: &editing.reading.world }).err().unwrap_or_default());
             }
             // A refused shaft would have brought names.
             let refused: Vec<&str> = scene
@@ -239,6 +240,9 @@ impl Editing<'_> {
             let at = Entry::named(coupling, format!("coupling.{}", coupling.joint), "coupling");
             self.take(&at, editor.couple(coupling), log);
         }
+        if options.file_coupling {
+            self.couple_as_the_file_says(&mut editor, log);
+        }
         for lock in &options.lock {
             let (joint, coordinates) = &lock.value;
             let at = Entry::named(lock, format!("lock.{joint}"), "lock");
@@ -246,6 +250,21 @@ impl Editing<'_> {
         }
         self.reading.description = description;
         appended
+    }
+
+    /// Linear equations of the robot's file are edits. Warnings that they are not applied go.
+    fn couple_as_the_file_says(&mut self, editor: &mut Editor<'_>, log: &mut Diagnostics) {
+        if self.reading.world.couplings.is_empty() {
+            let place = (Default::default(), "coupling");
+            let found = "\"file\", and the robot's file has no linear equations of joints";
+            log.error(place, Code::Edit, found, "no key coupling, or a table of joints");
+        }
+        for (coupling, at) in std::mem::take(&mut self.reading.world.couplings) {
+            let joint = coupling.joint.clone();
+            let entry = Spanned::new(coupling, self.request.file, at);
+            self.take(&Entry::named(&entry, format!("joint {joint:?}"), "coupling"), editor.couple(&entry), log);
+        }
+        self.reading.warnings.retain(|warning| warning.field != "coupling");
     }
 
     fn refuse(&self, at: &Entry<'_>, code: Code, sentence: String, log: &mut Diagnostics) {

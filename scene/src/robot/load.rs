@@ -257,7 +257,7 @@ impl Scene {
     pub fn fill_robot(&self, options: &mut RobotOptions) {
         let (code, places) = (self.code.clone(), &self.code.places);
         options.base = self.base.unwrap_or(options.base);
-        options.gravity = self.gravity.unwrap_or(options.gravity);
+        options.gravity = self.gravity.or(options.gravity);
         options.frames = code.frames.map(|names| self.spanned(names, &places.frames));
         options.wrench_reference = code.wrenches_in.unwrap_or_default();
         options.append = code
@@ -274,6 +274,7 @@ impl Scene {
         options.payloads = code.payload.into_iter().map(|load| self.span(load.payload, load.place)).collect();
         options.shafts = self.shafts.iter().map(|asked| self.span(asked.shaft.clone(), asked.place)).collect();
         options.coupling = code.coupling.into_iter().map(|follower| self.span(follower.coupling, follower.place)).collect();
+        options.file_coupling = code.file_coupling;
         options.lock = code.lock.into_iter().map(|lock| self.span((lock.joint, lock.at), lock.place)).collect();
         options.allow_unphysical_inertia = code.allow_unphysical_inertia.unwrap_or(options.allow_unphysical_inertia);
         options.snap_angles = code.snap_angles;

@@ -8,6 +8,7 @@ use articulated_core::diagnostic::Spanned;
 use articulated_core::effect::Applied;
 use articulated_core::model::GRAVITY;
 use articulated_core::spatial::Reference;
+use articulated_formats::world::World;
 use articulated_formats::{Formats, Included};
 
 use crate::scene::Scene;
@@ -18,8 +19,9 @@ use crate::scene::Scene;
 pub struct RobotOptions {
     /// Whether the root link is fixed.
     pub base: Base,
-    /// Gravity in the world frame, m/s².
-    pub gravity: [f64; 3],
+    /// Gravity in the world frame, m/s²; `None`: that of the robot's file, or else standard
+    /// gravity.
+    pub gravity: Option<[f64; 3]>,
     /// Names of the links whose frames the functions of frames return, in this order; `None`: all
     /// of them, in the order of the file.
     pub frames: Option<Vec<Spanned<String>>>,
@@ -36,6 +38,9 @@ pub struct RobotOptions {
     /// Joints that follow others, see
     /// [`couple`](articulated_core::description::Description::couple).
     pub coupling: Vec<Spanned<Coupling>>,
+    /// Lets joints follow others as linear equations of the robot's file say
+    /// ([`World::couplings`]).
+    pub file_coupling: bool,
     /// Joints to lock and their coordinates, see
     /// [`lock`](articulated_core::description::Description::lock); also joints of appended robots.
     pub lock: Vec<Spanned<(String, Vec<f64>)>>,
@@ -96,13 +101,14 @@ impl Default for RobotOptions {
     fn default() -> Self {
         Self {
             base: Base::Fixed,
-            gravity: GRAVITY,
+            gravity: None,
             frames: None,
             wrench_reference: Reference::Body,
             append: Vec::new(),
             payloads: Vec::new(),
             shafts: Vec::new(),
             coupling: Vec::new(),
+            file_coupling: false,
             lock: Vec::new(),
             effects: Vec::new(),
             allow_unphysical_inertia: false,
@@ -116,6 +122,12 @@ impl Default for RobotOptions {
 }
 
 impl RobotOptions {
+    /// Gravity in the world frame, m/s², of a robot whose file says this of its world.
+    #[must_use]
+    pub fn gravity_in(&self, world: &World) -> [f64; 3] {
+        self.gravity.or(world.gravity).unwrap_or(GRAVITY)
+    }
+
     /// Takes these frames instead, as a program chooses them.
     pub fn set_frames<N: Into<String>>(&mut self, names: impl IntoIterator<Item = N>) {
         self.frames = Some(names.into_iter().map(|name| name.into().into()).collect());

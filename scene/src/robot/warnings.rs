@@ -63,7 +63,7 @@ impl Editing<'_> {
 
     /// Warns of a gravity that no place has.
     fn warn_of_gravity(&mut self) {
-        let gravity = self.request.options.gravity;
+        let gravity = self.request.options.gravity_in(&self.reading.world);
         let size = gravity.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         if size > MOST_GRAVITY {
             self.reading.warnings.push(warning(

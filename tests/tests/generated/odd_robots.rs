@@ -117,7 +117,7 @@ fn gravity_and_base_are_the_requests() {
     let mut request = Request::new("double_pendulum.urdf", urdf);
     request.options.functions = vec!["gravity_torque".into()];
     let standing = generate(&request).unwrap();
-    request.options.robot.gravity = [0.0; 3];
+    request.options.robot.gravity = Some([0.0; 3]);
     let weightless = generate(&request).unwrap();
     assert_eq!(weightless.ledger.functions[0].emitted().instructions(), 0, "no gravity, no operation");
     request.options.robot.base = Base::Floating;

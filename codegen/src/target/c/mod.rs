@@ -208,7 +208,7 @@ impl Source<'_> {
     /// What a file says of itself.
     fn origin(&self, out: &mut String) {
         let Module { request, model, .. } = self.module;
-        let [x, y, z] = request.options.robot.gravity;
+        let [x, y, z]: [f64; 3] = model.gravity().into();
         let floats =
             if model.joints().first().is_some_and(|j| j.name == articulated_core::model::FLOATING_BASE) { "floating" } else { "fixed" };
         let text = |name: &str| name.escape_debug().to_string().replace("*/", "* /");

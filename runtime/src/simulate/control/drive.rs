@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use articulated_core::algorithm::{FunctionError, FunctionId};
-use articulated_core::control::{Aim, Controller, Series};
+use articulated_core::control::{Actuators, Aim, Controller, Series, Signal};
 use articulated_core::dynamics::Dynamics;
 
 use super::{Control, Dependence};
@@ -16,11 +16,14 @@ use crate::simulate::{SimulateError, StateError, manifold::Manifold};
 /// torque    τ = the given one
 /// table     τ = that of the table at the time
 /// pd        τ = kp (target ⊖ q) + kd (target' − v) + torque
+/// actuators τ = Σ gear · force(control, q, v)
 /// ```
 pub struct Drive<'r, R: Dynamics<f64>> {
     controller: Cow<'r, Controller>,
     period: Option<f64>,
     pub(super) pursuit: Pursuit<'r, R>,
+    /// The controls of actuators at one time.
+    controls: Vec<f64>,
 }
 
 /// The tracking error.
@@ -55,7 +58,11 @@ impl<'r, R: Dynamics<f64>> Drive<'r, R> {
         if matches!(*controller, Controller::Pd { .. }) && !pursuit.is_flat() {
             robot.check_function(&mut pursuit.ws, FunctionId::difference)?;
         }
-        Ok(Self { controller, period: None, pursuit })
+        let controls = match &*controller {
+            Controller::Actuators(actuators) => vec![0.0; actuators.laws.len()],
+            _ => Vec::new(),
+        };
+        Ok(Self { controller, period: None, pursuit, controls })
     }
 }
 
@@ -122,6 +129,13 @@ impl<R: Dynamics<f64>> Control for Drive<'_, R> {
                     tau[i] = kp[i] * error[i] + kd[i] * (rate[i] - v[i]) + torque[i];
                 }
             }
+            Controller::Actuators(actuators) => {
+                match &actuators.controls {
+                    Signal::Still(still) => self.controls.copy_from_slice(still),
+                    Signal::Moving(series) => series.at(t, &mut self.controls),
+                }
+                actuators.add_torques(&self.controls, q, v, tau);
+            }
         }
     }
 
@@ -131,7 +145,9 @@ impl<R: Dynamics<f64>> Control for Drive<'_, R> {
 
     fn next_kink(&self, t: f64) -> f64 {
         match &*self.controller {
-            Controller::Table(series) | Controller::Pd { target: Aim::Moving(series), .. } => series.next(t),
+            Controller::Table(series)
+            | Controller::Pd { target: Aim::Moving(series), .. }
+            | Controller::Actuators(Actuators { controls: Signal::Moving(series), .. }) => series.next(t),
             _ => f64::INFINITY,
         }
     }
@@ -146,8 +162,43 @@ impl<R: Dynamics<f64>> Control for Drive<'_, R> {
             Controller::None | Controller::Torque(_) => Dependence::NOTHING,
             Controller::Table(_) => Dependence { time: true, state: false },
             Controller::Pd { target, .. } => Dependence { time: matches!(target, Aim::Moving(_)), state: true },
+            Controller::Actuators(actuators) => {
+                Dependence { time: matches!(actuators.controls, Signal::Moving(_)), state: actuators.depend_on_state() }
+            }
         }
     }
+}
+
+/// Numbers of actuators that are not finite or do not fit a robot of `nq` coordinates.
+fn wrong_actuators(actuators: &Actuators, nq: usize, nv: usize) -> Vec<StateError> {
+    let Actuators { laws, controls, bounds, passive } = actuators;
+    let mut wrong: Vec<StateError> = match controls {
+        Signal::Still(u) => StateError::of("control.ctrl", u, laws.len(), |_| None).collect(),
+        Signal::Moving(series) => StateError::of_table("control.rows", series, laws.len()).collect(),
+    };
+    let mut range = |event: &str, [lower, upper]: [f64; 2]| {
+        // Also where one of them is no number.
+        if lower.partial_cmp(&upper).is_none_or(|order| order == std::cmp::Ordering::Greater) {
+            wrong.push(StateError::Bounds { event: event.to_owned(), lower, upper });
+        }
+    };
+    for law in laws.iter().chain(passive) {
+        law.control_range.into_iter().chain(law.force_range).for_each(|bounds| range(&law.name, bounds));
+    }
+    bounds.iter().for_each(|(_, bounds)| range("bounds of torques", *bounds));
+    for law in laws.iter().chain(passive) {
+        wrong.extend(StateError::of("gain of an actuator", &law.gain, 3, |_| None));
+        wrong.extend(StateError::of("bias of an actuator", &law.bias, 3, |_| None));
+        for drive in &law.drives {
+            wrong.extend(StateError::of("gear of an actuator", &drive.gear, drive.gear.len(), |_| None));
+            for (vector, first, count, length) in [("q", drive.q, 1, nq), ("v", drive.v, drive.gear.len(), nv)] {
+                if first.saturating_add(count) > length {
+                    wrong.push(StateError::Beyond { event: law.name.clone(), vector, index: first, length });
+                }
+            }
+        }
+    }
+    wrong
 }
 
 /// Vectors that do not fit the robot, under these names. Errors: a robot whose coordinates are
@@ -170,5 +221,6 @@ fn wrong<R: Dynamics<f64>>(
             let freedoms = [(kp, p), (kd, d), (torque, given)];
             aim.into_iter().chain(freedoms.into_iter().flat_map(|(name, x)| StateError::of_freedoms(name, x, robot))).collect()
         }
+        Controller::Actuators(actuators) => wrong_actuators(actuators, robot.shape().nq, robot.shape().nv),
     })
 }

@@ -58,7 +58,7 @@ impl Peer {
     fn open(session: &Session, library: &Library, urdf: &Path, start: (&[f64], &[f64]), seconds: f64) -> Result<Option<Self>, String> {
         let opened = Native::open(&library.path)?;
         let engine = library.engine.clone().or_else(|| opened.peer_name()).ok_or("it has no function peer_name")?;
-        let gravity = session.request.options.robot.gravity;
+        let gravity = session.model.gravity().into();
         if !opened.simulates() {
             return Ok(None);
         }

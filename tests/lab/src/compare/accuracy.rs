@@ -75,7 +75,7 @@ impl Reference {
         if self.against() == Against::Library {
             return Some(Exact::library(model));
         }
-        Exact::textbook(&self.description, self.options.robot.base, self.options.robot.gravity).ok()?.with_frames_of(model)
+        Exact::textbook(&self.description, self.options.robot.base, model.gravity().into()).ok()?.with_frames_of(model)
     }
 }
 

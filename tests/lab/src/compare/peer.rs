@@ -62,7 +62,7 @@ impl Peer {
     pub(crate) fn open(library: Library, urdf: &Path, robot: &Robot, model: &Model<f64>) -> Result<Self, String> {
         let opened = Native::open(&library.path)?;
         let name = library.name.clone().or_else(|| opened.peer_name()).ok_or("it has no function peer_name")?;
-        let native = NativePeer::open(&opened, urdf, robot.floating(), robot.options.robot.gravity)?;
+        let native = NativePeer::open(&opened, urdf, robot.floating(), model.gravity().into())?;
         let (q, v) = orders(&native, model)?;
         let links = model.links().enumerate().all(|(k, i)| native.joint_name(k).is_some_and(|name| name == model.bodies()[i].name));
         let code = library.code(&robot.document, robot.floating()).cloned();

@@ -284,7 +284,7 @@ impl Report {
             robot: robot.file.clone(),
             scene: robot.scene.clone(),
             base: robot.base(),
-            gravity: robot.options.robot.gravity,
+            gravity: model.gravity().into(),
             joints: model.joints().len(),
             degrees_of_freedom: model.nv(),
             states: settings.states,

@@ -15,7 +15,7 @@ use crate::target::rust::RustOptions;
 pub(crate) fn header(out: &mut String, module: &Module<'_>, rust: &RustOptions) {
     let Module { request, model, unused, snapped, .. } = module;
     let o = &request.options;
-    let [x, y, z] = o.robot.gravity;
+    let [x, y, z]: [f64; 3] = model.gravity().into();
     let base = if o.robot.base == Base::Fixed { "fixed" } else { "floating" };
     let mut line = |text: &str| {
         let _ = writeln!(out, "// {}", printable(text));
@@ -76,6 +76,7 @@ fn edits(module: &Module<'_>) -> Vec<String> {
     for c in values(&o.robot.coupling) {
         lines.push(format!("Follows: joint {:?}: {:?}, offset {:?}.", c.joint, c.leaders, c.offset));
     }
+    lines.extend(o.robot.file_coupling.then(|| "Follow: joints by the linear equations of the file.".to_owned()));
     for (joint, at) in values(&o.robot.lock) {
         lines.push(format!("Locked: joint {joint:?} at {at:?}."));
     }

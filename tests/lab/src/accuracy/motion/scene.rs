@@ -3,7 +3,7 @@
 use articulated::simulate::Settings;
 use articulated_core::description::Base;
 use articulated_motion::InitialState;
-use articulated_scene::{Aim, Controller};
+use articulated_scene::{Actuators, Aim, Controller, Signal};
 
 use super::subject::Subject;
 use crate::error::Error;
@@ -23,7 +23,7 @@ pub(super) fn subject(session: &Session) -> Result<Subject, Error> {
     let InitialState { q, v, controller } = session.start()?;
     let Settings { start, end, .. } = scene.simulation.as_ref().map_or_else(Settings::default, |s| s.settings.clone());
     let options = &session.request.options;
-    let inside = options.robot.gravity == [0.0; 3] && options.robot.effects.is_empty() && !pushes_base(&controller);
+    let inside = session.model.gravity().norm() == 0.0 && options.robot.effects.is_empty() && !pushes_base(&controller);
     Ok(Subject {
         model: session.model.clone(),
         q,
@@ -43,6 +43,9 @@ fn pushes_base(controller: &Controller) -> bool {
         Controller::Torque(tau) => some(tau),
         Controller::Table(series) => series.rows.iter().any(|row| some(row)),
         Controller::Pd { kp, kd, torque, .. } => some(kp) || some(kd) || some(torque),
+        Controller::Actuators(actuators) => {
+            actuators.laws.iter().chain(&actuators.passive).flat_map(|law| &law.drives).any(|drive| drive.v < 6)
+        }
     }
 }
 
@@ -51,7 +54,10 @@ impl Subject {
     pub(super) fn notes(&self) -> Vec<String> {
         let (controller, period) = &self.control;
         let mut notes = Vec::new();
-        if let Controller::Table(series) | Controller::Pd { target: Aim::Moving(series), .. } = controller {
+        if let Controller::Table(series)
+        | Controller::Pd { target: Aim::Moving(series), .. }
+        | Controller::Actuators(Actuators { controls: Signal::Moving(series), .. }) = controller
+        {
             notes.push(self.of_table(&series.times, period.is_some()));
         }
         if let Some(period) = period {

@@ -1,0 +1,116 @@
+//! What the robot's file says of its world, against a robot: states and actuators.
+
+use std::sync::LazyLock;
+
+use articulated_core::control::{ActuatorLaw, Actuators, Signal, Transmission};
+use articulated_core::diagnostic::{At, Code, Diagnostics, quote};
+use articulated_core::model::Model;
+use articulated_core::suggest::nearest;
+use articulated_formats::world::{Actuator, Keyframe, World};
+
+use crate::initial::{Coordinates, counted};
+
+/// The world of a file that says nothing.
+static NOTHING: LazyLock<World> = LazyLock::new(World::default);
+
+/// A robot that a scene moves: its model, and the world of its file.
+#[derive(Clone, Copy, Debug)]
+pub struct RobotInWorld<'a> {
+    /// The model of the robot as the scene leaves it.
+    pub model: &'a Model<f64>,
+    /// What the robot's file says beside the robot.
+    pub world: &'a World,
+}
+
+impl<'a> From<&'a Model<f64>> for RobotInWorld<'a> {
+    fn from(model: &'a Model<f64>) -> Self {
+        Self { model, world: &NOTHING }
+    }
+}
+
+impl<'a> RobotInWorld<'a> {
+    /// The state of the file with this name.
+    pub(crate) fn keyframe(self, name: &str, place: (At, &str), log: &mut Diagnostics) -> Option<&'a Keyframe> {
+        let found = self.world.keyframes.iter().find(|keyframe| keyframe.name == name);
+        if found.is_none() {
+            let names = || self.world.keyframes.iter().map(|keyframe| keyframe.name.as_str());
+            let near = nearest(name, names()).map(|near| format!("; did you mean {near:?}?")).unwrap_or_default();
+            let expected = match names().next() {
+                None => "no key: the robot's file has no keyframes".to_owned(),
+                Some(_) => format!("one of {}{near}", articulated_core::listed(names())),
+            };
+            log.error(place, Code::UnknownName, format!("the keyframe {}", quote(name)), expected);
+        }
+        found
+    }
+
+    /// Writes the numbers of joints, as a file has them, into a vector of the robot. Joints that
+    /// the scene locked, or that follow others, have no numbers.
+    pub(crate) fn put(self, numbers: &[(String, Vec<f64>)], is_rates: bool, into: &mut [f64]) {
+        for (name, values) in numbers {
+            let Some(joint) = self.model.joints().iter().find(|joint| joint.name == *name) else { continue };
+            let (first, count) = if is_rates { joint.v } else { joint.q };
+            if values.len() == count {
+                into[first..first + count].copy_from_slice(values);
+            }
+        }
+    }
+
+    /// Writes the controls that a scene gives, in the order of the file's actuators or by name.
+    pub(crate) fn put_controls(self, from: &Coordinates, into: &mut [f64], log: &mut Diagnostics) {
+        match from {
+            Coordinates::Neutral => {}
+            Coordinates::All { values, .. } if values.len() == into.len() => into.copy_from_slice(values),
+            Coordinates::All { values, place } => {
+                let expected = format!("{}, one for each actuator of the robot's file", counted(into.len()));
+                log.error((*place, "control.ctrl"), Code::Number, counted(values.len()), expected);
+            }
+            Coordinates::Named(named) => {
+                for one in named {
+                    let key = format!("control.ctrl.{}", crate::table::bare(&one.joint));
+                    let actuators = &self.world.actuators;
+                    match (actuators.iter().position(|actuator| actuator.name == one.joint), one.values.as_slice()) {
+                        (Some(k), &[u]) => into[k] = u,
+                        (Some(_), values) => log.error((one.place, &key), Code::Number, counted(values.len()), "one number"),
+                        (None, _) => {
+                            let names = actuators.iter().map(|actuator| actuator.name.as_str());
+                            let found = ("no such actuator".to_owned(), one.joint.as_str());
+                            log.unknown(((one.place, &key), Code::UnknownName), found, "an actuator of the robot's file", names);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// The actuators of the file on this robot. A joint that is locked, or follows another, has no
+    /// torque of its own: an actuator on it is an error.
+    pub(crate) fn actuators(self, controls: Signal, place: (At, &str), log: &mut Diagnostics) -> Actuators {
+        let mut laws = |all: &[Actuator]| all.iter().map(|actuator| self.law(actuator, place, log)).collect();
+        let (laws, passive) = (laws(&self.world.actuators), laws(&self.world.passive));
+        let degree = |(name, range): &(String, [f64; 2])| {
+            let joint = self.model.joints().iter().find(|joint| joint.name == *name && joint.v.1 == 1)?;
+            Some((joint.v.0, *range))
+        };
+        Actuators { laws, controls, bounds: self.world.joint_forces.iter().filter_map(degree).collect(), passive }
+    }
+
+    fn law(self, actuator: &Actuator, place: (At, &str), log: &mut Diagnostics) -> ActuatorLaw {
+        let mut transmission = |(joint, gear): &(String, Vec<f64>)| {
+            let found = self.model.joints().iter().find(|one| one.name == *joint && one.v.1 == gear.len());
+            if found.is_none() {
+                let found = format!("the actuator {} on joint {}, which is locked or follows another", quote(&actuator.name), quote(joint));
+                log.error(place, Code::Robot, found, "joints that move by themselves, or control of another kind");
+            }
+            found.map(|one| Transmission { q: one.q.0, v: one.v.0, gear: gear.clone() })
+        };
+        ActuatorLaw {
+            name: actuator.name.clone(),
+            drives: actuator.drives.iter().filter_map(&mut transmission).collect(),
+            gain: actuator.gain,
+            bias: actuator.bias,
+            control_range: actuator.control_range,
+            force_range: actuator.force_range,
+        }
+    }
+}
