@@ -123,6 +123,8 @@ pub(crate) enum Command {
         "articulated simulate double_pendulum",
         "articulated simulate quadruped_drop -o drop              (then open drop/motion.html)",
         "articulated simulate arm.toml -o arm.html --package arm_description=../arm_description",
+        "articulated simulate model.xml -o motion                 (an MJCF: its smooth motion)",
+        "articulated simulate model.xml --print-scene > arm.toml  (a scene to begin with)",
         "articulated simulate arm.toml --mcap arm.mcap            (for Foxglove)",
         "articulated simulate arm.toml -o arm --end 5 --integrator dop853 --rtol 1e-10",
         "articulated simulate arm.toml --generated --format json",

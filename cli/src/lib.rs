@@ -20,6 +20,7 @@ mod names;
 mod new;
 mod output;
 mod robot;
+mod robot_scene;
 mod scaling;
 mod shape;
 mod simulate;

@@ -6,9 +6,11 @@ use articulated_codegen::nearest;
 use articulated_codegen::scene::{self, Bundled, Prepared, Scene};
 use articulated_formats::Formats;
 use articulated_lab::session::Session;
+use articulated_scene::folder_of;
 
 use crate::console;
 use crate::failure::Failure;
+use crate::robot_scene;
 
 /// Whether a word names a scene where a robot is accepted too; names of robots take precedence.
 pub(crate) fn is_scene(path: &Path) -> bool {
@@ -27,12 +29,17 @@ pub(crate) fn open(path: &Path) -> Result<(Prepared, PathBuf), Failure> {
     if !path.exists() {
         return Err(unknown(name));
     }
-    let is_robot = path.extension().is_some_and(|ending| Formats::default().has_ending(&ending.to_string_lossy()));
-    if path.is_file() && is_robot {
-        let (found, key) = if ends_with(path, "urdf") { ("a URDF", "urdf") } else { ("a robot", "file") };
-        return Err(Failure::input([format!("{name}: found {found}, expected a scene, a TOML file with {key} = {name:?} in it")]));
+    if is_robot(path) {
+        let folder = folder_of(path);
+        let scene = Scene::read(name, &robot_scene::text(path)?)?;
+        return Ok((scene::open_in(scene, folder, &robots())?, folder.to_owned()));
     }
     Ok((scene::open(path, &robots())?, path.parent().map(Path::to_owned).unwrap_or_default()))
+}
+
+/// Whether a path is a robot's file, which [`robot_scene`] makes a scene of.
+pub(crate) fn is_robot(path: &Path) -> bool {
+    path.is_file() && path.extension().is_some_and(|ending| Formats::default().has_ending(&ending.to_string_lossy()))
 }
 
 /// The scene with its robot. Warnings about the robot are printed.

@@ -50,8 +50,8 @@ impl Session {
         let BuiltRobot { reading, model, resolved, .. } = opened.build()?;
         let Reading { description, mut warnings, snapped, world, .. } = reading;
         warnings.extend(snapped);
-        let session = Self::new(opened.scene, description, model, resolved.effects);
-        Ok(Self { warnings, report: resolved.report, world, ..session })
+        let session = Self::new(opened.scene, description, model, resolved.effects).in_world(world);
+        Ok(Self { warnings, report: resolved.report, ..session })
     }
 
     /// From matching parts: `model` is that of `description` and has `effects`, as
@@ -68,6 +68,12 @@ impl Session {
             world: World::default(),
             folder: PathBuf::new(),
         }
+    }
+
+    /// With what the robot's file says beside the robot: states, actuators, the time step.
+    #[must_use]
+    pub fn in_world(self, world: World) -> Self {
+        Self { scene: self.scene.with_step_of(&world), world, ..self }
     }
 
     /// Resolves paths in the scene relative to this folder, that of the scene's file.

@@ -1,6 +1,6 @@
 //! `[simulation]`: from when to when, by which integrator, how exactly, and what is recorded.
 
-use articulated_core::diagnostic::{Code, Diagnostics};
+use articulated_core::diagnostic::{At, Code, Diagnostics};
 use std::iter;
 
 use articulated_core::algorithm::Shape;
@@ -20,6 +20,8 @@ pub struct Simulation {
     /// Whether the scene names its integrator.
     /// [`Scene::default_integrator`](crate::Scene::default_integrator) is taken otherwise.
     pub names_integrator: bool,
+    /// Whether the fixed step is that of the robot's file, and where the scene says so.
+    pub file_step: Option<At>,
 }
 
 /// What is looked for on the way.
@@ -75,10 +77,13 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
     Row {
         name: "step",
         required: false,
-        value: "number, s",
+        value: "number, s, or `\"file\"`",
         default: "chosen by the errors; has to be given for `semi_implicit_euler`, `rk4` and `lie_midpoint`",
-        what: "length of all steps, above 0, and more than the time's rounding",
-        read: |x, s, log| x.settings.step = s.any(log),
+        what: "length of all steps, above 0, and more than the time's rounding; `\"file\"`: that of the robot's file (MJCF)",
+        read: |x, s, log| match &s.node.value {
+            Value::Text(word) if word == "file" => x.file_step = Some(s.at),
+            _ => x.settings.step = s.any(log),
+        },
     },
     Row {
         name: "rtol",
@@ -174,7 +179,11 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Simulation>
     let before = log.count();
     spot.read(KEYS, &mut simulation, log);
     let right = log.right(&spot.key, KEYS.iter().map(|row| row.name), before);
-    check(&simulation.settings, spot, &right, log);
+    let mut settings = simulation.settings.clone();
+    if simulation.file_step.is_some() {
+        settings.step = Some(A_STEP * (settings.end - settings.start));
+    }
+    check(&settings, spot, &right, log);
     (log.count() == before).then_some(simulation)
 }
 
@@ -195,6 +204,9 @@ fn check(settings: &Settings, spot: &Spot<'_>, right: &[&str], log: &mut Diagnos
         }
     }
 }
+
+/// A step that no check refuses, in parts of the motion: only the robot's file has the right one.
+const A_STEP: f64 = 1e-3;
 
 /// What is recorded of the smallest robot is recorded of every one.
 const ANY_ROBOT: Shape = Shape { nq: 0, nv: 0, frames: 0, links: 0 };

@@ -9,6 +9,7 @@ use articulated_core::suggest::nearest;
 use articulated_formats::world::{Actuator, Keyframe, World};
 
 use crate::initial::{Coordinates, counted};
+use crate::scene::Scene;
 
 /// The world of a file that says nothing.
 static NOTHING: LazyLock<World> = LazyLock::new(World::default);
@@ -25,6 +26,25 @@ pub struct RobotInWorld<'a> {
 impl<'a> From<&'a Model<f64>> for RobotInWorld<'a> {
     fn from(model: &'a Model<f64>) -> Self {
         Self { model, world: &NOTHING }
+    }
+}
+
+impl Scene {
+    /// Where the scene takes its step from the robot's file, that has one.
+    pub(crate) fn check_file_step(&self, world: &World, log: &mut Diagnostics) {
+        let place = self.simulation.as_ref().and_then(|simulation| simulation.file_step);
+        if let (Some(place), None) = (place, world.step) {
+            log.error((place, "simulation.step"), Code::Robot, "\"file\", and the robot's file has no time step", "a number, s");
+        }
+    }
+
+    /// The scene with the step of the robot's file, where it asks for that.
+    #[must_use]
+    pub fn with_step_of(mut self, world: &World) -> Self {
+        if let Some(simulation) = self.simulation.as_mut().filter(|simulation| simulation.file_step.is_some()) {
+            simulation.settings.step = world.step;
+        }
+        self
     }
 }
 

@@ -9,9 +9,13 @@ use crate::arguments::Package;
 #[derive(Args, Debug, Default)]
 #[command(group = ArgGroup::new("written").args(["output", "mcap"]).multiple(true))]
 pub(crate) struct SimulateArguments {
-    /// A bundled scene's name, or the path of a scene
+    /// A bundled scene's name, the path of a scene, or the path of a robot's file (MJCF, SDF, URDF),
+    /// whose smooth motion is simulated
     #[arg(value_name = "SCENE", required_unless_present = "all")]
     pub(crate) scene: Option<PathBuf>,
+    /// Print the scene that a robot's file is simulated as, to begin a scene of your own
+    #[arg(long, conflicts_with_all = ["all", "output", "mcap", "generated", "against", "end", "integrator", "step", "rtol", "atol", "every"])]
+    pub(crate) print_scene: bool,
     /// Instead of one scene, how fast each bundled scene is, by generated and by generic code
     #[arg(long, conflicts_with_all = ["scene", "output", "generated", "against", "mcap"])]
     pub(crate) all: bool,

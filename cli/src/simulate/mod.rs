@@ -28,7 +28,7 @@ use crate::arguments::Format;
 use crate::console::{self, Progress};
 use crate::failure::{Failure, INPUT, OK, OUT_OF_TOLERANCE};
 use crate::robot::has_room;
-use crate::{named_scene, output};
+use crate::{named_scene, output, robot_scene};
 use arguments::SimulateArguments;
 use files::Files;
 use motion::Motion;
@@ -38,7 +38,20 @@ use summary::Summary;
 /// Simulates and writes.
 pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
     let Some(scene) = &arguments.scene else { return all::run(arguments, format) };
+    if arguments.print_scene {
+        if !named_scene::is_robot(scene) {
+            return Err(Failure::input([format!(
+                "{}: --print-scene: found no file of a robot, expected a URDF, MJCF or SDF",
+                scene.display()
+            )]));
+        }
+        console::print(&robot_scene::text(scene)?)?;
+        return Ok(OK);
+    }
     let session = named_scene::session(scene)?;
+    if named_scene::is_robot(scene) {
+        robot_scene::note(scene)?.iter().for_each(|line| console::note(line));
+    }
     has_room(&session.scene.file, session.model.nv())?;
     let settings = settings::of(&session, arguments);
     let (mut settings, initial) = Failure::both(settings, session.start().map_err(Failure::from))?;

@@ -20,7 +20,7 @@ pub(super) fn of(session: &Session, arguments: &SimulateArguments) -> Result<Set
     settings.end = a.end.unwrap_or(settings.end);
     settings.rtol = a.rtol.unwrap_or(settings.rtol);
     settings.atol = a.atol.unwrap_or(settings.atol);
-    choose_steps(&mut settings, a, file)?;
+    choose_steps(&mut settings, a, session)?;
     settings.output = a.every.map_or(settings.output, Output::Every);
     let problems = settings.problems(session.model.shape());
     if !problems.is_empty() {
@@ -45,13 +45,17 @@ fn too_many_steps(settings: &Settings) -> Option<String> {
 
 /// The integrator and what chooses its steps. Errors: an option that has no part in it, and steps
 /// that nothing chooses.
-fn choose_steps(settings: &mut Settings, a: &SimulateArguments, file: &str) -> Result<(), Failure> {
+fn choose_steps(settings: &mut Settings, a: &SimulateArguments, session: &Session) -> Result<(), Failure> {
+    let file = &session.scene.file;
     settings.step = a.step.or(settings.step);
+    let of_file = session.world.step;
     if let Some(row) = a.integrator.as_deref().and_then(integrator) {
         settings.integrator = row.id;
         // A step that the scene gives is for the integrator that it names.
         if row.adaptive && a.step.is_none() {
             settings.step = None;
+        } else if !row.adaptive && settings.step.is_none() {
+            settings.step = of_file;
         }
     }
     if let (false, None, Some(name)) = (settings.integrator.row().adaptive, settings.step, &a.integrator) {

@@ -142,6 +142,7 @@ impl RobotRequest<'_> {
             let robot = Edited { description, base: self.options.base, unused, shafts: &editing.springs };
             let resolved = scene.resolve_into(&robot, &mut own);
             if self.checks_motion {
+                scene.check_file_step(&editing.reading.world, &mut own);
                 own.take(scene.fits(RobotInWorld { model: &model, world: &editing.reading.world }).err().unwrap_or_default());
             }
             // A refused shaft would have brought names.

@@ -58,7 +58,8 @@ impl Session {
         // Bundled robots are odd on purpose.
         let robot_warnings = reading.warnings.iter().filter(|_| !matches!(scene.robot, Robot::Bundled(_)));
         let robot_warnings = summary(robot_warnings.chain(&reading.snapped));
-        let mut session = articulated_motion::Session::new(scene, reading.description, model, effects).in_folder(folder);
+        let mut session =
+            articulated_motion::Session::new(scene, reading.description, model, effects).in_world(reading.world).in_folder(folder);
         session.report = resolved.report;
         // The first file is the scene's; a bundled scene has none.
         let folders = files.iter().skip(1).chain(files.first()).filter_map(|file| file.parent()).map(Path::to_owned).collect();

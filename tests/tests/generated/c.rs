@@ -271,6 +271,75 @@ fn the_program_of_the_documentation_compiles_and_prints_what_the_library_compute
     assert!(tau.iter().any(|x| x.abs() > 0.1), "{tau:?}");
 }
 
+/// Several functions in one, an argument that is constant, and sines from the caller.
+#[test]
+fn c_of_groups_and_of_given_sines_computes_what_their_parts_do() {
+    const MAIN: &str = "\
+#include <math.h>
+#include <stdio.h>
+#include \"arm.h\"
+
+static void print(const double *x, int count) {
+    for (int k = 0; k < count; k++) {
+        printf(\"%.17g\\n\", x[k]);
+    }
+}
+
+int main(void) {
+    const double q[ARM_NQ] = {0.3, -1.1, 2.0, 0.4, -0.7, 5.0};
+    const double v[ARM_NV] = {1.0, -2.0, 0.5, 3.0, 0.25, -1.5};
+    const double a[ARM_NV] = {-1.0, 0.5, 2.0, 1.0, -3.0, 0.75};
+    const double zeros[ARM_NV] = {0.0};
+    double sines[ARM_NQ * 2], tau[ARM_NV], mass[ARM_NV * ARM_NV];
+    for (int k = 0; k < ARM_NQ; k++) {
+        sines[2 * k] = sin(q[k]);
+        sines[2 * k + 1] = cos(q[k]);
+    }
+    arm_inverse_dynamics(q, v, a, tau);
+    print(tau, ARM_NV);
+    arm_quick(q, v, a, sines, tau);
+    print(tau, ARM_NV);
+    arm_both(q, v, a, tau, mass);
+    print(tau, ARM_NV);
+    print(mass, ARM_NV * ARM_NV);
+    arm_mass_matrix(q, mass);
+    print(mass, ARM_NV * ARM_NV);
+    arm_inverse_dynamics(q, v, zeros, tau);
+    print(tau, ARM_NV);
+    arm_bias(q, v, tau);
+    print(tau, ARM_NV);
+    return 0;
+}
+";
+    let mut request = articulated_codegen::Request::new("arm.urdf", articulated_models::robot("ur5_like").expect("a bundled robot").urdf);
+    let quick = "quick = inverse_dynamics(q = sin_cos)";
+    let functions = ["inverse_dynamics", "mass_matrix", "both = inverse_dynamics + mass_matrix", quick, "bias = inverse_dynamics(a = 0)"];
+    request.options.functions = functions.map(Into::into).to_vec();
+    request.options.target = Target::C(COptions { prefix: Some("arm".into()), ..COptions::default() });
+    let generated = generate(&request).expect("a robot");
+    let (_, quick) = generated.files[1].text.split_once("arm_quick(").expect("the function");
+    let quick = quick.split("\n}").next().unwrap_or_default();
+    assert!(!quick.contains("sin(") && !quick.contains("cos("), "it takes the caller's: {quick}");
+    let printed = c_program::run_program(MAIN, &generated.files);
+    let numbers: Vec<f64> = printed.lines().map(|line| line.parse().expect("a number")).collect();
+    let (n, mut rest) = (6, numbers.as_slice());
+    let mut next = |count: usize| {
+        let (first, others) = rest.split_at(count);
+        rest = others;
+        first
+    };
+    let (tau, quick, both, mass, alone) = (next(n), next(n), next(n), next(n * n), next(n * n));
+    let (at_rest, bias) = (next(n), next(n));
+    for (what, expected, found) in
+        [("quick", tau, quick), ("both", tau, both), ("mass matrix of both", alone, mass), ("bias", at_rest, bias)]
+    {
+        let scale = expected.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let far = expected.iter().zip(found).map(|(a, b)| (a - b).abs() / scale).fold(0.0, f64::max);
+        assert!(scale > 0.0 && far <= 1e-14, "{what}: {found:?}, expected {expected:?}");
+    }
+    assert_ne!(tau, at_rest);
+}
+
 #[test]
 fn names_that_c_does_not_have_are_spelled_out() {
     let link = |name: &str| format!("<link name='{name}'/>");
