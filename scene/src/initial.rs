@@ -91,7 +91,7 @@ pub(crate) const KEYS: &[Row<Initial>] = &[
         name: "q",
         required: false,
         value: "numbers, or table: joint = number or numbers; rad, m",
-        default: "0",
+        default: "those of the robot's file (MJCF), or else 0",
         what: "coordinates: all in the robot's order (a floating base's position and quaternion x, y, z, w first), or by joint",
         read: |x, s, log| x.q = values(s, log),
     },

@@ -458,7 +458,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         name: "initial",
         required: false,
         value: "table",
-        default: "at rest at q = 0",
+        default: "at rest, where the robot's file begins (MJCF), or else at q = 0",
         what: "the state at the start, see below",
         read: |s, spot, log| s.initial = initial::read(spot, log),
     },

@@ -1,0 +1,130 @@
+//! The scene of a robot's file: its smooth motion.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use articulated_core::description::Joint;
+use articulated_formats::world::Plane;
+use articulated_formats::{Environment, Options, Reading, included, read_file, read_with};
+use articulated_scene::folder_of;
+
+use crate::failure::Failure;
+
+/// How long the motion is, s.
+const END: f64 = 5.0;
+
+/// A scene, as TOML, with the forces of the file that are smooth. What else the file has is in its
+/// comments. Errors: those of the file.
+pub(crate) fn text(path: &Path) -> Result<String, Failure> {
+    let reading = read(path)?;
+    let (joints, world) = (&reading.description.joints, &reading.world);
+    let name = quoted(&path.file_name().unwrap_or(path.as_os_str()).to_string_lossy());
+    let mut out = format!("# The smooth motion of {name}.\nfile = {name}\n\n[effects]\n");
+    for (effect, has) in SMOOTH {
+        if joints.iter().any(has) {
+            let _ = writeln!(out, "{effect} = \"file\"");
+        }
+    }
+    for (line, what, has) in OTHERS {
+        if joints.iter().any(has) {
+            let _ = writeln!(out, "# {line}  # {what}");
+        }
+    }
+    if reading.description.links.iter().any(|link| !link.collision.is_empty()) {
+        let (plane, ground) = match world.planes.first() {
+            Some(Plane { point, normal, .. }) => {
+                let height: f64 = normal.iter().zip(point).map(|(normal, x)| normal * x).sum();
+                (format!(", normal = {normal:?}, height = {height:?}"), "a plane of the file")
+            }
+            None => (String::new(), "the ground z = 0"),
+        };
+        let contact = format!("from = \"collision\", stiffness = 1e5, damping = 100{plane}");
+        let _ = writeln!(out, "# contact = {{ \"*\" = {{ {contact} }} }}  # against {ground}");
+    }
+    let keyframes: Vec<String> = world.keyframes.iter().map(|keyframe| quoted(&keyframe.name)).collect();
+    if !keyframes.is_empty() {
+        let _ = writeln!(out, "\n[initial]\n# keyframe = {}", keyframes.join("  # or "));
+    }
+    if !world.actuators.is_empty() || !world.passive.is_empty() {
+        out += "\n[control]\nkind = \"actuators\"\n";
+        for actuator in &world.actuators {
+            let range = actuator.control_range.map(|[lower, upper]| format!("  # {lower:?} to {upper:?}")).unwrap_or_default();
+            let _ = writeln!(out, "ctrl.{} = 0.0{range}", quoted(&actuator.name));
+        }
+    }
+    let _ = writeln!(out, "\n[simulation]\nend = {END:?}");
+    if let Some(step) = world.step {
+        let _ = writeln!(out, "# integrator = \"semi_implicit_euler\"\n# step = \"file\"  # {step:?} s");
+    }
+    Ok(out)
+}
+
+/// A text of TOML.
+fn quoted(text: &str) -> String {
+    let mut out = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => out.extend(['\\', c]),
+            c if c.is_control() => {
+                let _ = write!(out, "\\u{:04X}", u32::from(c));
+            }
+            c => out.push(c),
+        }
+    }
+    out + "\""
+}
+
+/// What of the file such a scene leaves out, in words.
+pub(crate) fn left_out(joints: &[Joint], has_collision: bool) -> Vec<&'static str> {
+    let others = OTHERS.iter().filter(|(.., has)| joints.iter().any(has)).map(|(_, what, _)| *what);
+    others.chain(has_collision.then_some("contacts")).collect()
+}
+
+type Has = fn(&Joint) -> bool;
+
+/// Effects whose forces are smooth.
+const SMOOTH: [(&str, Has); 3] = [
+    ("damping", |joint| joint.dynamics.damping.is_some()),
+    ("spring", |joint| joint.dynamics.stiffness.is_some()),
+    ("armature", |joint| joint.dynamics.armature.is_some()),
+];
+
+/// Others, as a scene turns them on.
+const OTHERS: [(&str, &str, Has); 2] = [
+    ("friction = \"file\"", "dry friction", |joint| joint.dynamics.friction.is_some_and(|friction| friction != 0.0)),
+    ("limit = { from = \"file\", stiffness = 1e4, damping = 10 }", "limits", |joint| {
+        joint.limit.is_some_and(|limit| limit.lower.is_finite() || limit.upper.is_finite())
+    }),
+];
+
+fn read(path: &Path) -> Result<Reading, Failure> {
+    let file = path.display().to_string();
+    let bytes =
+        read_file(path, articulated_formats::MOST_BYTES).map_err(|error| Failure::input([format!("{file}: cannot be read: {error}")]))?;
+    let options = Options { file, ..Options::default() };
+    let included = included(&Environment, &PathBuf::new(), &bytes, &options);
+    Ok(read_with(&included, &bytes, &options)?)
+}
+
+/// A note on a scene that a robot's file was made into. Nothing is left out without a word.
+pub(crate) fn note(path: &Path) -> Result<Option<String>, Failure> {
+    let reading = read(path)?;
+    let collides = reading.description.links.iter().any(|link| !link.collision.is_empty());
+    let left = left_out(&reading.description.joints, collides);
+    let file = path.strip_prefix(folder_of(path)).unwrap_or(path).display();
+    Ok((!left.is_empty())
+        .then(|| format!("{file}: the smooth motion, without {}; --print-scene prints its scene, to be changed", left.join(", "))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_name_is_a_text_of_toml() {
+        for name in ["arm", "a \"b\" \\ c", "\u{1b}[2J\n\t\u{7f}", "größe\u{202e}", ""] {
+            let read = articulated_scene::Scene::read("s.toml", &format!("summary = {}", quoted(name))).expect("TOML");
+            assert_eq!(read.summary, name);
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! States, actuators, gravity and steps of the robot's file, as scenes use them.
+
+use articulated_core::description::Base;
+use articulated_core::model::Model;
+use articulated_formats::world::{Actuator, Keyframe, World};
+use articulated_scene::{Controller, RobotInWorld, Scene, Signal};
+
+const ROBOT: &str = r#"<robot name="r"><link name="base"/><link name="a"/><link name="b"/>
+  <joint name="one" type="continuous"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/></joint>
+  <joint name="two" type="prismatic"><parent link="a"/><child link="b"/><axis xyz="1 0 0"/><limit lower="0" upper="1" effort="9" velocity="9"/></joint>
+</robot>"#;
+
+fn model() -> Model<f64> {
+    let description = articulated_formats::read(ROBOT.as_bytes(), &Default::default()).unwrap().description;
+    Model::new(&description, Base::Fixed).unwrap()
+}
+
+fn world() -> World {
+    let actuator = |name: &str, drives: &[(&str, f64)]| Actuator {
+        name: name.into(),
+        drives: drives.iter().map(|(joint, gear)| ((*joint).to_owned(), vec![*gear])).collect(),
+        gain: [2.0, 0.0, 0.0],
+        ..Actuator::default()
+    };
+    World {
+        home: Some(Keyframe { q: vec![("one".into(), vec![0.5])], ..Keyframe::default() }),
+        keyframes: vec![Keyframe {
+            name: "bent".into(),
+            q: vec![("two".into(), vec![0.25])],
+            v: vec![("one".into(), vec![3.0])],
+            control: vec![1.0, -1.0],
+            ..Keyframe::default()
+        }],
+        actuators: vec![actuator("turn", &[("one", 1.0)]), actuator("both", &[("one", 0.5), ("two", -2.0)])],
+        passive: vec![Actuator { bias: [0.0, -3.0, 0.0], ..actuator("string", &[("two", 1.0)]) }],
+        joint_forces: vec![("two".into(), [-1.0, 1.0])],
+        step: Some(0.002),
+        ..World::default()
+    }
+}
+
+fn scene(text: &str) -> Scene {
+    Scene::read("s.toml", text).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn started(text: &str) -> Result<(Vec<f64>, Vec<f64>), String> {
+    let (model, world) = (model(), world());
+    scene(text).start(RobotInWorld { model: &model, world: &world }).map_err(|e| e.to_string())
+}
+
+fn controlled(text: &str, world: &World) -> Result<Controller, String> {
+    let model = model();
+    scene(text).controller(RobotInWorld { model: &model, world }, &mut |_| Err("no files".into())).map_err(|e| e.to_string())
+}
+
+#[test]
+fn a_motion_starts_where_the_file_says_and_the_scene_changes_it() {
+    assert_eq!(started(""), Ok((vec![0.5, 0.0], vec![0.0, 0.0])));
+    assert_eq!(started("initial = { q = { two = 0.1 } }"), Ok((vec![0.5, 0.1], vec![0.0, 0.0])));
+    assert_eq!(started("initial = { keyframe = \"bent\" }"), Ok((vec![0.5, 0.25], vec![3.0, 0.0])));
+    assert_eq!(started("initial = { keyframe = \"bent\", q = { two = 0.75 }, v = [0, 1] }"), Ok((vec![0.5, 0.75], vec![0.0, 1.0])));
+    let told = "s.toml:1: initial.keyframe: found the keyframe \"bend\", expected one of bent; did you mean \"bent\"?";
+    assert_eq!(started("initial = { keyframe = \"bend\" }"), Err(told.to_owned()));
+}
+
+#[test]
+fn actuators_of_the_file_drive_their_joints() {
+    let (world, q, v) = (world(), [0.1, 0.5], [0.0, 0.0]);
+    let torques = |text: &str| {
+        let Ok(Controller::Actuators(actuators)) = controlled(text, &world) else { panic!("{text}") };
+        let Signal::Still(u) = &actuators.controls else { panic!("{text}") };
+        let mut tau = [0.0; 2];
+        actuators.add_torques(u, &q, &v, &mut tau);
+        tau
+    };
+    // The string pulls with −3 · 0.5.
+    assert_eq!(torques("control = { kind = \"actuators\" }"), [0.0, -1.5]);
+    assert_eq!(torques("control = { kind = \"actuators\", ctrl = { turn = 4 } }"), [8.0, -1.5]);
+    // The bound of joint two is of actuators alone: −2 · 2 · 3 becomes −1.
+    assert_eq!(torques("control = { kind = \"actuators\", ctrl = [0, 3] }"), [3.0, -1.0 - 1.5]);
+    assert_eq!(torques("control = { kind = \"actuators\", keyframe = \"bent\", ctrl = { both = 0.25 } }"), [2.25, -1.0 - 1.5]);
+}
+
+#[test]
+fn controls_over_time_have_the_names_of_actuators() {
+    let text = "control = { kind = \"actuators\", columns = [\"both\"], rows = [[0, 1], [2, 3]] }";
+    let Ok(Controller::Actuators(actuators)) = controlled(text, &world()) else { panic!("actuators") };
+    let Signal::Moving(series) = actuators.controls else { panic!("a table") };
+    let mut u = [9.0; 2];
+    series.at(0.5, &mut u);
+    assert_eq!(u, [0.0, 1.5]);
+    let told = controlled(&text.replace("both", "bots"), &world()).unwrap_err();
+    assert!(
+        told.starts_with("s.toml:1: control.columns[0]: found the column \"bots\", expected an actuator of the robot's file"),
+        "{told}"
+    );
+    let told = Scene::read("s.toml", &text.replace("rows", "ctrl = [1, 2], rows")).unwrap_err().to_string();
+    assert_eq!(told, "s.toml:1: control: found controls and a table of controls, expected one of them");
+}
+
+#[test]
+fn actuators_that_cannot_be_are_refused() {
+    let told = |text: &str, world: &World| controlled(text, world).unwrap_err();
+    let plain = "control = { kind = \"actuators\" }";
+    assert_eq!(
+        told(plain, &World::default()),
+        "s.toml:1: control.kind: found actuators, of which the robot's file has none, expected another kind of control"
+    );
+    let text = "control = { kind = \"actuators\", ctrl = [1] }";
+    assert_eq!(
+        told(text, &world()),
+        "s.toml:1: control.ctrl: found one number, expected 2 numbers, one for each actuator of the robot's file"
+    );
+    let text = "control = { kind = \"actuators\", ctrl = { trun = 1, both = [1, 2] } }";
+    let both = told(text, &world());
+    assert!(both.contains("control.ctrl.trun: found no such actuator") && both.contains("did you mean \"turn\"?"), "{both}");
+    assert!(both.contains("control.ctrl.both: found 2 numbers, expected one number"), "{both}");
+    let mut other = world();
+    other.actuators[0].drives[0].0 = "three".into();
+    assert_eq!(
+        told(plain, &other),
+        "s.toml:1: control.kind: found the actuator \"turn\" on joint \"three\", which is locked or follows another, expected joints that move \
+         by themselves, or control of another kind"
+    );
+    let told = Scene::read("s.toml", "control = { kind = \"actuators\", kp = 1 }").unwrap_err().to_string();
+    assert!(told.contains("expected one of ctrl, keyframe, file, columns, rows, interpolation, period"), "{told}");
+}
+
+#[test]
+fn a_step_may_be_that_of_the_file() {
+    let text = "simulation = { end = 1, integrator = \"rk4\", step = \"file\" }";
+    let stepped = |world: &World| scene(text).with_step_of(world).simulation.unwrap().settings.step;
+    assert_eq!((stepped(&world()), stepped(&World::default())), (Some(0.002), None));
+    let refused = articulated_scene::Opened::new(scene(text), "r.urdf", ROBOT.into(), Base::Fixed, vec![]).build().unwrap_err().to_string();
+    assert_eq!(refused, "s.toml:1: simulation.step: found \"file\", and the robot's file has no time step, expected a number, s");
+}
+
+#[test]
+fn equations_of_the_file_are_couplings_where_the_scene_says_so() {
+    let refused = |text: &str| {
+        articulated_scene::Opened::new(scene(text), "r.urdf", ROBOT.into(), Base::Fixed, vec![]).build().map(|robot| robot.model.nv())
+    };
+    let told = refused("coupling = \"file\"").unwrap_err().to_string();
+    assert_eq!(
+        told,
+        "s.toml: coupling: found \"file\", and the robot's file has no linear equations of joints, expected no key coupling, or a table of joints"
+    );
+    assert_eq!(refused("").unwrap(), 2);
+    assert!(scene("coupling = \"file\"").code.file_coupling);
+}
