@@ -58,10 +58,11 @@ impl Session {
         })
     }
 
-    /// The bound that the file gives the angle of a ball joint, rad.
+    /// The bound that the file gives the angle of a ball joint, rad; 0 is none, as where a `<limit>`
+    /// says nothing of it.
     pub(crate) fn cone_of_the_file(&self, body: &Body<f64>) -> Option<f64> {
         let joint = self.description.joints.iter().find(|joint| joint.name == body.name && body.joint.is_rotation_about_point())?;
-        joint.limit.map(|limit| limit.upper).filter(|upper| upper.is_finite())
+        joint.limit.map(|limit| limit.upper).filter(|upper| *upper > 0.0 && upper.is_finite())
     }
 
     /// The bounds that the file gives a joint of one degree of freedom, those of one that follows
