@@ -5,7 +5,7 @@ use std::io::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
 
 use articulated_core::algorithm::{Workspace, function};
-use articulated_core::description::{Base, Description, JointKind};
+use articulated_core::description::{Base, Description, JointDynamics, JointKind};
 use articulated_core::diagnostic::{Code, Diagnostics};
 use articulated_core::model::Model;
 use articulated_formats::{Included, NoFiles, Options, Reading, Sources, included, read, read_with};
@@ -194,14 +194,34 @@ fn dynamics_that_are_not_read_are_warnings() {
         body("gravcomp=\"1\""),
         joint("springdamper=\"1 1\""),
         joint("stiffness=\"1 2\""),
-        joint("type=\"ball\" range=\"0 90\""),
-        joint("type=\"ball\" armature=\"1\""),
+        joint("type=\"free\" armature=\"1\""),
+        joint("type=\"free\" stiffness=\"1\""),
     ];
     for text in texts {
         let codes: Vec<Code> = accepted(&text).warnings.iter().map(|warning| warning.code).collect();
         assert_eq!(codes, [Code::LostDynamics], "{text}");
     }
     assert!(accepted(&option("gravity=\"0 0 -9.81\"")).warnings.is_empty());
+}
+
+#[test]
+fn what_acts_on_ball_joints_is_kept() {
+    let ball =
+        |attributes: &str| world(&format!("<body name=\"a\"><joint name=\"j\" type=\"ball\" {attributes}/><geom size=\"1\"/></body>"));
+    let reading =
+        accepted(&ball("stiffness=\"3\" damping=\"0.5\" armature=\"0.02\" frictionloss=\"0.1\" springref=\"0.7\" range=\"0 90\""));
+    assert!(reading.warnings.is_empty(), "{:?}", reading.warnings);
+    let joint = &reading.description.joints[0];
+    let expected =
+        JointDynamics { stiffness: Some(3.0), damping: Some(0.5), armature: Some(0.02), friction: Some(0.1), ..JointDynamics::default() };
+    assert_eq!((joint.kind, joint.dynamics), (JointKind::Spherical, expected));
+    let limit = joint.limit.expect("a range");
+    assert_eq!((limit.lower, limit.upper), (f64::NEG_INFINITY, std::f64::consts::FRAC_PI_2));
+    let without = accepted(&ball("")).description.joints[0].clone();
+    assert_eq!((without.limit, without.dynamics), (None, JointDynamics::default()));
+    // As MuJoCo does.
+    let found = refused(&ball("range=\"-10 90\""));
+    assert_eq!((found.errors.len(), found.errors[0].code), (1, Code::LimitOrder), "{found}");
 }
 
 #[test]

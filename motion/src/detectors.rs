@@ -115,6 +115,9 @@ impl<'a> Detectors<'a> {
                 }
             }
         }
+        for (name, at, upper) in session.cones() {
+            self.push(Event::cone(name, at, upper).direction(Direction::Either), EventKind::UpperLimit, name);
+        }
     }
 
     fn contacts<R: Dynamics<f64>, S: AsRef<str>>(&mut self, session: &Session, robot: &'a R, frames: &[S], faults: &mut Vec<Fault>)

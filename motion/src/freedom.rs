@@ -18,8 +18,8 @@ pub(crate) struct Freedom<'s> {
 }
 
 impl Session {
-    /// All degrees of freedom, mimic joints included. Those of a quaternion are left out: they have
-    /// no coordinates of their own, and so no bounds.
+    /// All degrees of freedom, mimic joints included. Those of a quaternion have no coordinates of
+    /// their own, and so no bounds.
     pub(crate) fn freedoms(&self) -> impl Iterator<Item = Freedom<'_>> {
         self.model.bodies().iter().skip(1).flat_map(|body| {
             let (at, follow) = (&body.coordinates, body.coordinates.mimic);
@@ -38,11 +38,31 @@ impl Session {
     /// Bounds of the coordinate that a degree of freedom moves with: those of the effect if its
     /// joint has it, else those of the file; rad or m.
     pub(crate) fn bounds(&self, at: &Freedom<'_>) -> Option<(f64, f64)> {
-        let own = match at.effect(EffectId::limit).map(|limit| limit.parameters.as_slice()) {
+        let limit = at.effect(EffectId::limit).filter(|limit| !limit.effect.row().is_of_rotation(at.body.joint));
+        let own = match limit.map(|limit| limit.parameters.as_slice()) {
             Some([lower, upper, ..]) => Some((*lower, *upper)),
             _ => None,
         };
         own.or_else(|| self.of_the_file(at.body)).map(|bounds| at.of_the_coordinate(bounds))
+    }
+
+    /// Ball joints with a bound of the angle of their rotation: name, place in q, and the bound of
+    /// the effect if the joint has it, else that of the file; rad.
+    pub(crate) fn cones(&self) -> impl Iterator<Item = (&str, usize, f64)> {
+        let balls = self.model.bodies().iter().skip(1).filter(|body| body.joint.is_rotation_about_point());
+        balls.filter_map(|body| {
+            let limit = body.effects.joint.iter().find(|e| e.effect == EffectId::limit);
+            let own = limit.and_then(|limit| limit.parameters.first().copied());
+            let upper = own.or_else(|| self.cone_of_the_file(body))?;
+            Some((body.name.as_str(), body.coordinates.q, upper))
+        })
+    }
+
+    /// The bound that the file gives the angle of a ball joint, rad; 0 is none, as where a `<limit>`
+    /// says nothing of it.
+    pub(crate) fn cone_of_the_file(&self, body: &Body<f64>) -> Option<f64> {
+        let joint = self.description.joints.iter().find(|joint| joint.name == body.name && body.joint.is_rotation_about_point())?;
+        joint.limit.map(|limit| limit.upper).filter(|upper| *upper > 0.0 && upper.is_finite())
     }
 
     /// The bounds that the file gives a joint of one degree of freedom, those of one that follows

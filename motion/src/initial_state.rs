@@ -5,6 +5,7 @@ use std::fmt;
 use articulated::Dynamics;
 use articulated_core::Plain;
 use articulated_core::effect::{Applied, EffectId, unit};
+use articulated_core::spatial::screw::Quaternion;
 use articulated_scene::{Controller, RobotInWorld};
 
 use crate::error::MotionErrors;
@@ -48,15 +49,21 @@ impl Session {
         Ok(InitialState { q, v, controller })
     }
 
-    /// The joints of one coordinate, mimic joints included, that are beyond the file's limits at
-    /// the initial q `[nq]`.
+    /// The joints of one coordinate, mimic joints included, and the balls that are beyond the file's
+    /// limits at the initial q `[nq]`; of a ball the angle of its rotation counts.
     pub fn beyond(&self, q: &[f64]) -> Vec<Beyond> {
         let beyond = |at: Freedom<'_>| {
             let ((lower, upper), found) = (self.of_the_file(at.body)?, at.own_coordinate(*q.get(at.q)?));
             let beyond = || Beyond { file: self.scene.file.clone(), joint: at.joint().to_owned(), found, lower, upper };
             (found < lower || found > upper).then(beyond)
         };
-        self.freedoms().filter_map(beyond).collect()
+        let balls = self.model.bodies().iter().skip(1).filter_map(|body| {
+            let (upper, at) = (self.cone_of_the_file(body)?, body.coordinates.q);
+            let found = Quaternion::from_array(q.get(at..at + 4)?.try_into().ok()?).angle();
+            let beyond = || Beyond { file: self.scene.file.clone(), joint: body.name.clone(), found, lower: 0.0, upper };
+            (found > upper).then(beyond)
+        });
+        self.freedoms().filter_map(beyond).chain(balls).collect()
     }
 }
 

@@ -108,7 +108,7 @@ impl Session {
 /// field, or not as many numbers as it should.
 pub fn field<'a>(applied: &'a Applied, name: &str) -> &'a [f64] {
     let mut start = 0;
-    for f in applied.effect.row().fields {
+    for f in applied.effect.row().fields_of(applied.parameters.len()) {
         if f.name == name {
             return applied.parameters.get(start..start + f.len).unwrap_or(&[]);
         }

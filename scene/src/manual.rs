@@ -59,8 +59,12 @@ fn ways(effect: &Effect) -> String {
 /// One line a field.
 fn fields() -> String {
     let mut out = String::from("| effect | key | numbers | unit | default | |\n|---|---|--:|---|---|---|\n");
+    let fields = |effect: &'static Effect| {
+        let ball = effect.ball_fields.unwrap_or_default().iter().map(move |field| (format!("{}, on balls", effect.name), effect, field));
+        effect.fields.iter().map(move |field| (effect.name.to_owned(), effect, field)).chain(ball)
+    };
     for effect in effects() {
-        for field in effect.fields {
+        for (name, effect, field) in fields(effect) {
             let default = match field.default {
                 None if crate::effects::is_of_shape(effect, field.name) => "has to be given; `\"collision\"`: that of the shape".to_owned(),
                 None => crate::effects::tag(effect.id, field.name)
@@ -73,8 +77,7 @@ fn fields() -> String {
             let rule = field.rule.map(|rule| rule.expected.to_owned());
             let has_to_be: String = bounds.into_iter().chain(rule).map(|what| format!(", {what}")).collect();
             let unit = field.unit.replace('|', " or ");
-            let _ =
-                writeln!(out, "| {} | `{}` | {} | {unit} | {default} | {}{has_to_be} |", effect.name, field.name, field.len, field.what);
+            let _ = writeln!(out, "| {name} | `{}` | {} | {unit} | {default} | {}{has_to_be} |", field.name, field.len, field.what);
         }
     }
     out

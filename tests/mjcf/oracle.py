@@ -8,7 +8,7 @@
     python3 tests/mjcf/oracle.py --write          also writes docs/mjcf-files.md
 
 For each file that MuJoCo compiles: masses, centres of mass and inertias of all bodies, armature, damping, friction, stiffness,
-rest and limits of all joints with one coordinate, and in random states the mass matrix, the bias force (inverse dynamics
+rest and limits of all joints but free ones, and in random states the mass matrix, the bias force (inverse dynamics
 without acceleration), positions and orientations of all bodies, and the centre of mass of the whole.
 
 Packages are downloaded, not installed: their models are unpacked into target/mjcf. MuJoCo goes into a virtual environment
@@ -296,9 +296,10 @@ def masses(model, robot, fused, differ, mujoco, np):
 
 
 def joints(model, spec, robot, armature, differ, np):
-    """Compares what joints with one coordinate have."""
+    """Compares what joints with one coordinate and ball joints have."""
     for joint, found in zip(range(model.njnt), robot["joints"]):
-        if int(model.jnt_type[joint]) not in (SLIDE, HINGE):
+        kind = int(model.jnt_type[joint])
+        if kind not in (BALL, SLIDE, HINGE):
             continue
         dof, at = model.jnt_dofadr[joint], model.jnt_qposadr[joint]
         differ("armature", found["armature"] or 0, armature[dof])
@@ -306,9 +307,11 @@ def joints(model, spec, robot, armature, differ, np):
         if not np.any(spec.joints[joint].springdamper):
             differ("damping", found["damping"] or 0, model.dof_damping[dof])
             differ("stiffness", found["stiffness"] or 0, model.jnt_stiffness[joint])
-            if model.jnt_stiffness[joint]:
+            if model.jnt_stiffness[joint] and kind != BALL:
                 differ("rest", found["rest"] or 0, model.qpos_spring[at], 1.0)
-        if model.jnt_limited[joint]:
+        if model.jnt_limited[joint] and kind == BALL:
+            differ("limits", found["upper"], model.jnt_range[joint, 1], 1.0)
+        elif model.jnt_limited[joint]:
             differ("limits", [found["lower"], found["upper"]], model.jnt_range[joint], 1.0)
         elif found["lower"] is not None or found["upper"] is not None:
             differ("limits", 1, 0, 1.0)

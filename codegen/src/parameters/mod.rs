@@ -170,7 +170,7 @@ impl<'a> Robot<'a> {
         };
         // An effect that is off is refused, see `off`.
         let nominal = on.map_or_else(|| vec![0.0; row.len()], <[f64]>::to_vec);
-        let fields: Vec<String> = row.fields.iter().map(|field| format!("{} ({})", field.name, field.unit)).collect();
+        let fields: Vec<String> = row.fields_of(nominal.len()).iter().map(|field| format!("{} ({})", field.name, field.unit)).collect();
         let what = format!("{} on {kind} {name:?}: {}", row.name, fields.join(", "));
         let (body, frame, on) = (body.unwrap_or_default(), Placement::identity(), name.to_owned());
         Ok(Parameter { what, name: format!("{name}_{}", row.name), at, nominal, kind: Kind::Effect(row.id), body, frame, on })
@@ -262,7 +262,7 @@ impl Parameter {
             Kind::Origin => body.placement.position = frame.transform(vector()),
             Kind::Payload | Kind::Inertia => body.inertia += SpatialInertia::from_parameters(std::array::from_fn(number)).moved(&frame),
             Kind::Effect(id) => {
-                let numbers = id.row().with_unit_normal((0..self.nominal.len()).map(number).collect());
+                let numbers = id.row().with_unit_vectors((0..self.nominal.len()).map(number).collect());
                 // A joint may have several bodies.
                 let joint = model.bodies.iter_mut().filter(|body| body.name == self.on).flat_map(|body| &mut body.effects.joint);
                 joint.filter(|on| on.effect == id).for_each(|on| on.parameters.clone_from(&numbers));

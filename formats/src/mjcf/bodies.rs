@@ -430,13 +430,15 @@ fn limits(values: &Values<'_>, kind: Kind, context: &Context<'_>, log: &mut Diag
     };
     match kind {
         Kind::Free => return (false, None),
-        Kind::Ball => {
-            if is_limited {
-                let expected = "no limit: the angle of a ball joint is not limited here";
-                values.element.warning((&values.subject, "range"), Code::LostDynamics, "a limit of a ball joint", expected, log);
+        Kind::Ball if is_limited => {
+            ordered("range", range, log);
+            if range[0] != 0.0 {
+                let expected = "0: the range of a ball joint is that of the angle of its rotation, which is not negative";
+                values.error("range", Code::LimitOrder, format!("the lower bound {}", range[0]), expected, log);
             }
-            return (false, None);
+            return (true, Some(Limit { upper: compiler.angles.radians(range[1]), ..Limit::NONE }));
         }
+        Kind::Ball => return (false, None),
         Kind::Slide | Kind::Hinge => {}
     }
     let mut limit = Limit::NONE;
@@ -470,13 +472,15 @@ fn dynamics(values: &Values<'_>, kind: Kind, angle: &dyn Fn(f64) -> f64, log: &m
         let expected = "`stiffness` and `damping`: those that MuJoCo computes from a time constant are not";
         values.element.warning((&values.subject, "springdamper"), Code::LostDynamics, "a spring", expected, log);
     }
-    if matches!(kind, Kind::Slide | Kind::Hinge) {
-        return JointDynamics { damping, friction, armature, stiffness, rest: rest.filter(|_| stiffness.is_some()) };
+    if kind != Kind::Free {
+        // A ball joint is slack where its coordinate is the identity.
+        let rest = rest.filter(|_| stiffness.is_some() && kind != Kind::Ball);
+        return JointDynamics { damping, friction, armature, stiffness, rest };
     }
     let lost = [("damping", damping), ("frictionloss", friction), ("armature", armature), ("stiffness", stiffness)];
     for (name, _) in lost.iter().filter(|(_, number)| number.is_some_and(|number| number != 0.0)) {
-        let expected = "none: a joint of several degrees of freedom keeps no such number";
-        values.element.warning((&values.subject, name), Code::LostDynamics, format!("{name} of a ball or free joint"), expected, log);
+        let expected = "none: a free joint keeps no such number";
+        values.element.warning((&values.subject, name), Code::LostDynamics, format!("{name} of a free joint"), expected, log);
     }
     JointDynamics::default()
 }

@@ -57,7 +57,8 @@ fn joint(out: &mut String, description: &Description, j: &Joint) {
         JointKind::Helical => drop(writeln!(out, "    <thread pitch=\"{:?}\"/>", j.pitch)),
         _ => {}
     }
-    if let Some(l) = &j.limit {
+    // A ball joint has no limit in a URDF.
+    if let Some(l) = j.limit.as_ref().filter(|_| j.kind != JointKind::Spherical) {
         // An attribute that is missing is infinite.
         let attribute = |(name, x): (&str, f64)| if x.is_finite() { format!(" {name}=\"{x:?}\"") } else { String::new() };
         let all = [("lower", l.lower), ("upper", l.upper), ("effort", l.effort), ("velocity", l.velocity)];

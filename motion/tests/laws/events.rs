@@ -156,6 +156,27 @@ fn a_joint_that_follows_has_bounds_of_its_own() {
     assert_eq!((told(0.25).len(), told(1.0).len()), (0, 2));
 }
 
+/// With the bound of the effect, or else that of an MJCF file; of the angle of the rotation.
+#[test]
+fn a_ball_joint_comes_to_the_bound_of_its_angle() {
+    let urdf = "<robot name='r'><link name='base'/><joint name='hip' type='spherical'><parent link='base'/><child link='rod'/></joint>
+        <link name='rod'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link></robot>";
+    let mjcf = "<mujoco><compiler angle='radian'/><worldbody><body name='rod'><joint name='hip' type='ball' range='0 0.5'/>
+        <inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/></body></worldbody></mujoco>";
+    let scene = "gravity = [0, 0, 0]\ninitial = { v = { hip = [0.6, 0.0, -0.8] } }\nsimulation = { end = 0.6, events = ['limits'] }\n";
+    let effect = "[effects.limit.hip]\nupper = 0.5\nstiffness = 10\n";
+    for (scene, robot) in [(format!("{scene}{effect}"), urdf), (scene.to_owned(), mjcf)] {
+        let outcome = moved(&session(&scene, robot));
+        assert_eq!(words(&outcome), ["hip reaches its upper limit"]);
+        assert_eq!(about(&outcome), [is(EventKind::UpperLimit, "hip", true), None]);
+        assert!((outcome.occurrences[0].t - 0.5).abs() < 1e-6, "{:?}", outcome.occurrences);
+    }
+    let session = session("", mjcf);
+    let told = |half: f64| session.beyond(&[0.0, -half.sin(), 0.0, -half.cos()]).iter().map(ToString::to_string).collect::<Vec<_>>();
+    assert_eq!(told(0.5), ["s.toml: initial.q.hip: found 1, beyond its limits, expected 0 to 0.5; used as given"]);
+    assert!(told(0.2).is_empty());
+}
+
 /// A joint that follows another zero times does not move: of its bounds and its friction there is
 /// nothing to look for, wherever it stands.
 #[test]

@@ -1,5 +1,6 @@
 //! Laws of motion, for every integrator.
 
+mod balls;
 mod blows;
 mod closed_forms;
 mod driven;

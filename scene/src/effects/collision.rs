@@ -83,7 +83,7 @@ impl<'a> Resolving<'a> {
         for sphere in spheres {
             let mut says = says.clone();
             radius.and_then(|at| says.fields.get_mut(at)).into_iter().for_each(|own| *own = Some(vec![sphere.radius]));
-            match fill(row, &[Some(&says), rest], &|_| None) {
+            match fill((row, row.fields), &[Some(&says), rest], &|_| None) {
                 Ok(mut filled) => {
                     radius.and_then(|at| filled.get_mut(at)).into_iter().for_each(|(_, tag)| *tag = Some(WORD));
                     self.put_filled(row, &link.name, Origin { xyz: sphere.center, ..Origin::default() }, one, &filled);

@@ -175,7 +175,7 @@ fn table(row: &'static Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Number
         let value = spot.of(entry);
         let field = row.fields.iter().position(|f| f.name == entry.name);
         match (field, entry.name.as_str()) {
-            (Some(i), _) => numbers.fields[i] = field_of(&row.fields[i], &value, log),
+            (Some(i), _) => numbers.fields[i] = field_of(as_written(row, &row.fields[i], &value), &value, log),
             (None, FROM) => match from(row, &value, log) {
                 Some(collision::WORD) => numbers.from_collision = true,
                 word => numbers.from_urdf = word.is_some(),
@@ -227,6 +227,14 @@ fn quoted_with_reason(word: &str) -> String {
     format!("{}{why}", quote(word))
 }
 
+/// The field as it is on a ball joint, if that has as many numbers as are written: which joint it is
+/// about is not known here.
+fn as_written(row: &'static Effect, field: &'static Field, spot: &Spot<'_>) -> &'static Field {
+    let Some(count) = spot.list().map(|list| list.len()) else { return field };
+    let on_ball = row.ball_fields.unwrap_or_default().iter().find(|other| other.name == field.name && other.len == count);
+    on_ball.filter(|other| other.len > 1).unwrap_or(field)
+}
+
 fn field_of(field: &Field, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Vec<f64>> {
     if field.len == 1 {
         return number(field, spot, log).map(|x| vec![x]);
@@ -265,7 +273,7 @@ fn check(row: &'static Effect, numbers: &Numbers, spot: &Spot<'_>, log: &mut Dia
 /// The fields to blame for a broken rule, with their part of `all`: the rule's own if it is
 /// written, else those written that break it with zeros for the others.
 fn blamed<'a>(row: &'static Effect, numbers: &Numbers, broken: &'static Field, all: &'a [f64]) -> Vec<(&'static Field, &'a [f64])> {
-    let parts = row.fields.iter().zip(&numbers.fields).scan(0, |end, (field, said)| {
+    let parts = row.fields_of(all.len()).iter().zip(&numbers.fields).scan(0, |end, (field, said)| {
         let start = *end;
         *end += field.len;
         Some((field, said.is_some(), start..*end))

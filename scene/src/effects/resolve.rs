@@ -13,7 +13,7 @@ use super::{EffectRequest, Numbers, Selector, collision, urdf};
 use crate::report::{EffectOff, EffectOn, Number, Report, Why};
 use crate::scene::Scene;
 use crate::shaft;
-use articulated_core::effect::{Applied, Effect, EffectId, Enters, On, effects};
+use articulated_core::effect::{Applied, Effect, EffectId, Enters, Field, On, effects};
 use articulated_core::model::FLOATING_BASE;
 
 /// A robot as the scene's edits left it.
@@ -107,7 +107,7 @@ impl<'a> Resolving<'a> {
     }
 
     /// Whether everything that is named is there and moves.
-    fn known_names(&self, row: &Effect, asked: &[&EffectRequest], log: &mut Diagnostics) {
+    fn known_names(&self, row: &'static Effect, asked: &[&EffectRequest], log: &mut Diagnostics) {
         for one in asked {
             let Selector::Named(name) = &one.on else { continue };
             match row.on {
@@ -117,7 +117,7 @@ impl<'a> Resolving<'a> {
         }
     }
 
-    fn known_joint(&self, row: &Effect, one: &EffectRequest, name: &str, log: &mut Diagnostics) {
+    fn known_joint(&self, row: &'static Effect, one: &EffectRequest, name: &str, log: &mut Diagnostics) {
         let joints = &self.robot.description.joints;
         let Some(&at) = self.index.joints.get(name) else {
             if name == FLOATING_BASE && self.robot.base == Base::Floating {
@@ -136,6 +136,10 @@ impl<'a> Resolving<'a> {
             _ if !self.moving[at] => ("a joint that is locked".to_owned(), "a joint that moves"),
             kind if !has_room(row, kind) => {
                 (format!("a {} joint, which has no coordinate of its own for each degree of freedom", kind.name()), "another joint")
+            }
+            kind if one.says.as_ref().is_some_and(|says| !fits(row, says, kind)) => {
+                log.error((one.place, &one.key), Code::Robot, unfit(row, one, kind), on_joint(row, kind));
+                return;
             }
             _ if row.enters == Enters::Drive && joint.mimic.is_some() => {
                 ("a joint that follows another".to_owned(), "the joint that it follows: that is what a motor drives")
@@ -183,11 +187,15 @@ impl<'a> Resolving<'a> {
                 self.put(row, one, (place, key), &vec![None; row.fields.len()]);
             }
             let named = by_name.get(&joint.name).first().copied();
+            // Numbers for all joints are for those that have such numbers.
+            let fits = |one: &&EffectRequest| one.says.as_ref().is_none_or(|says| fits(row, says, joint.kind));
+            let all = all.filter(fits);
             let spread = all.filter(|_| self.is_spread_over(row.id, joint));
-            let Some(one) = named.or(spread) else { continue };
+            // The wrong ones of a joint by its name are errors already.
+            let Some(one) = named.or(spread).filter(fits) else { continue };
             let layers = [named, all].map(|asked| asked.and_then(|a| a.says.as_ref()));
             let Some(layers) = one.says.as_ref().map(|_| layers) else { continue };
-            match fill(row, &layers, &|tag: &str| urdf::number(joint, tag)) {
+            match fill((row, fields_on(row, joint.kind)), &layers, &|tag: &str| urdf::number(joint, tag)) {
                 Ok(mut filled) => {
                     urdf::before_the_gear(row.id, &mut filled);
                     self.put_filled(row, &joint.name, Origin::default(), one, &filled);
@@ -220,7 +228,7 @@ impl<'a> Resolving<'a> {
                     continue;
                 }
                 let at = says.at.or(rest.and_then(|r| r.at)).unwrap_or_default();
-                match fill(row, &[Some(says), rest], &|_| None) {
+                match fill((row, row.fields), &[Some(says), rest], &|_| None) {
                     Ok(filled) => self.put_filled(row, &link.name, at, one, &filled),
                     Err(field) => missing(row, field, one, &format!("link {:?}", link.name), log),
                 }
@@ -253,12 +261,12 @@ impl<'a> Resolving<'a> {
 
     pub(super) fn put(&mut self, row: &'static Effect, one: Applied, (place, key): (At, String), tags: &[Option<&'static str>]) {
         let mut rest = one.parameters.as_slice();
-        let mut number = |(field, from): (&articulated_core::effect::Field, &Option<&'static str>)| {
+        let mut number = |(field, from): (&Field, &Option<&'static str>)| {
             let (own, others) = rest.split_at(field.len.min(rest.len()));
             rest = others;
             Number { name: field.name, values: own.to_vec(), unit: field.unit, from: *from }
         };
-        let mut numbers: Vec<Number> = row.fields.iter().zip(tags).map(&mut number).collect();
+        let mut numbers: Vec<Number> = row.fields_of(one.parameters.len()).iter().zip(tags).map(&mut number).collect();
         if tags.contains(&Some(collision::WORD)) {
             numbers.push(Number { name: "xyz", values: one.at.xyz.to_vec(), unit: "m", from: Some(collision::WORD) });
         }
@@ -298,23 +306,60 @@ fn for_all<'a>(asked: &[&'a EffectRequest]) -> Option<&'a EffectRequest> {
 
 /// Whether a joint of this kind has what the effect acts on.
 fn has_room(row: &Effect, kind: JointKind) -> bool {
-    kind.quaternion().is_none() || !row.needs_coordinate()
+    let is_of_rotation = kind == JointKind::Spherical && row.ball_fields.is_some();
+    kind.quaternion().is_none() || row.enters != Enters::ForceOfCoordinate || is_of_rotation
+}
+
+/// The fields of an effect on a joint of this kind.
+fn fields_on(row: &'static Effect, kind: JointKind) -> &'static [Field] {
+    row.ball_fields.filter(|_| kind == JointKind::Spherical).unwrap_or(row.fields)
+}
+
+/// The given fields that a joint of this kind does not have, or with another number of numbers.
+fn unfit_fields<'n>(row: &'static Effect, says: &'n Numbers, kind: JointKind) -> impl Iterator<Item = (&'static Field, &'n [f64])> {
+    let fields = fields_on(row, kind);
+    let given = row.fields.iter().zip(&says.fields).filter_map(|(field, numbers)| Some((field, numbers.as_deref()?)));
+    given.filter(move |(field, numbers)| !fields.iter().any(|own| own.name == field.name && own.len == numbers.len()))
+}
+
+/// Whether a joint of this kind has the given fields.
+fn fits(row: &'static Effect, says: &Numbers, kind: JointKind) -> bool {
+    unfit_fields(row, says, kind).next().is_none()
+}
+
+/// What is given and does not fit.
+fn unfit(row: &'static Effect, one: &EffectRequest, kind: JointKind) -> String {
+    let all = one.says.iter().flat_map(|says| unfit_fields(row, says, kind));
+    let each: Vec<String> = all.map(|(field, numbers)| format!("{} with {}", field.name, count(numbers.len()))).collect();
+    format!("{} for a {} joint", each.join(", "), kind.name())
+}
+
+/// What a joint of this kind has.
+fn on_joint(row: &'static Effect, kind: JointKind) -> String {
+    let each: Vec<String> =
+        fields_on(row, kind).iter().map(|field| format!("{} with {} ({})", field.name, count(field.len), field.what)).collect();
+    each.join(", ")
+}
+
+fn count(numbers: usize) -> String {
+    if numbers == 1 { "1 number".into() } else { format!("{numbers} numbers") }
 }
 
 /// All numbers: of the first layer that says or takes them from the URDF, otherwise the defaults.
 /// The name of a field for which there are none. `layers`: what is said of a joint by its name, and
 /// of all; what is to be had from the URDF by name is not left out, so that no other says it.
 pub(super) fn fill(
-    row: &'static Effect,
+    (row, fields): (&'static Effect, &'static [Field]),
     layers: &[Option<&Numbers>],
     number: &dyn Fn(&str) -> Option<f64>,
 ) -> Result<Vec<Filled>, &'static str> {
-    let of = |i: usize, field: &'static articulated_core::effect::Field| {
+    let of = |field: &'static Field| {
+        let i = row.fields.iter().position(|other| other.name == field.name);
         for (k, layer) in layers.iter().enumerate().filter_map(|(k, layer)| Some((k, (*layer)?))) {
-            if let Some(numbers) = &layer.fields[i] {
+            if let Some(numbers) = i.and_then(|i| layer.fields[i].as_ref()) {
                 return Ok((numbers.clone(), None));
             }
-            let tag = urdf::tag(row.id, field.name).filter(|_| layer.from_urdf);
+            let tag = urdf::tag(row.id, field.name).filter(|_| layer.from_urdf && field.len == 1);
             if let Some((tag, x)) = tag.and_then(|tag| Some((tag, number(tag)?))) {
                 return Ok((vec![x], Some(tag)));
             }
@@ -324,7 +369,7 @@ pub(super) fn fill(
         }
         field.default.map(|x| (x.to_vec(), None)).ok_or(field.name)
     };
-    row.fields.iter().enumerate().map(|(i, field)| of(i, field)).collect()
+    fields.iter().map(of).collect()
 }
 
 pub(super) fn missing(row: &Effect, field: &str, one: &EffectRequest, on: &str, log: &mut Diagnostics) {

@@ -1,6 +1,6 @@
 //! What a file of a robot says of effects: in a URDF, `<dynamics>` and `<limit>`.
 
-use articulated_core::description::Joint;
+use articulated_core::description::{Joint, JointKind};
 
 use articulated_core::effect::{Effect, EffectId};
 
@@ -58,6 +58,8 @@ pub(crate) fn number(joint: &Joint, tag: &str) -> Option<f64> {
         "joint stiffness" => joint.dynamics.stiffness?,
         "joint springref" => joint.dynamics.rest?,
         "limit lower" => joint.limit?.lower,
+        // Of a ball joint the largest angle; 0 where a `<limit>` says nothing of it.
+        "limit upper" if joint.kind == JointKind::Spherical => Some(joint.limit?.upper).filter(|upper| *upper > 0.0)?,
         "limit upper" => joint.limit?.upper,
         "limit effort" => joint.limit?.effort,
         "limit velocity" => joint.limit?.velocity,

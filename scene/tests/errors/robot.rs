@@ -86,6 +86,72 @@ fn names_that_the_robot_does_not_have_are_told_with_the_nearest() {
     }
 }
 
+/// A ball joint, a free one behind it, and a hinge.
+const BALL: &str = r#"<robot name="ball"><link name="world"/>
+  <link name="rod"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="bob"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="kite"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <joint name="hip" type="spherical"><parent link="world"/><child link="rod"/></joint>
+  <joint name="knee" type="continuous"><parent link="rod"/><child link="bob"/><axis xyz="0 1 0"/></joint>
+  <joint name="string" type="floating"><parent link="world"/><child link="kite"/></joint></robot>"#;
+
+#[test]
+fn numbers_that_a_ball_joint_does_not_have_are_told() {
+    let limit = "upper with 1 number (largest angle of the rotation from the identity, about any axis; no bound from π on), stiffness with 1 \
+                 number (torque per unit of depth), damping with 1 number (what a unit rate into the stop adds to the torque, in parts of it)";
+    let cases = [
+        (
+            "[effects.limit.hip]\nlower = -0.5\nupper = 0.5\nstiffness = 100",
+            format!("s.toml:1: effects.limit.hip: found lower with 1 number for a spherical joint, expected {limit}"),
+        ),
+        (
+            "[effects.spring.hip]\nstiffness = 3\nrest = 0.1",
+            "s.toml:1: effects.spring.hip: found rest with 1 number for a spherical joint, expected stiffness with 1 number (torque per unit of the \
+             angle), rest with 4 numbers (quaternion (x, y, z, w) at which it is slack, of any length)"
+                .to_owned(),
+        ),
+        (
+            "[effects.spring.knee]\nstiffness = 3\nrest = [0, 0, 0, 1]",
+            "s.toml:1: effects.spring.knee: found rest with 4 numbers for a continuous joint, expected stiffness with 1 number (torque per unit of \
+             the coordinate), rest with 1 number (coordinate at which it is slack)"
+                .to_owned(),
+        ),
+        ("[effects.limit.hip]\nstiffness = 100", "s.toml:1: effects.limit.hip: found no upper for joint \"hip\", expected upper, rad|m".to_owned()),
+        (
+            "[effects.spring]\nstring = 3",
+            "s.toml:2: effects.spring.string: found a floating joint, which has no coordinate of its own for each degree of freedom, expected \
+             another joint"
+                .to_owned(),
+        ),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(against(BALL, text), [expected]);
+    }
+    let told = Scene::read("s.toml", "[effects.spring.hip]\nstiffness = 3\nrest = [0, 0, 0, 0]").unwrap_err().to_string();
+    assert!(told.contains("effects.spring.hip.rest: found 0.0, 0.0, 0.0, 0.0, expected a quaternion"), "{told}");
+    let told = Scene::read("s.toml", "[effects.spring.hip]\nstiffness = 3\nrest = [0, 0, 1]").unwrap_err().to_string();
+    assert!(told.contains("effects.spring.hip.rest"), "{told}");
+}
+
+/// `*` is for the joints that have the given numbers.
+#[test]
+fn effects_on_all_joints_are_on_balls_where_they_have_such_numbers() {
+    let reading = articulated_formats::read(BALL.as_bytes(), &articulated_formats::Options::default()).unwrap();
+    let robot = Edited { description: &reading.description, base: Base::Fixed, unused: &reading.unused, shafts: &[] };
+    let on = |text: &str| {
+        let resolved = Scene::read("s.toml", text).unwrap().resolve(&robot).unwrap_or_else(|errors| panic!("{errors}"));
+        resolved.effects.into_iter().map(|e| (e.on, e.parameters)).collect::<Vec<_>>()
+    };
+    let ball = |p: &[f64]| ("hip".to_owned(), p.to_vec());
+    let hinge = |p: &[f64]| ("knee".to_owned(), p.to_vec());
+    assert_eq!(on("effects = { spring = 3 }"), [ball(&[3.0, 0.0, 0.0, 0.0, 1.0]), hinge(&[3.0, 0.0])]);
+    assert_eq!(on("[effects.spring.\"*\"]\nstiffness = 3\nrest = 0.2"), [hinge(&[3.0, 0.2])]);
+    assert_eq!(on("[effects.spring.\"*\"]\nstiffness = 3\nrest = [0, 0, 2, 0]"), [ball(&[3.0, 0.0, 0.0, 2.0, 0.0])]);
+    assert_eq!(on("[effects.limit.\"*\"]\nlower = -1\nupper = 2\nstiffness = 3"), [hinge(&[-1.0, 2.0, 3.0, 0.0])]);
+    let both = "[effects.limit]\n\"*\" = { lower = -1, upper = 2, stiffness = 3 }\nhip = { upper = 1, stiffness = 4, damping = 0.5 }";
+    assert_eq!(on(both), [ball(&[1.0, 4.0, 0.5]), hinge(&[-1.0, 2.0, 3.0, 0.0])]);
+}
+
 #[test]
 fn all_that_is_wrong_with_a_csv_is_told_of_its_lines() {
     let scene = Scene::read("there/s.toml", "\n[control]\nkind = \"table\"\nfile = \"t.csv\"").unwrap();

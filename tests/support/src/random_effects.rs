@@ -1,7 +1,7 @@
 //! Effects at random.
 
 use articulated_core::description::Origin;
-use articulated_core::effect::{Applied, EffectId, Enters, On, effects};
+use articulated_core::effect::{Applied, Effect, EffectId, Enters, On, effects};
 use articulated_core::model::{FLOATING_BASE, Model};
 
 use crate::random::Random;
@@ -21,23 +21,40 @@ pub fn random_effects(random: &mut Random, model: &Model<f64>, wanted: impl Fn(E
                 taken.push(name);
                 let origin = Origin::new(random.three(0.3), random.three(2.0));
                 let at = if effect.on == On::Link { origin } else { Origin::default() };
-                applied.push(Applied { effect: effect.id, on: name.clone(), at, parameters: parameters(random, effect.id) });
+                let is_ball = effect.on == On::Joint && is_ball(model, effect, name);
+                let parameters = if is_ball { on_ball(random, effect.id) } else { parameters(random, effect.id) };
+                applied.push(Applied { effect: effect.id, on: name.clone(), at, parameters });
             }
         }
     }
     applied
 }
 
-/// A spring needs a coordinate for each degree of freedom; a motor drives no joint that follows
+/// Whether the effect has numbers of its own on this joint, a ball.
+fn is_ball(model: &Model<f64>, effect: &Effect, name: &str) -> bool {
+    model.bodies().iter().skip(1).any(|body| body.name == name && effect.is_of_rotation(body.joint))
+}
+
+/// A spring acts on no free joint, and is left out of joints that follow; a motor drives no joint that follows
 /// another.
 fn can_have(model: &Model<f64>, effect: EffectId, i: usize) -> bool {
-    let ball = model.bodies()[i].joint.quaternion().is_some();
+    let (row, joint) = (effect.row(), model.bodies()[i].joint);
     let follows = model.bodies()[i].coordinates.mimic.is_some();
     match effect {
         _ if model.bodies()[i].name == FLOATING_BASE => false,
-        _ if effect.row().needs_coordinate() => !ball && !follows,
-        _ if effect.row().enters == Enters::Drive => !follows,
+        _ if row.enters == Enters::ForceOfCoordinate => row.acts_on(joint) && !follows,
+        _ if row.enters == Enters::Drive => !follows,
         _ => true,
+    }
+}
+
+/// Numbers that make the effect felt on a ball joint.
+fn on_ball(random: &mut Random, effect: EffectId) -> Vec<f64> {
+    match effect {
+        EffectId::spring => (0..5).map(|_| random.within(0.2, 2.0)).collect(),
+        // Most bounds are passed.
+        EffectId::limit => vec![0.4, random.within(0.2, 2.0), random.within(0.2, 2.0)],
+        other => unreachable!("{} has no numbers of its own on a ball", other.name()),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Generated code, compiled and run as a user's would be: against the generic library, against an
 //! independent program, and on odd input.
 
+mod balls;
 mod batches;
 mod c;
 mod choices;

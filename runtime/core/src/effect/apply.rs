@@ -6,7 +6,8 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::places::Places;
-use super::{Applied, BodyEffect, Effect, EffectId, Enters, JointEffect, On};
+use super::unit::of_length_one;
+use super::{Applied, BodyEffect, Effect, EffectId, Enters, Field, JointEffect, On};
 use crate::Scalar;
 use crate::model::Model;
 use crate::spatial::Placement;
@@ -44,7 +45,7 @@ pub enum Fault {
     Still,
     /// A floating base has no joint to be damped, sprung or driven.
     Base,
-    /// The joint has no single coordinate for the law.
+    /// The joint has no coordinates or rotation for the law: a free joint.
     NoCoordinate,
     /// A wrong number of parameters.
     Length {
@@ -92,7 +93,10 @@ impl fmt::Display for EffectError {
                 write!(f, "the floating base is no joint of the robot: expected one that is, or an effect on the link that floats")
             }
             Fault::NoCoordinate => {
-                write!(f, "the law needs a coordinate for each degree of freedom, which a ball or a free joint does not have")
+                write!(
+                    f,
+                    "the law needs a coordinate for each degree of freedom, or a rotation about a point, and a free joint has neither"
+                )
             }
             Fault::Length { found, expected } => write!(f, "found {found} parameters, expected {expected}"),
             Fault::Number { field, found, expected } => {
@@ -136,7 +140,7 @@ impl Model<f64> {
         }
         let (mut places, mut errors) = (Places::of(&self), Vec::new());
         for (index, one) in applied.iter().enumerate() {
-            let mut faults = check(one);
+            let mut faults = check(one, places.fields(&self, one));
             if faults.is_empty() {
                 faults.extend(self.put(one, &mut places).err());
             }
@@ -176,7 +180,7 @@ impl Model<f64> {
             if bodies.len() > 1 && body.coordinates.mimic.is_some() {
                 return Err(Fault::FollowsSeveral);
             }
-            if body.joint.quaternion().is_some() && one.effect.row().needs_coordinate() {
+            if !one.effect.row().acts_on(body.joint) {
                 return Err(Fault::NoCoordinate);
             }
             if one.effect.row().enters == Enters::Drive && body.coordinates.mimic.is_some() {
@@ -189,8 +193,11 @@ impl Model<f64> {
     fn put_on_joint(&mut self, bodies: &[usize], one: &Applied) {
         for &i in bodies {
             let body = &mut self.bodies[i];
-            let on = |freedom| JointEffect { effect: one.effect, freedom, parameters: one.parameters.clone() };
-            body.effects.joint.extend((0..body.joint.nv()).map(on));
+            let parameters = with_unit_vectors(one.effect.row(), one.parameters.clone());
+            let on = |freedom| JointEffect { effect: one.effect, freedom, parameters: parameters.clone() };
+            // One law for all rates of a ball joint.
+            let count = if one.effect.row().is_of_rotation(body.joint) { 1 } else { body.joint.nv() };
+            body.effects.joint.extend((0..count).map(on));
         }
     }
 
@@ -198,41 +205,54 @@ impl Model<f64> {
         let frame = &self.frames[frame];
         let at: Placement<f64> = one.at.placement();
         let (body, placement) = (frame.body, frame.placement.compose(&at));
-        let parameters = with_normal(one.effect.row(), one.parameters.clone(), |normal| super::unit(normal).unwrap_or(normal));
+        let parameters = with_unit_vectors(one.effect.row(), one.parameters.clone());
         self.bodies[body].effects.body.push(BodyEffect { effect: one.effect, link: one.on.clone(), placement, parameters });
     }
 }
 
-/// The numbers of an effect, with the normal of its plane, if it has one, as `unit` makes it.
-fn with_normal<S: Copy>(effect: &Effect, mut parameters: Vec<S>, unit: impl Fn([S; 3]) -> [S; 3]) -> Vec<S> {
-    if let Some(field) = effect.fields.iter().position(|field| field.name == "normal") {
-        let at: usize = effect.fields[..field].iter().map(|field| field.len).sum();
-        let normal = &mut parameters[at..at + 3];
-        normal.copy_from_slice(&unit([normal[0], normal[1], normal[2]]));
-    }
+/// The numbers of an effect, with its directions ([`super::Field::is_direction`]) of length one.
+fn with_unit_vectors(effect: &Effect, mut parameters: Vec<f64>) -> Vec<f64> {
+    directions(effect, &mut parameters, |vector| match vector {
+        &mut [x, y, z] => of_length_one([x, y, z]).into_iter().for_each(|unit| vector.copy_from_slice(&unit)),
+        &mut [x, y, z, w] => of_length_one([x, y, z, w]).into_iter().for_each(|unit| vector.copy_from_slice(&unit)),
+        _ => {}
+    });
     parameters
 }
 
-impl Effect {
-    /// Numbers of the effect that are symbols, with the normal of its plane, if it has one, made of
-    /// length one: as [`Model::with_effects`] does with numbers.
-    pub fn with_unit_normal<S: Scalar>(&self, parameters: Vec<S>) -> Vec<S> {
-        with_normal(self, parameters, |normal| {
-            let length = normal.iter().fold(S::zero(), |sum, x| sum + *x * *x).sqrt();
-            normal.map(|x| x / length)
-        })
+fn directions<S>(effect: &Effect, parameters: &mut [S], mut change: impl FnMut(&mut [S])) {
+    let (fields, mut rest) = (effect.fields_of(parameters.len()), parameters);
+    for field in fields {
+        let Some((own, others)) = rest.split_at_mut_checked(field.len) else { return };
+        if field.is_direction {
+            change(own);
+        }
+        rest = others;
     }
 }
 
-/// Validates each parameter against its range, then the effect's joint constraint.
-fn check(one: &Applied) -> Vec<Fault> {
+impl Effect {
+    /// Numbers of the effect that are symbols, with its directions ([`super::Field::is_direction`])
+    /// made of length one: as [`Model::with_effects`] does with numbers.
+    pub fn with_unit_vectors<S: Scalar>(&self, mut parameters: Vec<S>) -> Vec<S> {
+        directions(self, &mut parameters, |vector| {
+            let length = vector.iter().fold(S::zero(), |sum, x| sum + *x * *x).sqrt();
+            vector.iter_mut().for_each(|x| *x = *x / length);
+        });
+        parameters
+    }
+}
+
+/// Validates each parameter against the range of its field, then the effect's joint constraint.
+fn check(one: &Applied, fields: &[Field]) -> Vec<Fault> {
     let (row, p) = (one.effect.row(), &one.parameters);
-    if p.len() != row.len() {
-        return vec![Fault::Length { found: p.len(), expected: row.len() }];
+    let expected = fields.iter().map(|field| field.len).sum();
+    if p.len() != expected {
+        return vec![Fault::Length { found: p.len(), expected }];
     }
     let wrong = |field: &'static str, found: &[f64], expected: String| Fault::Number { field, found: found.to_vec(), expected };
     let (mut faults, mut rest) = (Vec::new(), p.as_slice());
-    for field in row.fields {
+    for field in fields {
         let (own, others) = rest.split_at(field.len);
         let beyond = own.iter().find(|x| !field.range.has(**x));
         faults.extend(beyond.map(|x| wrong(field.name, &[*x], field.range.to_string())));

@@ -13,7 +13,8 @@ pub(super) const FIELDS: &[Field] = &[
     Field::number("normal", "1", "outward normal of the plane in the world frame, of any length")
         .or(&[0.0, 0.0, 1.0])
         .of(3)
-        .rule(|p| p[5..8] != [0.0; 3], "a direction: three numbers that are not all 0"),
+        .rule(|p| p[5..8] != [0.0; 3], "a direction: three numbers that are not all 0")
+        .direction(),
     Field::number("height", "m", "of the plane along its normal, from the world frame's origin").or(&[0.0]),
 ];
 

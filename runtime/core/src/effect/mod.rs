@@ -36,7 +36,9 @@ pub use unit::unit;
 use crate::Scalar;
 use crate::description::Origin;
 use crate::dual::Dual;
-use crate::spatial::{ArticulatedInertia, Placement, Wrench};
+use crate::joint::Joint;
+use crate::spatial::screw::Quaternion;
+use crate::spatial::{ArticulatedInertia, Placement, Vector3, Wrench};
 
 /// What an effect acts on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +56,8 @@ pub enum Enters {
     Inertia,
     /// As a force on a degree of freedom, by its rate.
     ForceOfRate,
-    /// As a force on a degree of freedom, by its coordinate and its rate.
+    /// As a force on a degree of freedom, by its coordinate and its rate; on a ball joint as a
+    /// torque, by its rotation and its rates.
     ForceOfCoordinate,
     /// It transforms the commanded torque.
     Drive,
@@ -91,6 +94,8 @@ pub struct Field {
     pub rule: Option<Rule>,
     /// What zeros in it make of the effect.
     pub zeros: Zeros,
+    /// Whether it is a vector of any length, of which only the direction counts.
+    pub is_direction: bool,
     /// What it means.
     pub what: &'static str,
 }
@@ -110,7 +115,7 @@ pub enum Zeros {
 impl Field {
     /// Any number, to be given.
     const fn number(name: &'static str, unit: &'static str, what: &'static str) -> Self {
-        Self { name, len: 1, unit, default: None, range: Range::ALL, rule: None, zeros: Zeros::Count, what }
+        Self { name, len: 1, unit, default: None, range: Range::ALL, rule: None, zeros: Zeros::Count, is_direction: false, what }
     }
 
     /// Not negative.
@@ -151,6 +156,10 @@ impl Field {
     const fn of(self, len: usize) -> Self {
         Self { len, ..self }
     }
+
+    const fn direction(self) -> Self {
+        Self { is_direction: true, ..self }
+    }
 }
 
 /// One row: an effect that a scene may call for.
@@ -172,12 +181,15 @@ pub struct Effect {
     pub source: &'static str,
     /// Its parameters, in order.
     pub fields: &'static [Field],
+    /// Those on a ball joint, in order, if the law on it is one of its own; each has the name of one
+    /// of the others.
+    pub ball_fields: Option<&'static [Field]>,
 }
 
 impl Effect {
-    /// How many numbers its parameters are.
+    /// How many numbers its parameters are; those on a ball joint may be others.
     pub fn len(&self) -> usize {
-        self.fields.iter().map(|f| f.len).sum()
+        sum(self.fields)
     }
 
     /// Whether it has none.
@@ -185,14 +197,32 @@ impl Effect {
         self.fields.is_empty()
     }
 
+    /// Its parameters on a joint of this kind; on a link those of any.
+    pub fn fields_on(&self, joint: Joint) -> &'static [Field] {
+        self.ball_fields.filter(|_| self.is_of_rotation(joint)).unwrap_or(self.fields)
+    }
+
+    /// Whether the law on a joint of this kind is one of its rotation about a point, with all its
+    /// rates: it acts there once, not on each degree of freedom.
+    pub fn is_of_rotation(&self, joint: Joint) -> bool {
+        self.ball_fields.is_some() && joint.is_rotation_about_point()
+    }
+
+    /// The fields of parameters that are so many numbers: a ball joint has another number of them
+    /// than other joints. Those of other joints, where there are no such fields.
+    pub fn fields_of(&self, count: usize) -> &'static [Field] {
+        self.ball_fields.filter(|fields| sum(fields) == count).unwrap_or(self.fields)
+    }
+
     /// The first field whose rule these numbers do not keep, with its part of them; `None` too
     /// where they are not as many as the effect has.
     pub fn broken<'a>(&self, parameters: &'a [f64]) -> Option<(&'static Field, &'a [f64])> {
-        if parameters.len() != self.len() {
+        let fields = self.fields_of(parameters.len());
+        if parameters.len() != sum(fields) {
             return None;
         }
         let mut rest = parameters;
-        self.fields.iter().find_map(|field| {
+        fields.iter().find_map(|field| {
             let (own, others) = rest.split_at(field.len);
             rest = others;
             field.rule.filter(|rule| !(rule.holds)(parameters)).map(|_| (field, own))
@@ -207,7 +237,7 @@ impl Effect {
             rest = others;
             own.iter().all(|x| *x == 0.0)
         };
-        for field in self.fields {
+        for field in self.fields_of(parameters.len()) {
             match (field.zeros, zero(field)) {
                 (Zeros::Nothing, true) => return true,
                 (Zeros::NothingTogether, zero) => parts.push(zero),
@@ -217,9 +247,10 @@ impl Effect {
         !parts.is_empty() && parts.into_iter().all(|zero| zero)
     }
 
-    /// Whether a joint has to have a coordinate for each degree of freedom: the law is about it.
-    pub fn needs_coordinate(&self) -> bool {
-        self.enters == Enters::ForceOfCoordinate
+    /// Whether a joint of this kind has what the law is about: a coordinate for each degree of
+    /// freedom, or a rotation about a point.
+    pub fn acts_on(&self, joint: Joint) -> bool {
+        self.enters != Enters::ForceOfCoordinate || joint.quaternion().is_none() || self.is_of_rotation(joint)
     }
 }
 
@@ -245,6 +276,20 @@ trait Force {
     fn energy<S: Scalar>(p: &[S], q: S) -> S;
 }
 
+/// A law on a ball joint: the torque at the rotation vector φ = log(q₀⁻¹ q), rad, and the rates ω,
+/// rad/s, all in axes of the child; |φ| ≤ π.
+trait BallForce {
+    /// q₀.
+    fn rest<S: Scalar>(_p: &[S]) -> Quaternion<S> {
+        Quaternion::identity()
+    }
+
+    fn torque<S: Scalar>(p: &[S], phi: Vector3<S>, omega: Vector3<S>) -> Vector3<S>;
+
+    /// The energy that it stores, J.
+    fn energy<S: Scalar>(p: &[S], phi: Vector3<S>) -> S;
+}
+
 /// A law on a frame of a link: the wrench about the frame's origin, in its axes.
 trait FrameForce {
     fn wrench<S: Scalar>(p: &[S], at: &Station<S>) -> Wrench<S>;
@@ -259,8 +304,14 @@ trait FrameForce {
 pub(crate) enum Law<S: 'static> {
     /// Inertia on the diagonal of the mass matrix.
     Inertia(fn(&[S]) -> S),
-    /// A force on a degree of freedom.
-    Force { force: OnFreedom<S>, slope: OnFreedom<Dual<S>>, energy: fn(&[S], S) -> S, rise: fn(&[Dual<S>], Dual<S>) -> Dual<S> },
+    /// A force on a degree of freedom; on a ball joint as `ball` says, if it says.
+    Force {
+        force: OnFreedom<S>,
+        slope: OnFreedom<Dual<S>>,
+        energy: fn(&[S], S) -> S,
+        rise: fn(&[Dual<S>], Dual<S>) -> Dual<S>,
+        ball: Option<BallLaw<S>>,
+    },
     /// The torque at the joint for a commanded torque, depending on the rate.
     Drive { torque: OnFreedom<S>, slope: OnFreedom<Dual<S>> },
     /// A wrench on a frame.
@@ -274,6 +325,16 @@ pub(crate) enum Law<S: 'static> {
     Added(fn(&[S]) -> ArticulatedInertia<S>),
 }
 
+/// A torque on a ball joint, at φ from the rotation `rest`.
+pub(crate) struct BallLaw<S: 'static> {
+    pub(crate) rest: fn(&[S]) -> Quaternion<S>,
+    pub(crate) torque: OnBall<S>,
+    pub(crate) slope: OnBall<Dual<S>>,
+    pub(crate) energy: fn(&[S], Vector3<S>) -> S,
+    pub(crate) rise: fn(&[Dual<S>], Vector3<Dual<S>>) -> Dual<S>,
+}
+
+type OnBall<S> = fn(&[S], Vector3<S>, Vector3<S>) -> Vector3<S>;
 type OnFreedom<S> = fn(&[S], S, S) -> S;
 type AtStation<S, T> = fn(&[S], &Station<S>) -> T;
 
@@ -287,10 +348,23 @@ macro_rules! law {
             slope: |p, _, v| $file::force(p, v),
             energy: |_, _| S::zero(),
             rise: |_, _| Dual::constant(S::zero()),
+            ball: None,
         }
     };
     (ForceOfCoordinate $file:ident) => {
-        Law::Force { force: $file::Law::force, slope: $file::Law::force, energy: $file::Law::energy, rise: $file::Law::energy }
+        Law::Force {
+            force: <$file::Law as Force>::force,
+            slope: <$file::Law as Force>::force,
+            energy: <$file::Law as Force>::energy,
+            rise: <$file::Law as Force>::energy,
+            ball: Some(BallLaw {
+                rest: $file::Law::rest,
+                torque: $file::Law::torque,
+                slope: $file::Law::torque,
+                energy: <$file::Law as BallForce>::energy,
+                rise: <$file::Law as BallForce>::energy,
+            }),
+        }
     };
     (Drive $file:ident) => {
         Law::Drive { torque: $file::torque, slope: $file::torque }
@@ -300,6 +374,15 @@ macro_rules! law {
     };
     (Added $file:ident) => {
         Law::Added($file::inertia)
+    };
+}
+
+macro_rules! ball_fields {
+    (ForceOfCoordinate $file:ident) => {
+        Some($file::BALL_FIELDS)
+    };
+    ($enters:ident $file:ident) => {
+        None
     };
 }
 
@@ -322,6 +405,7 @@ macro_rules! effects {
                 what: $what,
                 source: $source,
                 fields: $file::FIELDS,
+                ball_fields: ball_fields!($enters $file),
             },
         )*];
 
@@ -337,8 +421,8 @@ effects! {
     Inertia armature true "M_ii += I n²: a rotor of inertia I behind a gear n, that rotates about the joint's axis alone" "Featherstone 2008, §9.6";
     ForceOfRate damping false "−d v" "Rayleigh 1873";
     ForceOfRate friction false "−μ v/√(v² + s²): Coulomb friction, smooth for rates below s" "Coulomb 1781; smoothed as in Hairer & Wanner 1996";
-    ForceOfCoordinate spring true "−k (q − q₀)" "Hooke 1678";
-    ForceOfCoordinate limit false "∓k x max(0, 1 + c ẋ) beyond a bound, x the depth: a stop that pushes and never pulls"
+    ForceOfCoordinate spring true "−k (q − q₀); on a ball −k log(q₀⁻¹ q), the rotation vector in axes of the child" "Hooke 1678";
+    ForceOfCoordinate limit false "∓k x max(0, 1 + c ẋ) beyond a bound, x the depth: a stop that pushes and never pulls; on a ball for the angle of the rotation"
         "Hunt & Crossley, J. Appl. Mech. 42, 1975";
     Drive motor false "τ clipped to the torque–speed line of a motor behind a gear, less (1 − η) |τ| v/√(v² + s²)"
         "Hughes & Drury, Electric Motors and Drives, 2013, ch. 3";
@@ -359,15 +443,26 @@ pub fn effects() -> &'static [Effect] {
 pub(crate) const fn most_parameters() -> usize {
     let (mut most, mut i) = (0, 0);
     while i < ROWS.len() {
-        let (mut len, mut k) = (0, 0);
-        while k < ROWS[i].fields.len() {
-            len += ROWS[i].fields[k].len;
-            k += 1;
-        }
+        let len = sum(ROWS[i].fields);
         most = if len > most { len } else { most };
+        if let Some(fields) = ROWS[i].ball_fields {
+            // Fields are known by the number of parameters.
+            assert!(sum(fields) != len);
+            most = if sum(fields) > most { sum(fields) } else { most };
+        }
         i += 1;
     }
     most
+}
+
+/// How many numbers fields have.
+const fn sum(fields: &[Field]) -> usize {
+    let (mut len, mut k) = (0, 0);
+    while k < fields.len() {
+        len += fields[k].len;
+        k += 1;
+    }
+    len
 }
 
 /// The effect called `name`.
@@ -400,12 +495,13 @@ pub struct Effects<S> {
     pub body: Vec<BodyEffect<S>>,
 }
 
-/// An effect on one degree of freedom of a joint.
+/// An effect on one degree of freedom of a joint, or on the rotation of a ball joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointEffect<S> {
     /// Which.
     pub effect: EffectId,
-    /// The degree of freedom, counted from the joint's first.
+    /// The degree of freedom, counted from the joint's first; the first, of a law on all those of a
+    /// ball joint.
     pub freedom: usize,
     /// As the effect's fields say.
     pub parameters: Vec<S>,
@@ -470,6 +566,8 @@ mod tests {
             assert_eq!(row.id as usize, k);
             assert_eq!(effect(row.name).map(|e| e.id), Some(row.id));
             assert!(row.broken(&[]).is_none());
+            let named = |field: &Field| row.fields.iter().any(|other| other.name == field.name);
+            assert!(row.ball_fields.unwrap_or_default().iter().all(named));
         }
     }
 }

@@ -4,7 +4,7 @@ use alloc::collections::BTreeMap;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use super::{Fault, On};
+use super::{Applied, Fault, Field, On};
 use crate::model::{FLOATING_BASE, Model};
 use crate::suggest::Suggester;
 
@@ -25,6 +25,13 @@ impl Places {
             frames.entry(frame.name.clone()).or_insert(k);
         }
         Self { joints, frames, suggester: Suggester::default() }
+    }
+
+    /// The fields of an effect on its joint or link.
+    pub(super) fn fields(&self, model: &Model<f64>, one: &Applied) -> &'static [Field] {
+        let row = one.effect.row();
+        let body = self.joints.get(&one.on).filter(|_| row.on == On::Joint).and_then(|bodies| bodies.first());
+        body.map_or(row.fields, |&i| row.fields_on(model.bodies[i].joint))
     }
 
     /// The bodies of the joint of this name, which is not that of a floating base.

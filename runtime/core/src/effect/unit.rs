@@ -1,10 +1,15 @@
-//! Directions that are given by vectors of any length.
+//! Directions that are given by vectors of any length, and quaternions of any norm.
 
 /// The vector made of length one; none for a vector of zeros, or with a number that is not finite.
 ///
 /// First by the largest of its numbers: squares, and the length itself, may be more or less than a
 /// number can say.
 pub fn unit(vector: [f64; 3]) -> Option<[f64; 3]> {
+    of_length_one(vector)
+}
+
+/// As [`unit`], of as many numbers as there are.
+pub(super) fn of_length_one<const N: usize>(vector: [f64; N]) -> Option<[f64; N]> {
     let largest = vector.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     if largest == 0.0 || !vector.iter().all(|x| x.is_finite()) {
         return None;

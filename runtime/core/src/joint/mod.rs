@@ -175,6 +175,12 @@ impl Joint {
         matches!((self.rotation(), self.translation()), (Freedom::None, Freedom::Axis))
     }
 
+    /// Whether the joint is any rotation about its origin, and nothing else.
+    #[inline(always)]
+    pub const fn is_rotation_about_point(self) -> bool {
+        matches!((self.rotation(), self.translation()), (Freedom::Free, Freedom::None))
+    }
+
     /// Whether the joint moves the child's origin in the parent, so that a coordinate, a rate or a
     /// force of it has a length in it.
     #[inline(always)]

@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::leaders::{leads, others};
 use super::{Body, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model};
-use crate::description::{self, Base, Description, Inertial, JointKind, Mimic};
+use crate::description::{self, Base, Description, Inertial, JointKind, Limit, Mimic};
 use crate::effect::Effects;
 use crate::joint::with_pose;
 use crate::joint::{Coordinates, Follow, Joint, JointLaw};
@@ -229,7 +229,7 @@ impl<'a> Builder<'a> {
         };
         let first = match joint.mimic {
             Some(_) => AT_ZERO,
-            None => self.push_joint(&joint.name, joint.kind, joint.limit),
+            None => self.push_joint(&joint.name, joint.kind, limit_of_coordinates(joint)),
         };
         for stage in &stages {
             // Turn the frames so that the axis is z; the link's frame stays where it was.
@@ -421,6 +421,16 @@ fn stages(joint: &description::Joint) -> Vec<Stage> {
 /// m/rad of a helical joint; zero for others.
 fn per_radian(joint: &description::Joint) -> f64 {
     if joint.kind.has_pitch() { joint.pitch / core::f64::consts::TAU } else { 0.0 }
+}
+
+/// The limits of each coordinate: that of a ball joint is of the angle of its rotation, and is kept
+/// with the description alone.
+fn limit_of_coordinates(joint: &description::Joint) -> Option<Limit> {
+    let open = |limit: Limit| Limit { lower: f64::NEG_INFINITY, upper: f64::INFINITY, ..limit };
+    match joint.kind {
+        JointKind::Spherical => joint.limit.map(open).filter(|limit| *limit != Limit::NONE),
+        _ => joint.limit,
+    }
 }
 
 fn turned(turn: Matrix3<f64>) -> Placement<f64> {

@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 
 use super::{Body, Frame, JointInfo, Model, ModelError};
 use crate::Scalar;
+use crate::effect::Field;
 use crate::spatial::Reference;
 
 /// What a model consists of. [`Model::into_parts`] gives it, [`Model::from_parts`] takes it.
@@ -154,10 +155,15 @@ impl<S: Scalar> ModelParts<S> {
 
     fn check_effects(&self) -> Result<(), ModelError> {
         for (i, body) in self.bodies.iter().enumerate() {
-            let joint = body.effects.joint.iter().map(|on| (on.effect, on.parameters.len(), on.freedom < body.joint.nv()));
-            let link = body.effects.body.iter().map(|on| (on.effect, on.parameters.len(), true));
-            for (effect, found, acts) in joint.chain(link) {
-                if !acts || found != effect.row().len() {
+            let count = |fields: &[Field]| fields.iter().map(|field| field.len).sum::<usize>();
+            let joint = body.effects.joint.iter().map(|on| {
+                let row = on.effect.row();
+                let freedoms = if row.is_of_rotation(body.joint) { 1 } else { body.joint.nv() };
+                (on.effect, on.parameters.len(), on.freedom < freedoms && row.acts_on(body.joint), count(row.fields_on(body.joint)))
+            });
+            let link = body.effects.body.iter().map(|on| (on.effect, on.parameters.len(), true, on.effect.row().len()));
+            for (effect, found, acts, expected) in joint.chain(link) {
+                if !acts || found != expected {
                     let found = format!("{} with {found} numbers", effect.row().name);
                     return Err(refused(
                         self.body(i),

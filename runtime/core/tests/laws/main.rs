@@ -4,6 +4,7 @@
 //! `cargo test -p articulated-core` runs them, and compiles neither the generator nor the command
 //! for it.
 
+mod balls;
 mod base_parameters;
 mod closed_forms;
 mod edits;

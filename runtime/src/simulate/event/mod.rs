@@ -8,6 +8,7 @@ use std::sync::Arc;
 use articulated_core::algorithm::Shape;
 use articulated_core::dynamics::Dynamics;
 use articulated_core::effect::unit;
+use articulated_core::spatial::screw::Quaternion;
 
 pub use impact::{Impact, Struck};
 
@@ -111,7 +112,7 @@ impl<'a> Event<'a> {
     /// A guard that is exactly zero at the start counts as a crossing in this direction if it
     /// continues so: it is taken to come from the other side. Without this, such a zero is no event
     /// in either direction, so a motion may start on a section to which it returns.
-    /// [`Event::limit`] and [`Event::contact`] arrive falling.
+    /// [`Event::limit`], [`Event::cone`] and [`Event::contact`] arrive falling.
     #[must_use]
     pub fn arriving(mut self, direction: Direction) -> Self {
         self.arriving = Some(direction);
@@ -145,6 +146,13 @@ impl<'a> Event<'a> {
         // Not a number is no bound.
         let inverted = if lower < upper { None } else { Some((lower, upper)) };
         Self { about: Some(About::Coordinate(i)), inverted, ..Self::new(name, g).falling() }
+    }
+
+    /// The rotation of the unit quaternion (x, y, z, w) at coordinate i of q is by the angle
+    /// `upper`, rad: g = upper − 2 atan2(|(x, y, z)|, |w|), falling.
+    pub fn cone(name: impl Into<String>, i: usize, upper: f64) -> Self {
+        let g = move |_: f64, q: &[f64], _: &[f64]| upper - Quaternion::from_array([0, 1, 2, 3].map(|k| number(q, i + k))).angle();
+        Self { about: Some(About::Coordinate(i + 3)), ..Self::new(name, g).falling() }
     }
 
     /// Rate i of v starts to slide (rising) or stops sliding (falling): |v| passes [`SLIDING`]

@@ -104,7 +104,7 @@ fn numbers(applied: &Applied) -> String {
         let unit = if f.unit == "1" { String::new() } else { format!(" {}", f.unit) };
         if let [x] = own { format!("{} {x:?}{unit}", f.name) } else { format!("{} {own:?}{unit}", f.name) }
     };
-    applied.effect.row().fields.iter().map(field).collect::<Vec<_>>().join(", ")
+    applied.effect.row().fields_of(applied.parameters.len()).iter().map(field).collect::<Vec<_>>().join(", ")
 }
 
 /// How much of the unused content a header lists.

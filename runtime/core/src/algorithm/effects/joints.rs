@@ -6,9 +6,11 @@ use super::{LoadCase, duals};
 use crate::Scalar;
 use crate::algorithm::Workspace;
 use crate::dual::Dual;
-use crate::effect::{JointEffect, Law};
+use crate::effect::{BallLaw, JointEffect, Law};
 use crate::joint::Coordinates;
 use crate::model::{Body, Model};
+use crate::spatial::Vector3;
+use crate::spatial::screw::{Quaternion, right_jacobian_inverse};
 
 /// One effect on one degree of freedom: what it is, at which place in v, its own coordinate and
 /// rate, and its own rate over that of the coordinate that it moves with.
@@ -28,6 +30,17 @@ impl<S: Scalar> Acting<'_, S> {
             None if at.mimic.is_some() => at.coordinate(q),
             None => q[at.q + self.effect.freedom],
         }
+    }
+
+    /// Its law of the rotation, if it acts on a ball joint and has one.
+    #[inline(always)]
+    pub(super) fn on_ball(&self) -> Option<OnBall<'_, S>> {
+        let Law::Force { ball: Some(law), .. } = self.effect.effect.law::<S>() else { return None };
+        self.effect.effect.row().is_of_rotation(self.body.joint).then(|| OnBall {
+            law,
+            p: &self.effect.parameters,
+            at: &self.body.coordinates,
+        })
     }
 
     /// Its own rate, or acceleration.
@@ -50,6 +63,64 @@ fn scaled<S: Scalar>(x: S, ratio: Option<S>) -> S {
     ratio.map_or(x, |r| x * r)
 }
 
+/// An effect on a ball joint whose law is one of φ = log(q₀⁻¹ q), the rotation vector from rest in
+/// axes of the child: |φ| ≤ π, and at π one of two ([`Quaternion::log`]).
+pub(super) struct OnBall<'a, S: 'static> {
+    law: &'static BallLaw<S>,
+    p: &'a [S],
+    at: &'a Coordinates<S>,
+}
+
+impl<S: Scalar> OnBall<'_, S> {
+    /// φ, rad.
+    fn phi(&self, q: &[S]) -> Vector3<S> {
+        let at = self.at.q;
+        let q = Quaternion::from_array([q[at], q[at + 1], q[at + 2], q[at + 3]]);
+        (self.law.rest)(self.p).conjugate().product(&q).log()
+    }
+
+    /// ω, rad/s.
+    fn omega(&self, v: &[S]) -> Vector3<S> {
+        let at = self.at.v;
+        Vector3::new(v[at], v[at + 1], v[at + 2])
+    }
+
+    /// The torque, N·m.
+    pub(super) fn torque(&self, q: &[S], v: &[S]) -> Vector3<S> {
+        (self.law.torque)(self.p, self.phi(q), self.omega(v))
+    }
+
+    /// Column k of the torque's derivative along q ⊕ δ, and of that by v, for each k; the second
+    /// only if it is asked for. ∂φ/∂δ = J_r(φ)⁻¹.
+    pub(super) fn slopes(&self, q: &[S], v: &[S], by_v: bool) -> [(Vector3<S>, Option<Vector3<S>>); 3] {
+        let (phi, omega) = (self.phi(q), self.omega(v));
+        let p = &duals(self.p)[..self.p.len()];
+        let constant = |x: Vector3<S>| x.map(Dual::constant);
+        let slope = |phi, omega| (self.law.slope)(p, phi, omega).map(|x: Dual<S>| x.slope);
+        let jacobian = right_jacobian_inverse(phi);
+        core::array::from_fn(|k| {
+            let moved = phi.zip_map(&jacobian.column(k), Dual::new);
+            let unit = |i: usize| if i == k { S::one() } else { S::zero() };
+            let faster = omega.zip_map(&Vector3::from_fn(|i, _| unit(i)), Dual::new);
+            (slope(moved, constant(omega)), by_v.then(|| slope(constant(phi), faster)))
+        })
+    }
+
+    /// The energy that it stores, J.
+    fn energy(&self, q: &[S]) -> S {
+        (self.law.energy)(self.p, self.phi(q))
+    }
+
+    /// The power that it does not store, W.
+    fn dissipation(&self, q: &[S], v: &[S]) -> S {
+        let (phi, omega) = (self.phi(q), self.omega(v));
+        let p = &duals(self.p)[..self.p.len()];
+        // φ̇ = J_r(φ)⁻¹ ω
+        let moving = phi.zip_map(&(right_jacobian_inverse(phi) * omega), Dual::new);
+        (self.law.torque)(self.p, phi, omega).dot(&omega) + (self.law.rise)(p, moving).slope
+    }
+}
+
 /// All effects on joints.
 pub(super) fn all<S: Scalar>(model: &Model<S>) -> impl Iterator<Item = Acting<'_, S>> {
     let of = |body: &'_ Body<S>| -> (usize, Option<S>) {
@@ -63,14 +134,23 @@ pub(super) fn all<S: Scalar>(model: &Model<S>) -> impl Iterator<Item = Acting<'_
     })
 }
 
+/// Visits the forces of effects on joints, each with its place in v.
+#[inline(always)]
+fn for_each_force<S: Scalar>(model: &Model<S>, q: &[S], v: &[S], mut visit: impl FnMut(usize, S)) {
+    for one in all(model) {
+        if let Some(ball) = one.on_ball() {
+            let torque = ball.torque(q, v);
+            (0..3).for_each(|k| visit(one.at + k, torque[k]));
+        } else if let Law::Force { force, .. } = one.effect.effect.law::<S>() {
+            visit(one.at, one.torque(force(&one.effect.parameters, one.coordinate(q), one.rate(v))));
+        }
+    }
+}
+
 /// τ −= the forces of effects on joints: what actuators have to do against them.
 #[inline(always)]
 pub(in crate::algorithm) fn apply_joint_forces<S: Scalar>(model: &Model<S>, q: &[S], v: &[S], tau: &mut [S]) {
-    for one in all(model) {
-        if let Law::Force { force, .. } = one.effect.effect.law::<S>() {
-            tau[one.at] -= one.torque(force(&one.effect.parameters, one.coordinate(q), one.rate(v)));
-        }
-    }
+    for_each_force(model, q, v, |at, force| tau[at] -= force);
 }
 
 /// τ += I a of rotors.
@@ -120,11 +200,7 @@ pub(in crate::algorithm) fn input_torque<S: Scalar>(
         return driven;
     }
     motor_torque(model, v, tau, &mut driven);
-    for one in all(model) {
-        if let Law::Force { force, .. } = one.effect.effect.law::<S>() {
-            driven[one.at] += one.torque(force(&one.effect.parameters, one.coordinate(q), one.rate(v)));
-        }
-    }
+    for_each_force(model, q, v, |at, force| driven[at] += force);
     driven
 }
 
@@ -154,7 +230,9 @@ pub(in crate::algorithm) fn driven_slopes<S: Scalar>(model: &Model<S>, v: &[S], 
 pub(super) fn dissipation<S: Scalar>(model: &Model<S>, q: &[S], v: &[S]) -> S {
     let mut sum = S::zero();
     for one in all(model).filter(|one| !one.effect.effect.row().conservative) {
-        if let Law::Force { force, rise, .. } = one.effect.effect.law::<S>() {
+        if let Some(ball) = one.on_ball() {
+            sum += ball.dissipation(q, v);
+        } else if let Law::Force { force, rise, .. } = one.effect.effect.law::<S>() {
             let (q, v) = (one.coordinate(q), one.rate(v));
             let p = &duals(&one.effect.parameters)[..one.effect.parameters.len()];
             // f v + dE/dt
@@ -168,7 +246,9 @@ pub(super) fn dissipation<S: Scalar>(model: &Model<S>, q: &[S], v: &[S]) -> S {
 pub(super) fn energy<S: Scalar>(model: &Model<S>, q: &[S]) -> S {
     let mut sum = S::zero();
     for one in all(model) {
-        if let Law::Force { energy, .. } = one.effect.effect.law::<S>() {
+        if let Some(ball) = one.on_ball() {
+            sum += ball.energy(q);
+        } else if let Law::Force { energy, .. } = one.effect.effect.law::<S>() {
             sum += energy(&one.effect.parameters, one.coordinate(q));
         }
     }

@@ -23,6 +23,16 @@ pub(in crate::algorithm) fn on_joints<S: Scalar>(
     mut others: Option<(&mut [S], &mut [S])>,
 ) {
     for one in joints::all(model) {
+        if let Some(ball) = one.on_ball() {
+            for (k, (by_angle, by_rate)) in ball.slopes(q, v, others.is_some()).into_iter().enumerate() {
+                let place = |i: usize| (one.at + i) * model.nv + one.at + k;
+                (0..3).for_each(|i| by_q[place(i)] -= by_angle[i]);
+                if let (Some((by_v, _)), Some(by_rate)) = (&mut others, by_rate) {
+                    (0..3).for_each(|i| by_v[place(i)] -= by_rate[i]);
+                }
+            }
+            continue;
+        }
         let (diagonal, p) = (one.at * model.nv + one.at, &one.effect.parameters);
         // Twice: the rate of the coordinate, and the torque on it.
         let twice = |x: S| one.torque(one.torque(x));

@@ -86,6 +86,13 @@ impl<S: Scalar> Quaternion<S> {
         self.vector * (sign * rotation_over_vector(square, sign * self.scalar))
     }
 
+    /// The angle of the rotation, rad, from 0 to π: the length of [`Self::log`]. The norm need not be
+    /// one.
+    pub fn angle(&self) -> S {
+        let half = self.vector.dot(&self.vector).sqrt().atan2(self.scalar.abs());
+        half + half
+    }
+
     /// The sign of the first of w, x, y, z that is not zero: ±1.
     #[inline(always)]
     fn sign(&self) -> S {
