@@ -46,10 +46,12 @@ mod base;
 #[cfg(feature = "second-reader")]
 mod bridge;
 mod collision;
+mod compiler;
 #[cfg(feature = "urdf-rs")]
 mod conversion;
 mod frame;
 mod inertia;
+mod joint_forces;
 mod joints;
 mod limits;
 mod links;
