@@ -17,6 +17,9 @@
 //!   [`Options`](crate::Options) is set.
 //! * Joints on a link `world` that the file does not declare, with a warning: the link is added,
 //!   without mass.
+//! * `<drake:joint>` of type `ball`, `planar`, `screw` and `universal`, and `<drake:mimic>`.
+//! * Rotors in `<transmission>`, and springs in `<gazebo reference="joint">`: kept in
+//!   `Joint::dynamics`.
 //! * `<collision>` that cannot be read, with a warning: a scene that asks for contact of it is
 //!   refused.
 //! * Expressions of xacro in names of files (meshes, textures), where the file has no others.
