@@ -1,6 +1,7 @@
 //! A second format, of a few keys in TOML: nothing but a reader and its row knows a format.
 
 use articulated_codegen::formats::urdf::Urdf;
+use articulated_codegen::formats::world::Document;
 use articulated_codegen::formats::{Format, Formats, Input};
 use articulated_codegen::{Origin, Request, generate};
 use articulated_core::algorithm::{Workspace, function};
@@ -24,7 +25,7 @@ impl Format for Tiny {
         bytes.starts_with(b"# tiny")
     }
 
-    fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Description> {
+    fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Document> {
         let text = std::str::from_utf8(input.bytes).ok()?;
         let table: Table = match text.parse() {
             Ok(table) => table,
@@ -54,7 +55,7 @@ impl Format for Tiny {
         let frame =
             |frame: &Table| Some(Frame { name: text_of(frame, "name"), link: index(&text_of(frame, "link"))?, origin: read_origin(frame) });
         let frames = tables("frame").into_iter().filter_map(frame).collect();
-        Some(Description { name: text_of(&table, "name"), links, joints, frames })
+        Some(Description { name: text_of(&table, "name"), links, joints, frames }.into())
     }
 }
 

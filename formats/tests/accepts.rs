@@ -21,7 +21,7 @@ fn the_description_says_what_the_file_says() {
     assert!(crane.links[0].inertial.is_none());
     let swing = &crane.joints[2];
     assert_eq!((swing.kind, swing.parent, swing.child, swing.axis), (JointKind::Revolute, 2, 3, [0.0, 1.0, 0.0]));
-    assert_eq!(swing.limit, Some(Limit { lower: -1.0, upper: 1.0, effort: 10.0, velocity: 2.0 }));
+    assert_eq!(swing.limit, Some(Limit { lower: -1.0, upper: 1.0, effort: 10.0, velocity: 2.0, ..Limit::NONE }));
     assert_eq!(swing.dynamics, JointDynamics { damping: Some(0.5), friction: Some(0.1), ..JointDynamics::default() });
     assert_eq!((crane.joints[0].limit, crane.joints[0].mimic), (None, None));
     assert_eq!(crane.joints[0].origin.xyz, [0.0, 0.0, 12.0]);
@@ -312,7 +312,7 @@ fn the_extensions_are_read_and_agree_with_the_second_reader() {
     let helical =
         joint(&slew("helical", "<axis xyz='0 2 0'/><thread pitch='-5e-3'/><limit lower='-9' upper='9' effort='1' velocity='2'/>"), "slew");
     assert_eq!((helical.kind, helical.axis, helical.pitch), (JointKind::Helical, [0.0, 2.0, 0.0], -0.005));
-    assert_eq!(helical.limit, Some(Limit { lower: -9.0, upper: 9.0, effort: 1.0, velocity: 2.0 }));
+    assert_eq!(helical.limit, Some(Limit { lower: -9.0, upper: 9.0, effort: 1.0, velocity: 2.0, ..Limit::NONE }));
     let universal = joint(&slew("universal", "<axis xyz='0 0 3'/><axis2 xyz='1 0 1'/>"), "slew");
     assert_eq!((universal.kind, universal.axis, universal.second_axis), (JointKind::Universal, [0.0, 0.0, 3.0], [1.0, 0.0, 1.0]));
     assert_eq!((universal.pitch, helical.second_axis), (0.0, [0.0; 3]));
@@ -347,7 +347,7 @@ fn limits_that_are_left_open_are_infinite() {
     let text = crane("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 1\"/><limit lower=\"-1\" effort=\"9\" velocity=\"2\"/>");
     let reading = accepted(&text);
     let limit = reading.description.joints[0].limit.unwrap();
-    assert_eq!(limit, Limit { lower: f64::NEG_INFINITY, upper: f64::INFINITY, effort: 9.0, velocity: 2.0 });
+    assert_eq!(limit, Limit { lower: f64::NEG_INFINITY, upper: f64::INFINITY, effort: 9.0, velocity: 2.0, ..Limit::NONE });
     assert!(reading.unused.iter().any(|u| u.tag == "limit lower" && u.line == Some(23)));
     assert!(reading.warnings.is_empty());
     let open = CRANE.replace("<robot ", "<robot version=\"1.2\" ").replace("lower=\"0\" upper=\"3\" effort=\"100\"", "");

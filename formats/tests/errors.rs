@@ -171,14 +171,14 @@ fn of_very_many_roots_the_first_are_named_and_the_rest_counted() {
 #[test]
 fn joints_of_other_programs_are_named_where_links_hang_on_nothing() {
     let text = crane("<link name=\"lamp\"/>", "<link name=\"lamp\"/><link name=\"ball\"/>")
-        .replace("</robot>", "<drake:joint name='swivel' type='ball'><parent link='hook'/><child link='ball'/></drake:joint></robot>");
+        .replace("</robot>", "<b:joint name='swivel' type='ball'><parent link='hook'/><child link='ball'/></b:joint></robot>");
     let problems = refused(&text);
     assert_eq!(problems.errors.iter().map(|e| e.code).collect::<Vec<_>>(), [Code::SeveralRoots], "{problems}");
     let message = problems.errors[0].to_string();
-    assert!(message.contains("one root; <drake:joint> \"swivel\" in line 42 is not read: write it as <joint>"), "{message}");
+    assert!(message.contains("one root; <b:joint> \"swivel\" in line 42 is not read: write it as <joint>"), "{message}");
     let two = text.replace("</robot>", "<a:joint><parent link='hook'/><child link='ball'/></a:joint></robot>");
     let message = refused(&two).errors[0].to_string();
-    assert!(message.contains("<drake:joint> \"swivel\" in line 42, <a:joint> in line 42 are not read"), "{message}");
+    assert!(message.contains("<b:joint> \"swivel\" in line 42, <a:joint> in line 42 are not read"), "{message}");
 }
 
 #[test]

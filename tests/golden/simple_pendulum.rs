@@ -128,7 +128,7 @@ impl ::articulated::Dynamics<f64> for Robot {
             0 => (::articulated::JointKind::Revolute, (0, 1), (0, 1)),
             _ => return ::core::option::Option::None,
         };
-        let limit = ::articulated::Limit { lower: Q_LOWER[q.0], upper: Q_UPPER[q.0], effort: TAU_LIMIT[v.0], velocity: V_LIMIT[v.0] };
+        let limit = ::articulated::Limit { lower: Q_LOWER[q.0], upper: Q_UPPER[q.0], effort: TAU_LIMIT[v.0], velocity: V_LIMIT[v.0], ..::articulated::Limit::NONE };
         ::core::option::Option::Some(::articulated::JointRow { name: JOINT_NAMES[index], kind, q, v, limit })
     }
     #[inline]

@@ -89,11 +89,11 @@ fn read_joint(joint: &urdf_rs::Joint, index: usize, draft: &Draft) -> Option<Joi
         mimic,
         also: Vec::new(),
         // Nor a missing limit from zeros.
-        limit: found.limit.is_some().then(|| read_limit(&joint.limit)),
-        dynamics: joint.dynamics.as_ref().map_or_else(JointDynamics::default, |d| JointDynamics {
+        limit: found.limit.map(|found| read_limit(&joint.limit, found)),
+        dynamics: joint.dynamics.as_ref().map_or(JointDynamics { damping: None, friction: None, ..found.dynamics }, |d| JointDynamics {
             damping: Some(d.damping),
             friction: Some(d.friction),
-            ..JointDynamics::default()
+            ..found.dynamics
         }),
     })
 }
@@ -126,8 +126,8 @@ fn read_inertial(inertial: &urdf_rs::Inertial) -> Inertial {
     Inertial { origin: read_origin(&inertial.origin), mass: inertial.mass.value, inertia: [i.ixx, i.ixy, i.ixz, i.iyy, i.iyz, i.izz] }
 }
 
-fn read_limit(limit: &urdf_rs::JointLimit) -> Limit {
-    Limit { lower: limit.lower, upper: limit.upper, effort: limit.effort, velocity: limit.velocity }
+fn read_limit(limit: &urdf_rs::JointLimit, found: Limit) -> Limit {
+    Limit { lower: limit.lower, upper: limit.upper, effort: limit.effort, velocity: limit.velocity, ..found }
 }
 
 fn read_mimic(mimic: &urdf_rs::Mimic) -> Option<Mimic> {

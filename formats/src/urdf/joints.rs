@@ -11,7 +11,21 @@ use super::{frame, limits, unused};
 use crate::xml::element::Tag;
 use crate::xml::number::{self, attribute, attribute_list};
 
-const TAGS: [&str; 9] = ["origin", "parent", "child", "axis", "axis2", "thread", "limit", "dynamics", "mimic"];
+const TAGS: [&str; 10] = ["origin", "parent", "child", "axis", "axis2", "thread", "limit", "dynamics", "mimic", DRAKE_MIMIC];
+
+/// Tags that only `<drake:joint>` has.
+const DRAKE_TAGS: [&str; 3] = [DRAKE_PARENT, DRAKE_CHILD, DRAKE_PITCH];
+
+/// The joint that Drake has for types that the format does not know.
+pub(crate) const DRAKE_JOINT: &str = "drake:joint";
+const DRAKE_MIMIC: &str = "drake:mimic";
+const DRAKE_PARENT: &str = "drake:parent";
+const DRAKE_CHILD: &str = "drake:child";
+const DRAKE_PITCH: &str = "drake:screw_thread_pitch";
+
+/// The types of `<drake:joint>`.
+const DRAKE_KINDS: [(&str, JointKind); 4] =
+    [("ball", JointKind::Spherical), ("planar", JointKind::Planar), ("screw", JointKind::Helical), ("universal", JointKind::Universal)];
 
 /// The axis of a joint that does not give one.
 const DEFAULT_AXIS: [f64; 3] = [1.0, 0.0, 0.0];
@@ -25,8 +39,9 @@ pub(crate) fn joint(tag: &Tag<'_>, context: &Context<'_>, log: &mut Diagnostics)
     let tag = tag.of(&subject);
     let name = tag.required_name("name", log);
     name.iter().for_each(|name| unused::warn_of_blanks(&tag, name, log));
-    unused::rest(&tag, &TAGS, &["name", "type"], log);
-    let kind = kind(&tag, log);
+    let drake = if tag.is(DRAKE_JOINT) { &DRAKE_TAGS[..] } else { &[] };
+    unused::rest(&tag, &[&TAGS, drake].concat(), &["name", "type"], log);
+    let kind = if tag.is(DRAKE_JOINT) { drake_kind(&tag, log) } else { kind(&tag, log) };
     let mut mimics = if kind.is_some_and(JointKind::is_fixed) { Vec::new() } else { mimics(&tag, log) }.into_iter();
     let mut joint = DraftJoint {
         name,
@@ -75,6 +90,17 @@ fn kind(tag: &Tag<'_>, log: &mut Diagnostics) -> Option<JointKind> {
     kind
 }
 
+fn drake_kind(tag: &Tag<'_>, log: &mut Diagnostics) -> Option<JointKind> {
+    let (name, at) = tag.required_attribute("type", log)?;
+    let kind = DRAKE_KINDS.iter().find(|(known, _)| *known == name).map(|(_, kind)| *kind);
+    if kind.is_none() && !number::is_expression(name) {
+        let hint = if JointKind::ALL.iter().any(|kind| kind.name() == name) { "; write this type as <joint>" } else { "" };
+        let expected = format!("ball, planar, screw or universal in <drake:joint>{hint}");
+        log.error(Place { at, ..tag.place("type") }, Code::UnknownJointType, format!("the type {}", quote(name)), expected);
+    }
+    kind
+}
+
 /// The types of these kinds, listed: a, b or c.
 pub(crate) fn kinds_with(meant: impl Fn(JointKind) -> bool) -> String {
     let names: Vec<&str> = JointKind::ALL.iter().filter(|kind| meant(**kind)).map(|kind| kind.name()).collect();
@@ -100,13 +126,20 @@ fn elsewhere(name: &str) -> Option<&'static str> {
 }
 
 fn reference(joint: &Tag<'_>, which: &str, log: &mut Diagnostics) -> Option<Reference> {
-    let tag = joint.required(which, log)?;
+    let drake = if which == "parent" { DRAKE_PARENT } else { DRAKE_CHILD };
+    let is_drake = joint.is(DRAKE_JOINT) && !joint.children().any(|tag| tag.is(which)) && joint.children().any(|tag| tag.is(drake));
+    let tag = joint.required(if is_drake { drake } else { which }, log)?;
     unused::rest(&tag, &[], &["link"], log);
     Some(Reference { name: tag.required_name("link", log)?, at: tag.at() })
 }
 
 fn motion(tag: &Tag<'_>, kind: JointKind, version: Version, joint: &mut DraftJoint, log: &mut Diagnostics) {
     match kind {
+        // Drake does not read axes of it: it turns about x, then about y.
+        JointKind::Universal if tag.is(DRAKE_JOINT) => {
+            ["axis", "axis2"].iter().for_each(|name| report_useless(tag, name, log));
+            (joint.axis, joint.second_axis) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+        }
         JointKind::Universal => (joint.axis, joint.second_axis) = cross(tag, log),
         kind if kind.has_axis() => {
             let given = tag.only("axis", log);
@@ -127,7 +160,8 @@ fn motion(tag: &Tag<'_>, kind: JointKind, version: Version, joint: &mut DraftJoi
     }
     let useless = [
         ("axis2", !kind.has_second_axis()),
-        ("thread", !kind.has_pitch()),
+        ("thread", !kind.has_pitch() || tag.is(DRAKE_JOINT)),
+        (DRAKE_PITCH, !kind.has_pitch() && tag.is(DRAKE_JOINT)),
         ("limit", !has_one_coordinate(kind)),
         ("dynamics", !has_one_coordinate(kind)),
     ];
@@ -209,19 +243,20 @@ fn sine(a: [f64; 3], b: [f64; 3]) -> f64 {
 /// How far a helical joint slides in one turn, m: with a right-handed thread it is positive. Zero
 /// is odd, but means something.
 fn pitch(joint: &Tag<'_>, log: &mut Diagnostics) -> Option<f64> {
-    let tag = joint.required("thread", log)?;
-    unused::rest(&tag, &[], &["pitch"], log);
-    let pitch = number::required(&tag, "pitch", log)?;
+    let (name, attribute) = if joint.is(DRAKE_JOINT) { (DRAKE_PITCH, "value") } else { ("thread", "pitch") };
+    let tag = joint.required(name, log)?;
+    unused::rest(&tag, &[], &[attribute], log);
+    let pitch = number::required(&tag, attribute, log)?;
     if pitch == 0.0 {
         let expected = "metres per revolution; without, the joint is revolute; used as written";
-        log.warning(tag.place("thread pitch"), Code::ZeroPitch, "zero", expected);
+        log.warning(tag.place(&format!("{name} {attribute}")), Code::ZeroPitch, "zero", expected);
     }
     Some(pitch)
 }
 
 /// The joints that a joint follows. Two tags for one leader are one too many.
 fn mimics(joint: &Tag<'_>, log: &mut Diagnostics) -> Vec<DraftMimic> {
-    let all: Vec<Tag<'_>> = joint.children().filter(|tag| tag.is("mimic")).collect();
+    let all: Vec<Tag<'_>> = joint.children().filter(|tag| tag.is("mimic") || tag.is(DRAKE_MIMIC)).collect();
     let leaders: Vec<_> = all.iter().map(|tag| tag.attribute("joint")).collect();
     let is_twice = |(k, leader): (usize, &Option<_>)| leaders[..k].contains(leader);
     if leaders.iter().enumerate().any(is_twice) {

@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 
 use articulated_core::description::{JointDynamics, JointKind, Limit};
 
+use super::joints::DRAKE_JOINT;
 use super::robot::Version;
 use super::unused;
 use crate::xml::element::Tag;
@@ -21,7 +22,9 @@ pub(crate) fn limit(joint: &Tag<'_>, kind: JointKind, version: Version, log: &mu
         report_missing(joint, kind, log);
         return None;
     };
-    unused::rest(&tag, &[], &["lower", "upper", "effort", "velocity"], log);
+    let known = ["lower", "upper", "effort", "velocity", DRAKE_ACCELERATION, "acceleration", "deceleration", "jerk"];
+    // Before version 1.2 they are no part of the format.
+    unused::rest(&tag, &[], if open { &known } else { &known[..5] }, log);
     let (lower, upper) = match kind {
         JointKind::Continuous => without_bounds(&tag, log),
         _ => bounds(&tag, open, log),
@@ -29,11 +32,22 @@ pub(crate) fn limit(joint: &Tag<'_>, kind: JointKind, version: Version, log: &mu
     warn_of_degrees(&tag, kind, lower.abs().max(upper.abs()), log);
     let effort = positive(&tag, "effort", open, log);
     let velocity = positive(&tag, "velocity", open, log);
-    Some(Limit { lower, upper, effort, velocity })
+    let mut further = |name: &str| {
+        attribute(&tag, name, log).inspect(|value| report_negative(&tag, &format!("limit {name}"), *value, log)).unwrap_or(f64::INFINITY)
+    };
+    let from_drake = further(DRAKE_ACCELERATION);
+    let [acceleration, deceleration, jerk] = if open { LATER.map(further) } else { [f64::INFINITY; 3] };
+    Some(Limit { lower, upper, effort, velocity, acceleration: acceleration.min(from_drake), deceleration, jerk })
 }
 
+/// Bounds that version 1.2 adds; what is left out is infinite.
+const LATER: [&str; 3] = ["acceleration", "deceleration", "jerk"];
+/// The name of the first of them in Drake, in all versions.
+const DRAKE_ACCELERATION: &str = "drake:acceleration";
+
 fn report_missing(joint: &Tag<'_>, kind: JointKind, log: &mut Diagnostics) {
-    if kind.has_bounds() {
+    // Drake has none for its own types.
+    if kind.has_bounds() && !joint.is(DRAKE_JOINT) {
         let expected = "<limit> for a revolute, helical or prismatic joint; taken as without limits";
         log.warning(joint.place("limit"), Code::LimitMissing, "none", expected);
     }

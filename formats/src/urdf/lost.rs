@@ -1,6 +1,7 @@
 //! Dynamics that a file states where they are not read: inside `<gazebo>`, under a prefix, in tags
 //! that the format does not have.
 
+use super::joint_forces;
 use crate::xml::element::Tag;
 use crate::xml::markup;
 use articulated_core::diagnostic::{Code, Diagnostics, quote};
@@ -19,6 +20,10 @@ pub(crate) fn report(tag: &Tag<'_>, log: &mut Diagnostics) -> bool {
     let (mut end, mut any) = (0, false);
     for inner in tag.descendants() {
         if inner.start() < end {
+            continue;
+        }
+        // Those at a joint are kept, or have a warning of their own.
+        if inner.is(joint_forces::SPRING) && tag.attribute("reference").is_some() {
             continue;
         }
         if let Some((what, expected)) = loss(&inner) {

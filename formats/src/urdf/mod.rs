@@ -17,6 +17,9 @@
 //!   [`Options`](crate::Options) is set.
 //! * Joints on a link `world` that the file does not declare, with a warning: the link is added,
 //!   without mass.
+//! * `<drake:joint>` of type `ball`, `planar`, `screw` and `universal`, and `<drake:mimic>`.
+//! * Rotors in `<transmission>`, and springs in `<gazebo reference="joint">`: kept in
+//!   `Joint::dynamics`.
 //! * `<collision>` that cannot be read, with a warning: a scene that asks for contact of it is
 //!   refused.
 //! * Expressions of xacro in names of files (meshes, textures), where the file has no others.
@@ -46,10 +49,12 @@ mod base;
 #[cfg(feature = "second-reader")]
 mod bridge;
 mod collision;
+mod compiler;
 #[cfg(feature = "urdf-rs")]
 mod conversion;
 mod frame;
 mod inertia;
+mod joint_forces;
 mod joints;
 mod limits;
 mod links;

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::ast::{Draft, DraftLink, PassedOver};
-use super::{frame, joints, links, lost, unused, visual};
+use super::joints::DRAKE_JOINT;
+use super::{compiler, frame, joint_forces, joints, links, lost, unused, visual};
 use crate::Options;
 use crate::xml::element::Tag;
 use articulated_core::diagnostic::{Code, Diagnostics, Place, quote};
@@ -35,13 +36,13 @@ pub(crate) struct Context<'a> {
 pub(crate) fn draft(robot: &Tag<'_>, options: &Options, log: &mut Diagnostics) -> Draft {
     let name = robot.required_name("name", log).unwrap_or_default();
     unused::warn_of_blanks(robot, &name, log);
-    unused::rest(robot, &["link", "joint"], &["name", "version"], log);
+    unused::rest(robot, &["link", "joint", DRAKE_JOINT, "transmission"], &["name", "version"], log);
     let context = Context { options, version: version(robot, log), length: frame::longest(robot), materials: visual::materials(robot) };
     let mut draft = Draft { name, ..Draft::default() };
     for tag in robot.children() {
         if tag.is("link") {
             draft.links.push(links::link(&tag, &context, log));
-        } else if tag.is("joint") {
+        } else if tag.is("joint") || tag.is(DRAKE_JOINT) {
             draft.joints.push(joints::joint(&tag, &context, log));
         } else if lost::is_joint(&tag) {
             let name = tag.name_for_messages();
@@ -52,6 +53,9 @@ pub(crate) fn draft(robot: &Tag<'_>, options: &Options, log: &mut Diagnostics) -
         log.error(robot.place("link"), Code::NoLinks, "no link", "a robot with at least one link");
     }
     declare_world(&mut draft, log);
+    joint_forces::keep_rotors(robot, &mut draft.joints, log);
+    joint_forces::keep_springs(robot, &mut draft.joints, log);
+    compiler::warn(robot, &draft.links, log);
     draft
 }
 

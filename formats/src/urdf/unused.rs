@@ -10,10 +10,11 @@ use crate::xml::markup;
 
 const APPEARANCE: &str = "appearance plays no part in the dynamics";
 
+const LATER: &str = "a limit that <robot version=\"1.2\"> adds";
+
 /// Tags that are known, by what they stand in, and why they are not used.
 const KNOWN: &[(&str, &str, &str)] = &[
     ("robot", "material", APPEARANCE),
-    ("robot", "transmission", "rotor inertia and gear ratios are given by the scene"),
     ("robot", "gazebo", "settings of a simulator"),
     ("robot", "ros2_control", "settings of a controller"),
     ("robot", "sensor", "sensors play no part in the dynamics"),
@@ -33,9 +34,9 @@ const KNOWN: &[(&str, &str, &str)] = &[
     ("link", "self_collision_checking", "collisions are not looked for"),
     ("joint", "safety_controller", "settings of a controller"),
     ("joint", "calibration", "settings of a controller"),
-    ("limit", "acceleration", "acceleration is not limited"),
-    ("limit", "deceleration", "acceleration is not limited"),
-    ("limit", "jerk", "jerk is not limited"),
+    ("limit", "acceleration", LATER),
+    ("limit", "deceleration", LATER),
+    ("limit", "jerk", LATER),
 ];
 
 /// Number of characters of a text that a message shows.

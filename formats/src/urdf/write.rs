@@ -8,7 +8,8 @@ use articulated_core::description::{Description, Inertial, Joint, JointKind, Ori
 /// reading gives the same double.
 #[must_use]
 pub fn write(description: &Description) -> String {
-    let mut out = format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", escaped(&description.name));
+    let version = if description.joints.iter().any(needs_version_1_2) { " version=\"1.2\"" } else { "" };
+    let mut out = format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\"{version}>\n", escaped(&description.name));
     for link in &description.links {
         let name = escaped(&link.name);
         let _ = match &link.inertial {
@@ -19,7 +20,33 @@ pub fn write(description: &Description) -> String {
     for j in &description.joints {
         joint(&mut out, description, j);
     }
+    description.joints.iter().for_each(|j| forces(&mut out, j));
     out + "</robot>\n"
+}
+
+/// Whether a bound is left out that would be zero in older versions, or one is given that they do
+/// not have.
+fn needs_version_1_2(joint: &Joint) -> bool {
+    let Some(limit) = joint.limit else { return false };
+    let is_open = joint.kind.has_bounds() && !(limit.lower.is_finite() && limit.upper.is_finite());
+    is_open || [limit.acceleration, limit.deceleration, limit.jerk].iter().any(|limit| limit.is_finite())
+}
+
+/// What a joint has beside its tag: the inertia of a rotor without a gear, and a spring.
+fn forces(out: &mut String, joint: &Joint) {
+    let name = escaped(&joint.name);
+    if let Some(armature) = joint.dynamics.armature {
+        let _ = writeln!(
+            out,
+            "  <transmission name=\"{name}\">\n    <type>transmission_interface/SimpleTransmission</type>\n    <joint name=\"{name}\"/>\n    \
+             <actuator name=\"{name}\"><mechanicalReduction>1</mechanicalReduction><motorInertia>{armature:?}</motorInertia></actuator>\n  \
+             </transmission>"
+        );
+    }
+    if let Some(stiffness) = joint.dynamics.stiffness {
+        let rest = joint.dynamics.rest.map(|rest| format!("<springReference>{rest:?}</springReference>")).unwrap_or_default();
+        let _ = writeln!(out, "  <gazebo reference=\"{name}\"><springStiffness>{stiffness:?}</springStiffness>{rest}</gazebo>");
+    }
 }
 
 /// The text of an attribute.
@@ -61,7 +88,15 @@ fn joint(out: &mut String, description: &Description, j: &Joint) {
     if let Some(l) = j.limit.as_ref().filter(|_| j.kind != JointKind::Spherical) {
         // An attribute that is missing is infinite.
         let attribute = |(name, x): (&str, f64)| if x.is_finite() { format!(" {name}=\"{x:?}\"") } else { String::new() };
-        let all = [("lower", l.lower), ("upper", l.upper), ("effort", l.effort), ("velocity", l.velocity)];
+        let all = [
+            ("lower", l.lower),
+            ("upper", l.upper),
+            ("effort", l.effort),
+            ("velocity", l.velocity),
+            ("acceleration", l.acceleration),
+            ("deceleration", l.deceleration),
+            ("jerk", l.jerk),
+        ];
         let _ = writeln!(out, "    <limit{}/>", all.map(attribute).concat());
     }
     if j.dynamics.damping.is_some() || j.dynamics.friction.is_some() {

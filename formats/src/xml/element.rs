@@ -39,7 +39,7 @@ impl<'a> Tag<'a> {
     }
 
     pub(crate) fn is(&self, name: &str) -> bool {
-        self.node.tag_name().name() == name
+        markup::is_name(self.node.tag_name().name(), name)
     }
 
     /// The tag's name as the file writes it.
@@ -96,7 +96,7 @@ impl<'a> Tag<'a> {
 
     /// An attribute's value and line.
     pub(crate) fn attribute(&self, name: &str) -> Option<(&'a str, At)> {
-        let attribute = self.node.attribute_node(name)?;
+        let attribute = self.node.attributes().find(|attribute| markup::is_name(attribute.name(), name))?;
         Some((attribute.value(), self.lines.at(attribute.range().start)))
     }
 

@@ -18,6 +18,11 @@ pub(crate) fn as_written(name: &str) -> String {
     name.replace(COLON, ":")
 }
 
+/// Whether a name of the prepared text is `name` as a file writes it.
+pub(crate) fn is_name(prepared: &str, name: &str) -> bool {
+    prepared == name || name.contains(':') && as_written(prepared) == name
+}
+
 /// ` (did you mean "upper"?)`, or nothing.
 pub(crate) fn hint(meant: Option<&str>) -> String {
     meant.map(|name| format!(" (did you mean {}?)", quote(name))).unwrap_or_default()

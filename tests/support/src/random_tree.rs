@@ -77,7 +77,13 @@ pub(crate) fn joint(random: &mut Random, flavour: Flavour, parent: usize, child:
         locked: (flavour.locked && kind != Fixed && random.chance(0.12)).then(|| locked(random, kind)),
         mimic: None,
         also: Vec::new(),
-        limit: matches!(kind, Revolute | Prismatic | Helical).then_some(Limit { lower: -2.5, upper: 2.5, effort: 100.0, velocity: 10.0 }),
+        limit: matches!(kind, Revolute | Prismatic | Helical).then_some(Limit {
+            lower: -2.5,
+            upper: 2.5,
+            effort: 100.0,
+            velocity: 10.0,
+            ..Limit::NONE
+        }),
         dynamics: JointDynamics::default(),
     }
 }

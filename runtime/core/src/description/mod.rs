@@ -282,7 +282,7 @@ pub struct Mimic {
     pub offset: f64,
 }
 
-/// Bounds of a joint's motion.
+/// Bounds of a joint's motion; infinite where the file gives none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
     /// Lower bound of the coordinate, rad or m.
@@ -293,11 +293,25 @@ pub struct Limit {
     pub effort: f64,
     /// Largest rate, rad/s or m/s.
     pub velocity: f64,
+    /// Largest acceleration, rad/s² or m/s².
+    pub acceleration: f64,
+    /// Largest acceleration against the motion, rad/s² or m/s².
+    pub deceleration: f64,
+    /// Largest rate of the acceleration, rad/s³ or m/s³.
+    pub jerk: f64,
 }
 
 impl Limit {
     /// None at all.
-    pub const NONE: Self = Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY, effort: f64::INFINITY, velocity: f64::INFINITY };
+    pub const NONE: Self = Self {
+        lower: f64::NEG_INFINITY,
+        upper: f64::INFINITY,
+        effort: f64::INFINITY,
+        velocity: f64::INFINITY,
+        acceleration: f64::INFINITY,
+        deceleration: f64::INFINITY,
+        jerk: f64::INFINITY,
+    };
 }
 
 /// Coefficients of a joint's own forces, as the file gives them; `None` where it gives none.

@@ -208,7 +208,7 @@ fn limit_rail(case: &mut Case, limit: Limit) -> usize {
 fn a_limit_that_is_open_on_one_side_is_kept_on_the_other() {
     let mut case = Case::bundled(articulated_models::robot("cart_pole").unwrap());
     for (lower, upper, expected) in [(0.5, f64::INFINITY, [0.5, 2.5]), (f64::NEG_INFINITY, -0.5, [-2.5, -0.5])] {
-        let at = limit_rail(&mut case, Limit { lower, upper, effort: 1.0, velocity: 1.0 });
+        let at = limit_rail(&mut case, Limit { lower, upper, effort: 1.0, velocity: 1.0, ..Limit::NONE });
         let drawn = |u: f64| case.call("random_configuration", &[&vec![u; case.model.nq()]])[at];
         assert_eq!(drawn(0.0), expected[0]);
         assert!((drawn(1.0 - U) - expected[1]).abs() <= 4.0 * U);
@@ -235,7 +235,7 @@ fn the_textbook_draws_within_the_same_limits() {
     let mut case = Case::bundled(articulated_models::robot("cart_pole").unwrap());
     let open = f64::INFINITY;
     for (lower, upper) in [(-1.0, open), (-open, 1.0), (-open, open), (1.0, -1.0), (-1.0, 2.0)] {
-        let limit = Some(Limit { lower, upper, effort: 1.0, velocity: 1.0 });
+        let limit = Some(Limit { lower, upper, effort: 1.0, velocity: 1.0, ..Limit::NONE });
         case.model = case.model.clone().changed(|parts| parts.joints.iter_mut().for_each(|j| j.limit = limit));
         case.description.joints.iter_mut().for_each(|j| j.limit = limit);
         case.description.joints.iter_mut().filter(|j| j.kind == JointKind::Continuous).for_each(|j| j.kind = JointKind::Revolute);
@@ -250,7 +250,7 @@ fn the_textbook_draws_within_the_same_limits() {
 #[test]
 fn limits_as_wide_as_numbers_are_kept() {
     let mut case = Case::bundled(articulated_models::robot("cart_pole").unwrap());
-    let at = limit_rail(&mut case, Limit { lower: -1e308, upper: 1.7e308, effort: 1.0, velocity: 1.0 });
+    let at = limit_rail(&mut case, Limit { lower: -1e308, upper: 1.7e308, effort: 1.0, velocity: 1.0, ..Limit::NONE });
     for (u, expected) in [(0.0, -1e308), (0.5, 0.35e308), (0.25, -0.325e308)] {
         let drawn = case.call("random_configuration", &[&vec![u; case.model.nq()]])[at];
         assert!((drawn / expected - 1.0).abs() < 1e-15, "{u}: {drawn:e}");
@@ -265,7 +265,7 @@ fn a_continuous_joint_has_no_limits() {
         <link name="arm"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
         <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><limit lower="-0.1" upper="0.2" effort="1" velocity="1"/></joint></robot>"#;
     let mut robot = articulated_test_support::case::read(text);
-    robot.joints[0].limit = Some(Limit { lower: -0.1, upper: 0.2, effort: 1.0, velocity: 1.0 });
+    robot.joints[0].limit = Some(Limit { lower: -0.1, upper: 0.2, effort: 1.0, velocity: 1.0, ..Limit::NONE });
     let model = Model::new(&robot, articulated_core::description::Base::Fixed).unwrap();
     assert_eq!(model.joints()[0].limit, None);
 }

@@ -233,7 +233,7 @@ fn names_by_number(out: &mut String, path: &str, model: &Model<f64>) {
     }
     let _ = writeln!(out, "            _ => return {option}::None,\n        }};");
     let limit = "lower: Q_LOWER[q.0], upper: Q_UPPER[q.0], effort: TAU_LIMIT[v.0], velocity: V_LIMIT[v.0]";
-    let _ = writeln!(out, "        let limit = {path}::Limit {{ {limit} }};");
+    let _ = writeln!(out, "        let limit = {path}::Limit {{ {limit}, ..{path}::Limit::NONE }};");
     let _ = writeln!(out, "        {option}::Some({path}::JointRow {{ name: JOINT_NAMES[index], kind, q, v, limit }})\n    }}");
 }
 
