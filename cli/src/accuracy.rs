@@ -26,6 +26,7 @@ const OF_FUNCTIONS: [&str; 18] = [
     "fixed",
     "gravity",
     "allow_unphysical_inertia",
+    "first_of_duplicates",
     "snap_angles",
     "arg",
     "package",

@@ -41,6 +41,9 @@ pub(crate) struct RobotArguments {
     /// inequality always are)
     #[arg(long)]
     pub(crate) allow_unphysical_inertia: bool,
+    /// Take the first of tags of a URDF that should be there once, with a warning
+    #[arg(long)]
+    pub(crate) first_of_duplicates: bool,
     /// Snap angles of the file within TOL rad of a multiple of π/2 to that multiple: above 0, at
     /// most 0.5 [default: off]
     #[arg(long, value_name = "TOL", value_parser = tolerance)]
@@ -99,6 +102,7 @@ impl RobotArguments {
             fixed: false,
             gravity: None,
             allow_unphysical_inertia: false,
+            first_of_duplicates: false,
             snap_angles: None,
             arg: Vec::new(),
             package: Vec::new(),

@@ -162,6 +162,13 @@ impl Build {
         self
     }
 
+    /// The first of tags of a URDF that should be there once is used, with a warning.
+    #[must_use]
+    pub fn first_of_duplicates(mut self) -> Self {
+        self.request.options.robot.first_of_duplicates = true;
+        self
+    }
+
     /// The constants of the joint or link `from` are called `to`, whatever was said of it before.
     #[must_use]
     pub fn rename(mut self, from: impl Into<String>, to: impl Into<String>) -> Self {

@@ -22,6 +22,9 @@ pub struct Options {
     /// Makes an inertia that is not positive semi-definite a warning instead of an error. One that
     /// is negative by rounding alone always is a warning.
     pub allow_unphysical_inertia: bool,
+    /// Takes the first of tags of a URDF that should be there once and contradict each other, with
+    /// a warning, as urdfdom does.
+    pub first_of_duplicates: bool,
     /// Replaces an angle of a frame that is within this many rad of a multiple of π/2 by that
     /// multiple: above 0, at most [`MOST_SNAPPED`](crate::MOST_SNAPPED); any other number is an
     /// error. `None` leaves every number as written.
@@ -41,6 +44,7 @@ impl Default for Options {
             file: "<robot>".into(),
             base: Base::Fixed,
             allow_unphysical_inertia: false,
+            first_of_duplicates: false,
             snap_angles: None,
             formats: Formats::default(),
             arguments: BTreeMap::new(),

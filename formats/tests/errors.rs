@@ -346,6 +346,17 @@ fn an_inertia_may_be_unphysical_where_that_is_asked_for() {
 }
 
 #[test]
+fn the_first_of_tags_that_contradict_each_other_counts_where_that_is_asked_for() {
+    let text = crane("<mass value=\"40\"/>", "<mass value=\"40\"/><mass value=\"4\"/>");
+    let told = read(text.as_bytes(), &options()).unwrap_err();
+    assert_eq!(told.errors.len(), 1);
+    assert!(told.errors[0].expected.contains("`--first-of-duplicates` (key `first_of_duplicates`"), "{}", told.errors[0]);
+    let reading = read(text.as_bytes(), &Options { first_of_duplicates: true, ..options() }).unwrap();
+    assert_eq!(reading.warnings.iter().filter(|w| w.code == Code::DuplicateTag && w.expected.ends_with("the first is used")).count(), 1);
+    assert_eq!(reading.description.links[1].inertial.unwrap().mass, 40.0);
+}
+
+#[test]
 fn a_tolerance_of_angles_that_cannot_be_is_told_with_the_rest() {
     for (tolerance, found) in [(0.0, "0"), (-1e-9, "-0.000000001"), (0.6, "0.6"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
         let asked = Options { snap_angles: Some(tolerance), ..options() };

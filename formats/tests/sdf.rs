@@ -424,8 +424,8 @@ fn a_world_has_one_model() {
     };
     let a = format!("<model name=\"a\"><pose>0 0 2 0 0 0</pose>{}{}</model>", link("l", ""), joint("j", "fixed", ["world", "l"], ""));
     let reading = accepted(&one(&a));
-    assert_eq!((reading.description.name.as_str(), reading.warnings.len()), ("a", 1));
-    assert_eq!(reading.warnings[0].code, Code::LostDynamics);
+    assert_eq!((reading.description.name.as_str(), reading.warnings.len()), ("a", 0));
+    assert_eq!(reading.world.gravity, Some([0.0, 0.0, -1.6]));
     assert!(reading.unused.iter().any(|unused| unused.tag == "light"));
     at(&reading.description, "l", &[], [0.0, 0.0, 2.0]);
     let two = error(&one(&format!("{a}{}", a.replace("\"a\"", "\"b\""))));

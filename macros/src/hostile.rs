@@ -35,6 +35,7 @@ const WORDS: [&str; 25] = [
     "functions",
     "urdf",
     "coupling",
+    "first_of_duplicates",
     "lock",
     "99999999999999999999",
 ];

@@ -93,6 +93,8 @@ pub struct CodeOptions {
     pub packages: Vec<(String, String)>,
     /// Accept inertias with a principal moment below zero.
     pub allow_unphysical_inertia: Option<bool>,
+    /// Take the first of tags of a URDF that should be there once.
+    pub first_of_duplicates: Option<bool>,
     /// Take angles this near to a multiple of π/2 as that, rad.
     pub snap_angles: Option<f64>,
     /// Limbs that are alike at once.
@@ -389,6 +391,14 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         default: "false",
         what: "accept negative principal moments, with a warning (moments that break the triangle inequality always are)",
         read: |s, spot, log| s.code.allow_unphysical_inertia = spot.boolean(log),
+    },
+    Row {
+        name: "first_of_duplicates",
+        required: false,
+        value: "true or false",
+        default: "false",
+        what: "take the first of tags of a URDF that should be there once, with a warning",
+        read: |s, spot, log| s.code.first_of_duplicates = spot.boolean(log),
     },
     Row {
         name: "snap_angles",

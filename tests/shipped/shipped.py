@@ -35,6 +35,8 @@ LEFT_OUT = "random_urdfs"  # a thousand blocks of random shape in pybullet: no r
 BOUND = 1e-12  # of the scale of each number; of forward dynamics also ten times what Pinocchio's own are off
 STATES = 3
 FUNCTIONS = ["inverse_dynamics", "mass_matrix", "forward_dynamics"]
+# Options that errors name: each makes one kind of mistake a warning.
+OPTIONS = ["--allow-unphysical-inertia", "--first-of-duplicates"]
 SINGULAR = 1e-13  # least ratio of pivots below which forward dynamics is not compared
 
 
@@ -192,6 +194,7 @@ def examine(task):
         entry["robot"] = moves_mass(path)
         messages = [error["message"].split(path.name + ":")[-1] for error in report["errors"]]
         entry["reason"], entry["mistakes"] = messages[0], len(messages)
+        entry["option"] = option(path, messages)
         return entry
     entry["robot"] = report["totals"]["moving_mass"] > 0
     entry["degrees_of_freedom"] = report["totals"]["degrees_of_freedom"]
@@ -201,6 +204,13 @@ def examine(task):
     status, floating = articulated(path, "--floating", "check")
     entry["floating"] = compare(path, "--floating", floating) if status == 0 else {"not_compared": "no mass on a floating base"}
     return entry
+
+
+def option(path, messages):
+    """The option that the errors name and that makes the file usable, if there is one."""
+    named = [word for word in OPTIONS if any(word in message for message in messages)]
+    usable = (word for word in named if articulated(path, "--fixed", "check", word)[1].get("usable", False))
+    return next(usable, None)
 
 
 def verdict(entry, listed):
@@ -248,9 +258,11 @@ def table(entries):
     robots = [e for e in entries if e["robot"]]
     usable = sum(e["usable"] for e in robots)
     print(f"{usable} of {len(robots)} robots are usable ({100 * usable / max(len(robots), 1):.1f} %)")
-    option = sum("--allow-unphysical-inertia" in e.get("reason", "") for e in robots)
-    if option:
-        print(f"{option} more are usable with --allow-unphysical-inertia, as the error says")
+    for word in OPTIONS:
+        more = sum(e.get("option") == word for e in robots)
+        if more:
+            usable += more
+            print(f"{more} more are usable with {word}, as the error says ({100 * usable / len(robots):.1f} %)")
 
 
 def main():

@@ -73,8 +73,17 @@ fn each_choice_arrives_in_the_request() {
     assert_eq!(of(build.clone().standalone().limbs(false).forbid_unsafe().no_std().max_code_size(200)), expected);
     let mut expected = plain.clone();
     (expected.robot.base, expected.robot.snap_angles, expected.robot.allow_unphysical_inertia) = (Base::Fixed, Some(1e-6), true);
+    (expected.robot.first_of_duplicates, expected.robot.file_coupling) = (true, true);
     expected.rename = vec![("a-b".to_owned(), "A_MINUS_B".to_owned()).into()];
-    let all = build.clone().floating().fixed().snap_angles(1e-6).allow_unphysical_inertia().rename("a-b", "A_MINUS_B");
+    let all = build
+        .clone()
+        .floating()
+        .fixed()
+        .snap_angles(1e-6)
+        .allow_unphysical_inertia()
+        .first_of_duplicates()
+        .file_coupling()
+        .rename("a-b", "A_MINUS_B");
     assert_eq!(of(all.clone()), expected);
     expected.rename = vec![("c".to_owned(), "C".to_owned()).into(), ("a-b".to_owned(), "D".to_owned()).into()];
     assert_eq!(of(all.rename("c", "C").rename("a-b", "D")), expected);

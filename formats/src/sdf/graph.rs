@@ -73,6 +73,8 @@ pub(crate) struct Node<'a> {
 
 pub(crate) struct Graph<'a> {
     pub(crate) name: String,
+    /// Gravity of the world, m/s², if the file says one.
+    pub(crate) gravity: Option<[f64; 3]>,
     pub(crate) nodes: Vec<Node<'a>>,
     pub(crate) scopes: Vec<Scope>,
     pub(crate) links: Vec<Link<'a>>,
@@ -108,7 +110,7 @@ impl<'a> Graph<'a> {
         build.any_model(model, WORLD, &Over::default(), log);
         if let Some(world) = world {
             build.content(world, WORLD, log);
-            gravity(world, log);
+            build.graph.gravity = gravity(world, log);
         }
         let mut graph = build.graph;
         if graph.links.is_empty() && log.is_ok() {
@@ -131,6 +133,7 @@ impl<'a> Graph<'a> {
         let scope = Scope { prefix: String::new(), shown: String::new(), model: WORLD, version, is_static: false };
         Self {
             name: String::new(),
+            gravity: None,
             nodes: vec![world],
             scopes: vec![scope],
             links: Vec::new(),
@@ -360,13 +363,9 @@ fn name_of(element: &Element) -> &str {
     element.text("name").or(child("name")).or(child("uri")).unwrap_or_default()
 }
 
-/// Reports what the file says of gravity where it is not that of scenes.
-fn gravity(world: &Element, log: &mut Diagnostics) {
-    let Some(element) = only(world, "gravity", &Subject::Document, log) else { return };
-    if let Some([x, y, z]) = values::exactly::<3>(element, &Subject::Document, log).filter(|gravity| *gravity != [0.0, 0.0, -9.81]) {
-        let expected = "`gravity` of the scene or of the request, which is (0 0 -9.81) m/s² unless given; this value is not used";
-        element.warning((&Subject::Document, "gravity"), Code::LostDynamics, format!("gravity ({x:?} {y:?} {z:?})"), expected, log);
-    }
+/// Gravity of a world, m/s².
+fn gravity(world: &Element, log: &mut Diagnostics) -> Option<[f64; 3]> {
+    values::exactly::<3>(only(world, "gravity", &Subject::Document, log)?, &Subject::Document, log)
 }
 
 /// What an `<include>` says instead of the model in the file.

@@ -62,6 +62,7 @@ impl Format for Sdf {
         let root = load::Loader::new(input.sources).root(input.bytes, &input.options.file, diagnostics)?;
         grammar::check(&root, diagnostics);
         let graph = graph::Graph::of(&root, input.options, diagnostics)?;
-        lower::lower(&graph, input.options, diagnostics).map(Into::into)
+        let description = lower::lower(&graph, input.options, diagnostics)?;
+        Some(world::Document { description, world: world::World { gravity: graph.gravity, ..world::World::default() } })
     }
 }

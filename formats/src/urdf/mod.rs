@@ -128,7 +128,8 @@ impl Format for Urdf {
 
 fn draft(input: &Input<'_>, log: &mut Diagnostics) -> Option<ast::Draft> {
     let text = document::text(input.bytes, log)?;
-    let lines = Lines::of(&text);
+    let first = input.options.first_of_duplicates;
+    let lines = Lines::of(&text).with_first_of_duplicates(first);
     let document = document::parse(&text, &lines, log)?;
     let robot = robot_tag(&document, &lines, log)?;
     if !xacro::is_needed(&document, &input.options.file) {
@@ -137,7 +138,7 @@ fn draft(input: &Input<'_>, log: &mut Diagnostics) -> Option<ast::Draft> {
     }
     let expanded = xacro::expand(&document, &lines, input, log)?;
     // An expression that is left over has an error of its own, or is meant.
-    let lines = Lines::expanded(&expanded.text, expanded.origins, !log.is_ok());
+    let lines = Lines::expanded(&expanded.text, expanded.origins, !log.is_ok()).with_first_of_duplicates(first);
     let document = document::parse(&expanded.text, &lines, log)?;
     let robot = robot_tag(&document, &lines, log)?;
     Some(robot::draft(&robot, input.options, log))

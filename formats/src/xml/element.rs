@@ -16,6 +16,10 @@ pub(crate) struct Tag<'a> {
     subject: &'a Subject,
 }
 
+/// The option that takes the first of tags that should be there once, as the command, scenes and
+/// macro, and build scripts spell it.
+const FIRST_OF_DUPLICATES: &str = "`--first-of-duplicates` (key `first_of_duplicates`, method `Build::first_of_duplicates`)";
+
 impl<'a> Tag<'a> {
     pub(crate) fn new(node: Node<'a, 'a>, lines: &'a Lines<'a>, subject: &'a Subject) -> Self {
         Self { node, lines, subject }
@@ -119,7 +123,11 @@ impl<'a> Tag<'a> {
                 let found = format!("a second <{name}>, equal to the first in line {line}");
                 log.warning(place, kind, found, format!("{expected}; used once"));
             } else {
-                log.error(place, kind, format!("a second <{name}> (the first is in line {line})"), expected);
+                let found = format!("a second <{name}> (the first is in line {line})");
+                match self.lines.first_of_duplicates {
+                    true => log.warning(place, kind, found, format!("{expected}; the first is used")),
+                    false => log.error(place, kind, found, format!("{expected}; {FIRST_OF_DUPLICATES} takes the first")),
+                }
             }
         }
         Some(first)

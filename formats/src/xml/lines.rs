@@ -8,6 +8,8 @@ pub(crate) struct Lines<'a> {
     starts: Vec<usize>,
     /// Whether expressions of xacro in this text have errors of their own.
     pub(super) expressions_reported: bool,
+    /// Whether the first counts of tags that should be there once.
+    pub(super) first_of_duplicates: bool,
     /// Of an expanded text: positions, in order, and the places that the text from there on comes
     /// from.
     origins: Vec<(usize, At)>,
@@ -16,14 +18,19 @@ pub(crate) struct Lines<'a> {
 impl<'a> Lines<'a> {
     pub(crate) fn of(text: &'a str) -> Self {
         let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
-        Self { text, starts, expressions_reported: false, origins: Vec::new() }
+        Self { text, starts, expressions_reported: false, first_of_duplicates: false, origins: Vec::new() }
     }
 
     /// Of a text that was expanded from others: places are those of the source.
     /// `expressions_reported`: expressions that are left over have errors of their own, and are no
     /// second error as numbers.
     pub(crate) fn expanded(text: &'a str, origins: Vec<(usize, At)>, expressions_reported: bool) -> Self {
-        Self { text, starts: vec![0], expressions_reported, origins }
+        Self { text, starts: vec![0], expressions_reported, first_of_duplicates: false, origins }
+    }
+
+    /// Whether the first counts of tags that should be there once.
+    pub(crate) fn with_first_of_duplicates(self, first_of_duplicates: bool) -> Self {
+        Self { first_of_duplicates, ..self }
     }
 
     /// The place of a byte.

@@ -277,6 +277,7 @@ impl Scene {
         options.file_coupling = code.file_coupling;
         options.lock = code.lock.into_iter().map(|lock| self.span((lock.joint, lock.at), lock.place)).collect();
         options.allow_unphysical_inertia = code.allow_unphysical_inertia.unwrap_or(options.allow_unphysical_inertia);
+        options.first_of_duplicates = code.first_of_duplicates.unwrap_or(options.first_of_duplicates);
         options.snap_angles = code.snap_angles;
         options.arguments.extend(code.args);
         let folder = folder_of(Path::new(&self.file));

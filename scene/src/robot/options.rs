@@ -50,6 +50,8 @@ pub struct RobotOptions {
     /// Accept negative principal moments, with a warning. (Moments that violate the triangle
     /// inequality are always accepted with a warning.)
     pub allow_unphysical_inertia: bool,
+    /// Take the first of tags of a URDF that should be there once, with a warning.
+    pub first_of_duplicates: bool,
     /// Take angles this near (rad, above 0, at most
     /// [`MOST_SNAPPED`](articulated_formats::MOST_SNAPPED)) to a multiple of π/2 as that multiple;
     /// every one is reported. `None`: never.
@@ -112,6 +114,7 @@ impl Default for RobotOptions {
             lock: Vec::new(),
             effects: Vec::new(),
             allow_unphysical_inertia: false,
+            first_of_duplicates: false,
             snap_angles: None,
             formats: Formats::default(),
             included: Included::default(),
