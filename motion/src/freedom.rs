@@ -58,8 +58,7 @@ impl Session {
         })
     }
 
-    /// The bound that the file gives the angle of a ball joint, rad; 0 is none, as where a `<limit>`
-    /// says nothing of it.
+    /// The bound that the file gives the angle of a ball joint, rad. A bound of 0 is none.
     pub(crate) fn cone_of_the_file(&self, body: &Body<f64>) -> Option<f64> {
         let joint = self.description.joints.iter().find(|joint| joint.name == body.name && body.joint.is_rotation_about_point())?;
         joint.limit.map(|limit| limit.upper).filter(|upper| *upper > 0.0 && upper.is_finite())

@@ -49,8 +49,8 @@ impl Session {
         Ok(InitialState { q, v, controller })
     }
 
-    /// The joints of one coordinate, mimic joints included, and the balls that are beyond the file's
-    /// limits at the initial q `[nq]`; of a ball the angle of its rotation counts.
+    /// The joints of one coordinate, mimic joints included, and the ball joints that are beyond the
+    /// file's limits at the initial q `[nq]`. The limit of a ball is that of its angle.
     pub fn beyond(&self, q: &[f64]) -> Vec<Beyond> {
         let beyond = |at: Freedom<'_>| {
             let ((lower, upper), found) = (self.of_the_file(at.body)?, at.own_coordinate(*q.get(at.q)?));

@@ -70,7 +70,8 @@ fn what_a_damped_limit_takes_is_in_the_balance() {
     assert!(lost.abs() < 1e-8, "{lost:e} J");
 }
 
-/// It comes to the bound at u/ω, is in the stop for half a period, π √(I/k), and comes back as fast.
+/// It comes to the bound at u/ω, is in the stop for half a period, π √(I/k), and comes back as
+/// fast.
 #[test]
 fn a_limit_on_a_ball_throws_it_back() {
     let (upper, rate) = (0.7, 2.0);

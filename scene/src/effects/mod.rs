@@ -227,8 +227,8 @@ fn quoted_with_reason(word: &str) -> String {
     format!("{}{why}", quote(word))
 }
 
-/// The field as it is on a ball joint, if that has as many numbers as are written: which joint it is
-/// about is not known here.
+/// The field as it is on a ball joint, if that has as many numbers as are written: the kind of the
+/// joint is not known here.
 fn as_written(row: &'static Effect, field: &'static Field, spot: &Spot<'_>) -> &'static Field {
     let Some(count) = spot.list().map(|list| list.len()) else { return field };
     let on_ball = row.ball_fields.unwrap_or_default().iter().find(|other| other.name == field.name && other.len == count);

@@ -35,8 +35,8 @@ fn is_ball(model: &Model<f64>, effect: &Effect, name: &str) -> bool {
     model.bodies().iter().skip(1).any(|body| body.name == name && effect.is_of_rotation(body.joint))
 }
 
-/// A spring acts on no free joint, and is left out of joints that follow; a motor drives no joint that follows
-/// another.
+/// A spring acts on no free joint, and is left out of joints that follow. A motor drives no joint
+/// that follows another.
 fn can_have(model: &Model<f64>, effect: EffectId, i: usize) -> bool {
     let (row, joint) = (effect.row(), model.bodies()[i].joint);
     let follows = model.bodies()[i].coordinates.mimic.is_some();

@@ -86,8 +86,8 @@ impl<S: Scalar> Quaternion<S> {
         self.vector * (sign * rotation_over_vector(square, sign * self.scalar))
     }
 
-    /// The angle of the rotation, rad, from 0 to π: the length of [`Self::log`]. The norm need not be
-    /// one.
+    /// The angle of the rotation, rad, from 0 to π: the length of [`Self::log`]. The norm need not
+    /// be one.
     pub fn angle(&self) -> S {
         let half = self.vector.dot(&self.vector).sqrt().atan2(self.scalar.abs());
         half + half
