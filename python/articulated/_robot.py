@@ -126,6 +126,8 @@ class _Source(NamedTuple):
     append: tuple = ()
     payloads: tuple = ()
     locks: tuple = ()
+    args: tuple = ()
+    packages: tuple = ()
 
 
 class Robot(_native.Robot):
@@ -230,10 +232,16 @@ class Robot(_native.Robot):
         Raises:
             RobotError: There is no such link, or a name occurs twice.
         """
+        packages = dict(self._source.packages)
         if isinstance(other, Robot):
             source = other._source
             if source.append or source.payloads or source.locks:
                 raise ValueError("other: found a robot with edits, expected one as loaded; append it first, and edit the result")
+            if source.args:
+                raise ValueError("other: found a robot with args, expected one without: args are those of the robot that carries it")
+            for name, folder in source.packages:
+                if packages.setdefault(name, folder) != folder:
+                    raise ValueError(f"other: found package {name!r} in {folder!r}, expected {packages[name]!r} as in this robot")
             file, document, includes = source.file, source.document, source.includes
         else:
             file = _path("other", other)
@@ -241,7 +249,7 @@ class Robot(_native.Robot):
         position = _vector("position", position, "three finite numbers, m in the frame of the link")
         rpy = _vector("rpy", rpy, "three finite numbers, rad")
         row = (file, document, includes, _name("at", at), _name("prefix", prefix), position, rpy)
-        return self._edited(self._source._replace(append=(*self._source.append, row)))
+        return self._edited(self._source._replace(append=(*self._source.append, row), packages=tuple(packages.items())))
 
     def _edited(self, source):
         known = {finding["message"] for finding in self._warnings}
@@ -409,26 +417,58 @@ for _index, _function in enumerate(_TABLE):
         setattr(Robot, _function.name, _native.method(_index, _function.name, _text(_function)))
 
 
-def _robot(file, document, base, gravity, frames, wrenches_in, includes):
+def _args(args):
+    """Names and texts of the arguments of a file."""
+    given = []
+    for name, value in _pairs("args", args):
+        if isinstance(value, bool):
+            value = "true" if value else "false"
+        elif isinstance(value, (int, float)):
+            value = repr(value)
+        elif not isinstance(value, str):
+            raise TypeError(f"args[{name!r}]: found {type(value).__name__}, expected a str, a number or a bool")
+        given.append((name, value))
+    return tuple(given)
+
+
+def _packages(packages):
+    """Names and folders of packages."""
+    return tuple((name, _path(f"packages[{name!r}]", folder)) for name, folder in _pairs("packages", packages))
+
+
+def _pairs(what, given):
+    if given is None:
+        return ()
+    if not hasattr(given, "items"):
+        raise TypeError(f"{what}: found {type(given).__name__}, expected a dict")
+    return tuple((_name(what, name), value) for name, value in given.items())
+
+
+def _robot(file, document, base, gravity, frames, wrenches_in, includes, args=None, packages=None):
     if base not in ("fixed", "floating"):
         raise ValueError(f'base: found {base!r}, expected "fixed" or "floating"')
     gravity = _vector("gravity", gravity, "three finite numbers, m/s² in the world frame")
     frames = None if frames is None else tuple(_names("frames", frames))
-    robot = Robot._made(_Source(file, document, base, gravity, includes, _reference(wrenches_in), frames))
+    source = _Source(file, document, base, gravity, includes, _reference(wrenches_in), frames)
+    robot = Robot._made(source._replace(args=_args(args), packages=_packages(packages)))
     for finding in robot._warnings:
         warnings.warn(RobotWarning(finding["message"], finding), stacklevel=3)
     return robot
 
 
-def load(path, base="fixed", gravity=GRAVITY, frames=None, wrenches_in="body"):
+def load(path, base="fixed", gravity=GRAVITY, frames=None, wrenches_in="body", args=None, packages=None):
     """The robot of a file.
 
     Args:
-        path: The file, a URDF.
+        path: The file: URDF, xacro, MJCF or SDF.
         base: "fixed" if the root link does not move, "floating" if it has six degrees of freedom.
         gravity: (3,), m/s² in the world frame.
         frames: Names of the frames (links) to compute, in this order; None for all.
         wrenches_in: What external wrenches are given in, see ``Robot.with_wrenches_in``.
+        args: Values of arguments that the file declares, such as ``{"side": "left"}`` for a
+            ``<xacro:arg name="side"/>``: texts, numbers, True and False.
+        packages: Folders of packages that the file includes files from, such as
+            ``{"arm_description": "src/arm_description"}`` for ``$(find arm_description)``.
 
     Raises:
         RobotError: The file is not a robot; ``diagnostics`` lists all mistakes at once.
@@ -437,11 +477,11 @@ def load(path, base="fixed", gravity=GRAVITY, frames=None, wrenches_in="body"):
         RobotWarning: Something in the file looks wrong; the values are used as they are.
     """
     path = _path("path", path)
-    return _robot(path, _native.read(path), base, gravity, frames, wrenches_in, True)
+    return _robot(path, _native.read(path), base, gravity, frames, wrenches_in, True, args, packages)
 
 
-def loads(text, name="robot.urdf", base="fixed", gravity=GRAVITY, frames=None, wrenches_in="body"):
-    """The robot of a text, str or bytes; ``name`` is the name of its file in messages. See ``load``."""
+def loads(text, name="robot.urdf", base="fixed", gravity=GRAVITY, frames=None, wrenches_in="body", args=None):
+    """The robot of a text, str or bytes, which includes no files; ``name`` is the name of its file in messages. See ``load``."""
     if isinstance(text, str):
         text = text.encode("utf-8", "surrogatepass")
     elif isinstance(text, (bytearray, memoryview)):
@@ -450,7 +490,7 @@ def loads(text, name="robot.urdf", base="fixed", gravity=GRAVITY, frames=None, w
         raise TypeError(f"text: found {type(text).__name__}, expected str or bytes")
     if not isinstance(name, str):
         raise TypeError(f"name: found {type(name).__name__}, expected str")
-    return _robot(name, text, base, gravity, frames, wrenches_in, False)
+    return _robot(name, text, base, gravity, frames, wrenches_in, False, args)
 
 
 def bundled(name, base=None, gravity=GRAVITY, frames=None, wrenches_in="body"):

@@ -1,8 +1,9 @@
 //! The robot: a model with room for its calls.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use articulated::algorithm::{Function, Needs, functions};
@@ -46,6 +47,9 @@ type Ends = (usize, usize);
 /// there.
 type AppendedRow = (String, Vec<u8>, bool, String, String, [f64; 3], [f64; 3]);
 
+/// What names stand for.
+type Names<T> = BTreeMap<String, T>;
+
 /// A load: the link, its mass, its centre of mass, and xx, xy, xz, yy, yz, zz of its inertia.
 type PayloadRow = (String, f64, [f64; 3], [f64; 6]);
 
@@ -83,9 +87,11 @@ fn links(description: &Description, model: &Model<f64>) -> Vec<String> {
     model.links().map(|i| model.bodies()[i].name.as_str()).map(|body| name(body).unwrap_or_else(|| body.to_owned())).collect()
 }
 
-/// The files that a document of a file includes; none, with which they are refused, of a text.
-fn included(file: &str, document: &[u8], is_file: bool) -> Included {
-    let options = articulated::formats::Options { file: file.to_owned(), ..articulated::formats::Options::default() };
+/// The files that a document of a file includes, read with these arguments and packages; none, with
+/// which they are refused, of a text.
+fn included(file: &str, document: &[u8], is_file: bool, arguments: &Names<String>, packages: &Names<PathBuf>) -> Included {
+    let (arguments, packages) = (arguments.clone(), packages.clone());
+    let options = articulated::formats::Options { file: file.to_owned(), arguments, packages, ..articulated::formats::Options::default() };
     if is_file { articulated::formats::included(&Environment, Path::new(""), document, &options) } else { Included::default() }
 }
 
@@ -237,7 +243,7 @@ impl Robot {
 impl Robot {
     /// `like`: the same robot, of which only gravity, frames and the reference of wrenches differ.
     #[new]
-    #[pyo3(signature = (file, document, base, gravity, includes, wrenches_in, frames, append, payloads, locks, like=None))]
+    #[pyo3(signature = (file, document, base, gravity, includes, wrenches_in, frames, append, payloads, locks, args, packages, like=None))]
     #[allow(clippy::too_many_arguments)] // Why: what makes a robot, one by one.
     fn new(
         py: Python<'_>,
@@ -251,6 +257,8 @@ impl Robot {
         append: Vec<AppendedRow>,
         payloads: Vec<PayloadRow>,
         locks: Vec<(String, Vec<f64>)>,
+        args: Vec<(String, String)>,
+        packages: Vec<(String, PathBuf)>,
         like: Option<&Bound<'_, Self>>,
     ) -> PyResult<Self> {
         let reference = reference_of(wrenches_in)?;
@@ -268,9 +276,11 @@ impl Robot {
         let mut request = Request::new(file, document);
         let options = &mut request.options.robot;
         (options.base, options.gravity, options.wrench_reference) = (base_of(base)?, gravity, reference);
-        options.included = included(file, document, includes);
+        (options.arguments, options.packages) = (args.into_iter().collect(), packages.into_iter().collect());
+        options.included = included(file, document, includes, &options.arguments, &options.packages);
+        // Arguments are those of the robot.
         for (file, document, includes, ..) in &append {
-            options.included.extend(included(file, document, *includes));
+            options.included.extend(included(file, document, *includes, &Names::default(), &options.packages));
         }
         options.append = append
             .into_iter()

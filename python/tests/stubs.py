@@ -98,6 +98,8 @@ def load(
     gravity: ArrayLike = ...,
     frames: Optional[Iterable[str]] = None,
     wrenches_in: str = "body",
+    args: Optional[Mapping[str, Union[str, bool, int, float]]] = None,
+    packages: Optional[Mapping[str, Union[str, PathLike[str]]]] = None,
 ) -> Robot: ...
 def loads(
     text: Union[str, bytes, bytearray, memoryview],
@@ -106,6 +108,7 @@ def loads(
     gravity: ArrayLike = ...,
     frames: Optional[Iterable[str]] = None,
     wrenches_in: str = "body",
+    args: Optional[Mapping[str, Union[str, bool, int, float]]] = None,
 ) -> Robot: ...
 def bundled(
     name: str,
