@@ -24,8 +24,8 @@ pub(crate) enum Format {
 /// The robot, and options of reading it.
 #[derive(Args, Debug)]
 pub(crate) struct RobotArguments {
-    /// A bundled robot's or scene's name (a robot's first), the path of a URDF or of a scene
-    /// (.toml), or - for a URDF on the standard input
+    /// A bundled robot's or scene's name (a robot's first), the path of a robot file (URDF, xacro,
+    /// MJCF or SDF) or of a scene (.toml), or - for a robot file on the standard input
     #[arg(value_name = "ROBOT")]
     pub(crate) robot: PathBuf,
     /// The root link moves freely (bundled robots know their own base)
@@ -218,7 +218,7 @@ pub(crate) struct EvalArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct FunctionsArguments {
-    /// Bundled robots' names, or paths of URDF files or of scenes (.toml)
+    /// Names of bundled robots, paths of robot files (URDF, xacro, MJCF, SDF) or scenes (.toml)
     /// [default: ur5_like panda_like quadruped humanoid]
     #[arg(value_name = "ROBOT")]
     pub(crate) robots: Vec<PathBuf>,

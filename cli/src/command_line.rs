@@ -14,8 +14,8 @@ use crate::scaling::ScalingArguments;
 use crate::simulate::arguments::SimulateArguments;
 use crate::stress::StressArguments;
 
-/// Robot dynamics, spelled out: checks a URDF, generates its straight-line code, evaluates it,
-/// compares it, and simulates it.
+/// Robot dynamics, spelled out: checks a robot file (URDF, xacro, MJCF or SDF), generates its
+/// straight-line code, evaluates it, compares it, and simulates it.
 #[derive(Debug, Parser)]
 #[command(name = "articulated", version, after_help = overview())]
 pub(crate) struct Arguments {
@@ -132,7 +132,7 @@ pub(crate) enum Command {
         "articulated simulate chain --against target/peers/peers.json",
     ]))]
     Simulate(SimulateArguments),
-    /// Says which effects of a scene are on and off, what of the URDF is not used, and what each
+    /// Says which effects of a scene are on and off, what of the robot's file is not used, and what each
     /// effect costs
     #[command(after_help = examples(&[
         "articulated effects golf_swing",

@@ -20,7 +20,7 @@ pub(crate) struct NewArguments {
     /// The folder of the new crate; its last part is the crate's name
     #[arg(value_name = "FOLDER")]
     folder: PathBuf,
-    /// The robot: a URDF, or the name of a bundled robot
+    /// The robot: a file (URDF, xacro, MJCF or SDF), or the name of a bundled robot
     #[arg(long, value_name = "ROBOT")]
     file: PathBuf,
     /// The root link moves freely (bundled robots know their own base)
@@ -64,7 +64,7 @@ pub(crate) fn run(arguments: &NewArguments, format: Format) -> Result<(), Failur
     }
     let robot = Robot::find(&RobotArguments::plain(&arguments.file, arguments.floating))?;
     if robot.scene.is_some() {
-        let expected = "the path of a URDF or the name of a bundled robot";
+        let expected = "the path of a robot file or the name of a bundled robot";
         return Err(Failure::usage(format!("--file {}: found a scene, expected {expected}", arguments.file.display())));
     }
     let base = robot.options.robot.base;

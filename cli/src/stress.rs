@@ -17,8 +17,9 @@ use crate::robot::{Robot, read_bytes};
 
 #[derive(Args, Debug)]
 pub(crate) struct StressArguments {
-    /// A bundled robot's or scene's name (a robot's first), the path of a URDF or of a scene
-    /// (.toml), or - for a URDF on the standard input [default: the corpus and all bundled robots]
+    /// A bundled robot's or scene's name (a robot's first), the path of a robot file (URDF, xacro,
+    /// MJCF or SDF) or of a scene (.toml), or - for a robot file on the standard input
+    /// [default: the corpus and all bundled robots]
     #[arg(value_name = "ROBOT")]
     pub(crate) robot: Option<PathBuf>,
     /// The root link moves freely (bundled robots know their own base)

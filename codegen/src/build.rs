@@ -76,7 +76,7 @@ pub struct Written {
 }
 
 impl Build {
-    /// For the URDF at `path`, relative to the crate's folder.
+    /// For the robot file at `path`, relative to the crate's folder.
     pub fn new(path: impl AsRef<Path>) -> Self {
         let mut request = Request::new(path.as_ref().display().to_string(), []);
         request.options.rust_mut().runtime = Some("::articulated".into());
@@ -109,7 +109,7 @@ impl Build {
         Self { scene: Some(name), ..build }
     }
 
-    /// The robot, if the scene does not name its file, or another one: the URDF at `path`, relative
+    /// The robot, if the scene does not name its file, or another one: the file at `path`, relative
     /// to the crate's folder.
     #[must_use]
     pub fn urdf(mut self, path: impl AsRef<Path>) -> Self {
@@ -132,7 +132,7 @@ impl Build {
         self
     }
 
-    /// Angles of the URDF that are this near to a multiple of π/2, rad, above 0, at most
+    /// Angles of the file that are this near to a multiple of π/2, rad, above 0, at most
     /// [`MOST_SNAPPED`](crate::MOST_SNAPPED), are that: some exporters write 1.5708.
     #[must_use]
     pub fn snap_angles(mut self, tolerance: f64) -> Self {
@@ -242,7 +242,7 @@ impl Build {
         self
     }
 
-    /// Appends the robot of the URDF at `path`, relative to the crate's folder: its root at
+    /// Appends the robot of the file at `path`, relative to the crate's folder: its root at
     /// `origin` in the frame of the link `at`, `prefix` before its names.
     #[must_use]
     pub fn append(mut self, path: impl AsRef<Path>, at: impl Into<String>, prefix: impl Into<String>, origin: Origin) -> Self {
@@ -346,7 +346,7 @@ impl Build {
         self
     }
 
-    /// Reads the URDF, and those to append, and generates. Nothing is written or printed.
+    /// Reads the robot's file, and those to append, and generates. Nothing is written or printed.
     pub fn generate(&self) -> Result<Generated, Diagnostics> {
         generate(&self.request()?)
     }

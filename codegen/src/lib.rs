@@ -1,4 +1,4 @@
-//! From a URDF to straight-line Rust or C.
+//! From a robot file (URDF, xacro, MJCF or SDF) to straight-line Rust or C.
 //!
 //! A build script calls [`Build::new`], then [`Build::functions`], then [`Build::write`]:
 //!

@@ -231,7 +231,7 @@ mod tests {
             [Some(Why::SaidSo), None, Some(Why::NotAsked), Some(Why::NotAsked)]
         );
         assert!(
-            report.to_string().contains("damping on joint \"shoulder\": damping 0.3 N·m·s/rad|N·s/m (URDF: dynamics damping)"),
+            report.to_string().contains("damping on joint \"shoulder\": damping 0.3 N·m·s/rad|N·s/m (file: dynamics damping)"),
             "{report}"
         );
     }

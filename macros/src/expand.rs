@@ -136,7 +136,7 @@ impl Reader<'_> {
                     (At::Nowhere, "urdf"),
                     Code::MissingKey,
                     "nothing",
-                    "the path of a URDF from the folder of Cargo.toml, as \"robots/arm.urdf\", here or in a `scene`",
+                    "the path of a robot file from the folder of Cargo.toml, as \"robots/arm.urdf\", here or in a `scene`",
                 ),
             });
         }

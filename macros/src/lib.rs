@@ -14,7 +14,8 @@ mod settings;
 mod tests;
 mod tree;
 
-/// A module with the dynamics of one robot, generated from its URDF when the crate is built.
+/// A module with the dynamics of one robot, generated from its file (URDF, xacro, MJCF or SDF) when
+/// the crate is built.
 ///
 /// ```ignore
 /// articulated::robot! {
@@ -32,7 +33,7 @@ mod tree;
 /// * constants: sizes (`NQ`, `NV`, …), names, limits, and `NEUTRAL`, the neutral configuration;
 /// * modules of indices: `joint`, `q_index`, `v_index`, `frame`;
 /// * `Robot`, a value that implements `articulated::Dynamics`;
-/// * `WARNINGS` about the URDF. The compiler shows them too, as uses of a deprecated constant,
+/// * `WARNINGS` about the file. The compiler shows them too, as uses of a deprecated constant,
 ///   because a macro has no other way. `#[allow(deprecated)]` on the module silences them.
 ///
 /// # Keys
@@ -66,7 +67,7 @@ mod tree;
 ///         args = { hand = true, prefix = "left_" },
 ///         // default: those around the file. Folders for `$(find parts)`
 ///         packages = { parts = "../parts" },
-///         rename = { "a-b" = A_MINUS_B }, // default: none. Names in Rust for names of the URDF
+///         rename = { "a-b" = A_MINUS_B }, // default: none. Names in Rust for names of the file
 ///         allow_unphysical_inertia = false, // true: negative principal moments are a warning
 ///         first_of_duplicates = false, // true: the first of contradicting tags counts
 ///         snap_angles = 1e-9, // default: none. rad, above 0, at most 0.5: angles this near to a multiple of π/2 become that multiple
@@ -84,14 +85,14 @@ mod tree;
 ///
 /// Names of links and joints are words, or they are in quotation marks. Edits happen in this order:
 /// append robots, attach payloads, lock joints. Beside a scene, `motion` in `functions` means all
-/// functions that the motion of the scene calls. The macro runs again when a URDF or the scene
+/// functions that the motion of the scene calls. The macro runs again when a robot file or the scene
 /// changes. A build script (`articulated_codegen::Build`) generates the same code, to read and to
 /// step through.
 ///
 /// # Parameters
 ///
 /// With `parameters` every function takes their numbers as its last input, before `out` if it has
-/// that. The constant `PARAMETERS` has the values of the URDF, and the module `parameter` has the
+/// that. The constant `PARAMETERS` has the values of the file, and the module `parameter` has the
 /// index of each. `Robot` holds its own values. Functions of many states take one set for each
 /// state, or one for all.
 ///
@@ -105,7 +106,7 @@ mod tree;
 ///
 /// # Errors
 ///
-/// All mistakes of the invocation and of the URDF at once, each at its word.
+/// All mistakes of the invocation and of the file at once, each at its word.
 #[proc_macro]
 pub fn robot(input: proc_macro::TokenStream) -> proc_macro::TokenStream {
     expand::expand(input.into()).into()

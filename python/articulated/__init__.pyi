@@ -82,6 +82,13 @@ def load(
     gravity: Optional[ArrayLike] = ...,
     frames: Optional[Iterable[str]] = None,
     wrenches_in: str = "body",
+    *,
+    args: Optional[Mapping[str, Union[str, bool, int, float]]] = None,
+    packages: Optional[Mapping[str, Union[str, PathLike[str]]]] = None,
+    coupling: Optional[str] = None,
+    allow_unphysical_inertia: bool = False,
+    first_of_duplicates: bool = False,
+    snap_angles: Optional[float] = None,
 ) -> Robot: ...
 def loads(
     text: Union[str, bytes, bytearray, memoryview],
@@ -90,6 +97,12 @@ def loads(
     gravity: Optional[ArrayLike] = ...,
     frames: Optional[Iterable[str]] = None,
     wrenches_in: str = "body",
+    *,
+    args: Optional[Mapping[str, Union[str, bool, int, float]]] = None,
+    coupling: Optional[str] = None,
+    allow_unphysical_inertia: bool = False,
+    first_of_duplicates: bool = False,
+    snap_angles: Optional[float] = None,
 ) -> Robot: ...
 def bundled(
     name: str,
@@ -136,6 +149,7 @@ class Robot:
     def with_frames(self, frames: Iterable[str]) -> Robot: ...
     def with_wrenches_in(self, reference: str) -> Robot: ...
     def lock(self, joint: Union[str, Mapping[str, ArrayLike]], at: ArrayLike = 0.0) -> Robot: ...
+    def couple(self, joint: str, leaders: Mapping[str, float], offset: float = 0.0) -> Robot: ...
     def payload(
         self, link: str, mass: float, center_of_mass: ArrayLike = ..., inertia: Optional[ArrayLike] = None
     ) -> Robot: ...

@@ -73,6 +73,13 @@ def _name(what, name):
     return name
 
 
+def _number(what, value, unit=""):
+    number = as_numbers(what, value)
+    if number.shape != () or not np.isfinite(number):
+        raise ValueError(f"{what}: found {value!r}, expected a finite number{unit}")
+    return float(number)
+
+
 def _path(what, path):
     try:
         return os.fsdecode(path)
@@ -124,6 +131,12 @@ class _Source(NamedTuple):
     append: tuple = ()
     payloads: tuple = ()
     locks: tuple = ()
+    args: tuple = ()
+    packages: tuple = ()
+    # Whether to accept unphysical inertias, whether the first of duplicates counts, and what angles are snapped.
+    reading: tuple = (False, False, None)
+    # Whether joints follow others as the file says, and as calls say.
+    coupling: tuple = (False, ())
 
 
 class Robot(_native.Robot):
@@ -194,6 +207,23 @@ class Robot(_native.Robot):
         locks = tuple((name, _vector("at", np.atleast_1d(as_numbers("at", one)), None)) for name, one in joints.items())
         return self._edited(self._source._replace(locks=self._source.locks + locks))
 
+    def couple(self, joint, leaders, offset=0.0):
+        """The same robot with a joint that follows others: its coordinate is Σ coefficient · q + offset.
+
+        Args:
+            joint: The name of the joint, of one coordinate.
+            leaders: The coefficient of each joint that it follows, by name: ``{"m1": 0.5, "m2": -0.5}``.
+            offset: Its coordinate where all of them are 0, rad or m.
+
+        Raises:
+            RobotError: There is no such joint, or it cannot follow.
+        """
+        if not hasattr(leaders, "items"):
+            raise TypeError(f"leaders: found {type(leaders).__name__}, expected a dict of joints and coefficients")
+        rows = tuple((_name("leaders", name), _number(f"leaders[{name!r}]", value)) for name, value in leaders.items())
+        of_file, rest = self._source.coupling
+        return self._edited(self._source._replace(coupling=(of_file, (*rest, (_name("joint", joint), rows, _number("offset", offset))))))
+
     def payload(self, link, mass, center_of_mass=(0.0, 0.0, 0.0), inertia=None):
         """The robot with a load on a link.
 
@@ -207,12 +237,10 @@ class Robot(_native.Robot):
         Raises:
             RobotError: There is no such link, or no such body.
         """
-        numbers = as_numbers("mass", mass)
-        if numbers.shape != () or not np.isfinite(numbers):
-            raise ValueError(f"mass: found {mass!r}, expected a finite number, kg")
+        numbers = _number("mass", mass, ", kg")
         center = _vector("center_of_mass", center_of_mass, "three finite numbers, m in the frame of the link")
         inertia = (0.0,) * 6 if inertia is None else _inertia(inertia)
-        payloads = (*self._source.payloads, (_name("link", link), float(numbers), center, inertia))
+        payloads = (*self._source.payloads, (_name("link", link), numbers, center, inertia))
         return self._edited(self._source._replace(payloads=payloads))
 
     def append(self, other, at, prefix="", position=(0.0, 0.0, 0.0), rpy=(0.0, 0.0, 0.0)):
@@ -228,10 +256,18 @@ class Robot(_native.Robot):
         Raises:
             RobotError: There is no such link, or a name occurs twice.
         """
+        packages = dict(self._source.packages)
         if isinstance(other, Robot):
             source = other._source
-            if source.append or source.payloads or source.locks:
+            if source.append or source.payloads or source.locks or source.coupling != (False, ()):
                 raise ValueError("other: found a robot with edits, expected one as loaded; append it first, and edit the result")
+            if source.args:
+                raise ValueError("other: found a robot with args, expected one without: args are those of the robot that carries it")
+            if source.reading not in (self._source.reading, (False, False, None)):
+                raise ValueError("other: found a robot read with other options, expected those of the robot that carries it")
+            for name, folder in source.packages:
+                if packages.setdefault(name, folder) != folder:
+                    raise ValueError(f"other: found package {name!r} in {folder!r}, expected {packages[name]!r} as in this robot")
             file, document, includes = source.file, source.document, source.includes
         else:
             file = _path("other", other)
@@ -239,7 +275,7 @@ class Robot(_native.Robot):
         position = _vector("position", position, "three finite numbers, m in the frame of the link")
         rpy = _vector("rpy", rpy, "three finite numbers, rad")
         row = (file, document, includes, _name("at", at), _name("prefix", prefix), position, rpy)
-        return self._edited(self._source._replace(append=(*self._source.append, row)))
+        return self._edited(self._source._replace(append=(*self._source.append, row), packages=tuple(packages.items())))
 
     def _edited(self, source):
         known = {finding["message"] for finding in self._warnings}
@@ -407,18 +443,75 @@ for _index, _function in enumerate(_TABLE):
         setattr(Robot, _function.name, _native.method(_index, _function.name, _text(_function)))
 
 
-def _robot(file, document, base, gravity, frames, wrenches_in, includes):
+def _args(args):
+    """Names and texts of the arguments of a file."""
+    given = []
+    for name, value in _pairs("args", args):
+        if isinstance(value, bool):
+            value = "true" if value else "false"
+        elif isinstance(value, (int, float)):
+            value = repr(value)
+        elif not isinstance(value, str):
+            raise TypeError(f"args[{name!r}]: found {type(value).__name__}, expected a str, a number or a bool")
+        given.append((name, value))
+    return tuple(given)
+
+
+def _packages(packages):
+    """Names and folders of packages."""
+    return tuple((name, _path(f"packages[{name!r}]", folder)) for name, folder in _pairs("packages", packages))
+
+
+def _pairs(what, given):
+    if given is None:
+        return ()
+    if not hasattr(given, "items"):
+        raise TypeError(f"{what}: found {type(given).__name__}, expected a dict")
+    return tuple((_name(what, name), value) for name, value in given.items())
+
+
+def _reading(allow_unphysical_inertia, first_of_duplicates, snap_angles):
+    """How to read a file."""
+    for name, value in (("allow_unphysical_inertia", allow_unphysical_inertia), ("first_of_duplicates", first_of_duplicates)):
+        if not isinstance(value, (bool, np.bool_)):
+            raise TypeError(f"{name}: found {type(value).__name__}, expected True or False")
+    if snap_angles is not None and (isinstance(snap_angles, bool) or not isinstance(snap_angles, (int, float, np.integer, np.floating))):
+        raise TypeError(f"snap_angles: found {type(snap_angles).__name__}, expected a number, rad, or None")
+    return bool(allow_unphysical_inertia), bool(first_of_duplicates), None if snap_angles is None else float(snap_angles)
+
+
+def _coupling(coupling):
+    if coupling not in (None, "file"):
+        raise ValueError(f'coupling: found {coupling!r}, expected "file" or None; Robot.couple lets one joint follow others')
+    return coupling == "file", ()
+
+
+def _robot(file, document, base, gravity, frames, wrenches_in, includes, **given):
     if base not in ("fixed", "floating"):
         raise ValueError(f'base: found {base!r}, expected "fixed" or "floating"')
     gravity = None if gravity is None else _vector("gravity", gravity, "three finite numbers, m/s² in the world frame")
     frames = None if frames is None else tuple(_names("frames", frames))
-    robot = Robot._made(_Source(file, document, base, gravity, includes, _reference(wrenches_in), frames))
+    source = _Source(file, document, base, gravity, includes, _reference(wrenches_in), frames)
+    robot = Robot._made(source._replace(**given))
     for finding in robot._warnings:
         warnings.warn(RobotWarning(finding["message"], finding), stacklevel=3)
     return robot
 
 
-def load(path, base="fixed", gravity=None, frames=None, wrenches_in="body"):
+def load(
+    path,
+    base="fixed",
+    gravity=None,
+    frames=None,
+    wrenches_in="body",
+    *,
+    args=None,
+    packages=None,
+    coupling=None,
+    allow_unphysical_inertia=False,
+    first_of_duplicates=False,
+    snap_angles=None,
+):
     """The robot of a file.
 
     Args:
@@ -427,6 +520,14 @@ def load(path, base="fixed", gravity=None, frames=None, wrenches_in="body"):
         gravity: (3,), m/s² in the world frame; None for that of the file, or else (0, 0, -9.81).
         frames: Names of the frames (links) to compute, in this order; None for all.
         wrenches_in: What external wrenches are given in, see ``Robot.with_wrenches_in``.
+        args: Values of arguments that the file declares, such as ``{"side": "left"}`` for a
+            ``<xacro:arg name="side"/>``: texts, numbers, True and False.
+        packages: Folders of packages that the file includes files from, such as
+            ``{"arm_description": "src/arm_description"}`` for ``$(find arm_description)``.
+        coupling: "file" lets joints follow others as linear equations of the file say (MJCF).
+        allow_unphysical_inertia: True accepts negative principal moments, with a warning.
+        first_of_duplicates: True takes the first of tags of a URDF that should be there once, with a warning.
+        snap_angles: Takes angles within so many rad of a multiple of π/2 as that multiple.
 
     Raises:
         RobotError: The file is not a robot; ``diagnostics`` lists all mistakes at once.
@@ -435,11 +536,26 @@ def load(path, base="fixed", gravity=None, frames=None, wrenches_in="body"):
         RobotWarning: Something in the file looks wrong; the values are used as they are.
     """
     path = _path("path", path)
-    return _robot(path, _native.read(path), base, gravity, frames, wrenches_in, True)
+    reading = _reading(allow_unphysical_inertia, first_of_duplicates, snap_angles)
+    given = {"args": _args(args), "packages": _packages(packages), "reading": reading, "coupling": _coupling(coupling)}
+    return _robot(path, _native.read(path), base, gravity, frames, wrenches_in, True, **given)
 
 
-def loads(text, name="robot.urdf", base="fixed", gravity=None, frames=None, wrenches_in="body"):
-    """The robot of a text, str or bytes; ``name`` is the name of its file in messages. See ``load``."""
+def loads(
+    text,
+    name="robot.urdf",
+    base="fixed",
+    gravity=None,
+    frames=None,
+    wrenches_in="body",
+    *,
+    args=None,
+    coupling=None,
+    allow_unphysical_inertia=False,
+    first_of_duplicates=False,
+    snap_angles=None,
+):
+    """The robot of a text, str or bytes, which includes no files; ``name`` is the name of its file in messages. See ``load``."""
     if isinstance(text, str):
         text = text.encode("utf-8", "surrogatepass")
     elif isinstance(text, (bytearray, memoryview)):
@@ -448,7 +564,9 @@ def loads(text, name="robot.urdf", base="fixed", gravity=None, frames=None, wren
         raise TypeError(f"text: found {type(text).__name__}, expected str or bytes")
     if not isinstance(name, str):
         raise TypeError(f"name: found {type(name).__name__}, expected str")
-    return _robot(name, text, base, gravity, frames, wrenches_in, False)
+    reading = _reading(allow_unphysical_inertia, first_of_duplicates, snap_angles)
+    given = {"args": _args(args), "reading": reading, "coupling": _coupling(coupling)}
+    return _robot(name, text, base, gravity, frames, wrenches_in, False, **given)
 
 
 def bundled(name, base=None, gravity=None, frames=None, wrenches_in="body"):

@@ -1,12 +1,13 @@
 //! The robot: a model with room for its calls.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use articulated::algorithm::{Function, Needs, functions};
-use articulated::description::{Description, Limit, Origin, Payload};
+use articulated::description::{Coupling, Description, Limit, Origin, Payload};
 use articulated::formats::{Environment, Included};
 use articulated::model::FLOATING_BASE;
 use articulated::spatial::Reference;
@@ -46,6 +47,9 @@ type Ends = (usize, usize);
 /// there.
 type AppendedRow = (String, Vec<u8>, bool, String, String, [f64; 3], [f64; 3]);
 
+/// What names stand for.
+type Names<T> = BTreeMap<String, T>;
+
 /// A load: the link, its mass, its centre of mass, and xx, xy, xz, yy, yz, zz of its inertia.
 type PayloadRow = (String, f64, [f64; 3], [f64; 6]);
 
@@ -83,9 +87,11 @@ fn links(description: &Description, model: &Model<f64>) -> Vec<String> {
     model.links().map(|i| model.bodies()[i].name.as_str()).map(|body| name(body).unwrap_or_else(|| body.to_owned())).collect()
 }
 
-/// The files that a document of a file includes; none, with which they are refused, of a text.
-fn included(file: &str, document: &[u8], is_file: bool) -> Included {
-    let options = articulated::formats::Options { file: file.to_owned(), ..articulated::formats::Options::default() };
+/// The files that a document of a file includes, read with these arguments and packages; none, with
+/// which they are refused, of a text.
+fn included(file: &str, document: &[u8], is_file: bool, arguments: &Names<String>, packages: &Names<PathBuf>) -> Included {
+    let (arguments, packages) = (arguments.clone(), packages.clone());
+    let options = articulated::formats::Options { file: file.to_owned(), arguments, packages, ..articulated::formats::Options::default() };
     if is_file { articulated::formats::included(&Environment, Path::new(""), document, &options) } else { Included::default() }
 }
 
@@ -237,7 +243,7 @@ impl Robot {
 impl Robot {
     /// `like`: the same robot, of which only gravity, frames and the reference of wrenches differ.
     #[new]
-    #[pyo3(signature = (file, document, base, gravity, includes, wrenches_in, frames, append, payloads, locks, like=None))]
+    #[pyo3(signature = (file, document, base, gravity, includes, wrenches_in, frames, append, payloads, locks, args, packages, reading, coupling, like=None))]
     #[allow(clippy::too_many_arguments)] // Why: what makes a robot, one by one.
     fn new(
         py: Python<'_>,
@@ -251,6 +257,10 @@ impl Robot {
         append: Vec<AppendedRow>,
         payloads: Vec<PayloadRow>,
         locks: Vec<(String, Vec<f64>)>,
+        args: Vec<(String, String)>,
+        packages: Vec<(String, PathBuf)>,
+        reading: (bool, bool, Option<f64>),
+        coupling: (bool, Vec<(String, Vec<(String, f64)>, f64)>),
         like: Option<&Bound<'_, Self>>,
     ) -> PyResult<Self> {
         let reference = reference_of(wrenches_in)?;
@@ -271,9 +281,11 @@ impl Robot {
         let mut request = Request::new(file, document);
         let options = &mut request.options.robot;
         (options.base, options.gravity, options.wrench_reference) = (base_of(base)?, gravity, reference);
-        options.included = included(file, document, includes);
+        (options.arguments, options.packages) = (args.into_iter().collect(), packages.into_iter().collect());
+        options.included = included(file, document, includes, &options.arguments, &options.packages);
+        // Arguments are those of the robot.
         for (file, document, includes, ..) in &append {
-            options.included.extend(included(file, document, *includes));
+            options.included.extend(included(file, document, *includes, &Names::default(), &options.packages));
         }
         options.append = append
             .into_iter()
@@ -286,6 +298,10 @@ impl Robot {
             |(link, mass, center_of_mass, inertia): PayloadRow| Payload { link, name: None, mass, center_of_mass, inertia }.into();
         options.payloads = payloads.into_iter().map(payload).collect();
         options.lock = locks.into_iter().map(Into::into).collect();
+        (options.allow_unphysical_inertia, options.first_of_duplicates, options.snap_angles) = reading;
+        options.file_coupling = coupling.0;
+        let follower = |(joint, leaders, offset)| Coupling { joint, leaders, offset }.into();
+        options.coupling = coupling.1.into_iter().map(follower).collect();
         let built = py.detach(|| request.build_robot()).map_err(|findings| errors::refused(py, &findings))?;
         let mut model = built.model;
         let about = links(&built.reading.description, &model);
@@ -294,7 +310,8 @@ impl Robot {
             request.set_frames(&frames);
         }
         let unused = built.reading.unused.iter().map(ToString::to_string).collect();
-        Ok(Self::made(model, request, (about, built.reading.warnings, unused)))
+        let warnings = built.reading.warnings.into_iter().chain(built.reading.snapped).collect();
+        Ok(Self::made(model, request, (about, warnings, unused)))
     }
 
     /// C99 of functions: its files, each with a name and a text. All names begin with `prefix`.

@@ -116,3 +116,47 @@ def test_warnings_of_edits_are_new_ones():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         gripper.lock("grip", 0.01)
+
+
+def test_a_joint_follows_others():
+    urdf = """<robot name="wrist"><link name="base"/>
+      <link name="a"/><joint name="m1" type="continuous"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/></joint>
+      <link name="b"/><joint name="m2" type="continuous"><parent link="base"/><child link="b"/><axis xyz="0 0 1"/></joint>
+      <link name="hand"><inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="3"/></inertial></link>
+      <joint name="pitch" type="continuous"><parent link="base"/><child link="hand"/><axis xyz="0 0 1"/></joint></robot>"""
+    robot = articulated.loads(urdf)
+    coupled = robot.couple("pitch", {"m1": 0.5, "m2": -0.25}, offset=0.1)
+    assert (robot.nv, coupled.nv) == (3, 2)
+    np.testing.assert_allclose(coupled.mass_matrix([0.3, 0.4]), 3 * np.outer([0.5, -0.25], [0.5, -0.25]), rtol=0, atol=1e-15)
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(coupled)).mass_matrix([0.3, 0.4]), coupled.mass_matrix([0.3, 0.4]))
+    with pytest.raises(articulated.RobotError, match="did you mean"):
+        robot.couple("pitch", {"m3": 1})
+    with pytest.raises(TypeError, match="leaders: found list, expected a dict"):
+        robot.couple("pitch", ["m1"])
+    with pytest.raises(ValueError, match=r"leaders\['m1'\]: found nan, expected a finite number"):
+        robot.couple("pitch", {"m1": float("nan")})
+    with pytest.raises(ValueError, match="found a robot with edits"):
+        robot.append(coupled, "hand", "other_")
+
+
+def test_options_of_the_reader():
+    link = '<link name="{}"><inertial><mass value="1"/>{}<inertia ixx="{}" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>'
+    joint = '<joint name="j" type="continuous"><parent link="base"/><child link="tip"/><axis xyz="0 0 1"/><origin rpy="0 1.5707 0"/></joint>'
+    unphysical = f'<robot name="r"><link name="base"/>{link.format("tip", "", -1)}{joint}</robot>'
+    twice = f'<robot name="r"><link name="base"/>{link.format("tip", "<mass value=\'2\'/>", 1)}{joint}</robot>'
+    for text, option in ((unphysical, "allow_unphysical_inertia"), (twice, "first_of_duplicates")):
+        with pytest.raises(articulated.RobotError, match=f"key `{option}`"):
+            articulated.loads(text)
+        with pytest.warns(articulated.RobotWarning):
+            robot = articulated.loads(text, **{option: True})
+        assert robot.mass_matrix([0.2]).tolist() == [[1.0]]
+        with pytest.raises(TypeError, match=f"{option}: found int, expected True or False"):
+            articulated.loads(text, **{option: 1})
+    with pytest.warns(articulated.RobotWarning, match="1.5707"):
+        articulated.loads(twice.replace("<mass value='2'/>", ""), snap_angles=1e-3)
+    with pytest.raises(articulated.RobotError, match="snap_angles: found 0.7"):
+        articulated.loads(twice.replace("<mass value='2'/>", ""), snap_angles=0.7)
+    with pytest.raises(articulated.RobotError, match="coupling: found \"file\", and the robot's file has no linear equations"):
+        articulated.loads(twice.replace("<mass value='2'/>", ""), coupling="file")
+    with pytest.raises(ValueError, match='coupling: found {}, expected "file" or None'):
+        articulated.loads(twice, coupling={})

@@ -1,6 +1,7 @@
 """Reading robots, and what they say about themselves."""
 
 import os
+import pickle
 import warnings
 
 import articulated
@@ -168,6 +169,44 @@ def test_a_file_that_includes_another(tmp_path):
             assert both.nv == 2 and both.lock("swing", 0.1).nv == 1
         with pytest.raises(articulated.RobotError, match="includes another file"):
             articulated.loads(text, name="swing.xml")
+
+
+def test_a_file_of_xacro_with_arguments_and_packages(tmp_path):
+    (tmp_path / "store").mkdir()
+    (tmp_path / "store" / "mass.xacro").write_text('<robot><xacro:property name="mass" value="$(arg mass)"/></robot>')
+    text = """<robot name="$(arg side)"><xacro:arg name="side" default="right"/><xacro:arg name="mass" default="1"/>
+    <xacro:arg name="long" default="false"/><xacro:include filename="$(find parts)/mass.xacro"/><link name="base"/>
+    <link name="bob"><inertial><origin xyz="0 0 ${-1.0 if '$(arg long)' == 'true' else -0.5}"/><mass value="${mass}"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+    <joint name="swing" type="continuous"><parent link="base"/><child link="bob"/><axis xyz="0 1 0"/></joint></robot>"""
+    path = tmp_path / "arm.xacro"
+    path.write_text(text)
+    packages = {"parts": tmp_path / "store"}
+    robot = articulated.load(path, args={"side": "left", "mass": 2.5, "long": True}, packages=packages)
+    assert robot.name == "left" and robot.moving_mass == 2.5
+    assert robot.gravity_torque([0.5])[0] == pytest.approx(2.5 * 9.81 * np.sin(0.5))
+    default = articulated.load(path, packages=packages)
+    assert (default.name, default.moving_mass) == ("right", 1)
+    # Edits and copies keep both.
+    assert robot.lock("swing").name == pickle.loads(pickle.dumps(robot)).name == "left"
+    assert articulated.loads(PENDULUM).append(default, "bob", "a_").nv == 2
+    with pytest.raises(ValueError, match="found a robot with args, expected one without"):
+        robot.append(robot, "bob", "a_")
+    with pytest.raises(articulated.RobotError, match="parts"):
+        articulated.load(path)
+    with pytest.warns(articulated.RobotWarning, match="sdie.*did you mean"):
+        articulated.load(path, args={"sdie": "left"}, packages=packages)
+    for options, message in (
+        ({"args": ["left"]}, "args: found list, expected a dict"),
+        ({"args": {"side": None}}, "args['side']: found NoneType, expected a str, a number or a bool"),
+        ({"args": {1: "left"}}, "args: found int, expected a name"),
+        ({"packages": {"parts": 1}}, "packages['parts']: found int"),
+    ):
+        with pytest.raises(TypeError) as found:
+            articulated.load(path, **options)
+        assert message in str(found.value)
+    plain = articulated.loads('<robot name="$(arg side)"><xacro:arg name="side" default="right"/><link name="base"/></robot>', args={"side": "left"})
+    assert plain.name == "left"
 
 
 def test_the_class_makes_no_robots():

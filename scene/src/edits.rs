@@ -225,7 +225,7 @@ pub(crate) const APPEND: &[Row<Append>] = &[
         what: "its file, seen from the scene's folder",
         read: |a, s, log| {
             a.place = s.node.at;
-            a.file = name(s, log, "the path of a URDF").unwrap_or_default();
+            a.file = name(s, log, "the path of a robot file").unwrap_or_default();
         },
     },
     Row {

@@ -1,18 +1,18 @@
-//! Active and inactive effects of a scene, and unused content of the URDF.
+//! Active and inactive effects of a scene, and unused content of the robot's file.
 
 use articulated_core::diagnostic::{At, Unused};
 use std::fmt;
 
 use articulated_core::effect::{EffectId, On};
 
-/// What of a scene is on, what is off, and what of the URDF is not used.
+/// What of a scene is on, what is off, and what of the robot's file is not used.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
     /// Effects that are on, in the order in which they are applied.
     pub on: Vec<EffectOn>,
     /// Effects that are off, and why.
     pub off: Vec<EffectOff>,
-    /// Unused content of the URDF.
+    /// Unused content of the robot's file.
     pub ignored: Vec<Unused>,
 }
 
@@ -38,7 +38,7 @@ pub struct Number {
     pub values: Vec<f64>,
     /// Their unit.
     pub unit: &'static str,
-    /// The tag of the URDF that it is from.
+    /// The tag of the file that it is from.
     pub from: Option<&'static str>,
 }
 
@@ -58,7 +58,7 @@ pub enum Why {
     NotAsked,
     /// The scene says that it is off, or gives it zeros.
     SaidSo,
-    /// Its numbers should come from the URDF, which has none.
+    /// Its numbers should come from the file, which has none.
     NotInUrdf,
     /// It is requested for all joints or links, and there are none that it can act on.
     Nowhere,
@@ -69,7 +69,7 @@ impl fmt::Display for Why {
         f.write_str(match self {
             Self::NotAsked => "the scene does not mention it",
             Self::SaidSo => "the scene says so",
-            Self::NotInUrdf => "the URDF has no numbers for it",
+            Self::NotInUrdf => "the robot's file has no numbers for it",
             Self::Nowhere => "there is nothing that it could act on",
         })
     }
@@ -96,7 +96,7 @@ impl fmt::Display for Number {
         if self.unit != "1" {
             write!(f, " {}", self.unit)?;
         }
-        self.from.map_or(Ok(()), |tag| write!(f, " (URDF: {tag})"))
+        self.from.map_or(Ok(()), |tag| write!(f, " (file: {tag})"))
     }
 }
 
@@ -106,7 +106,7 @@ impl fmt::Display for Report {
         self.on.iter().try_for_each(|on| writeln!(f, "  {on}"))?;
         heading(f, "off", self.off.len())?;
         self.off.iter().try_for_each(|off| writeln!(f, "  {}: {}", off.effect, off.why))?;
-        heading(f, "in the URDF and not used", self.ignored.len())?;
+        heading(f, "in the robot's file and not used", self.ignored.len())?;
         self.ignored.iter().try_for_each(|ignored| writeln!(f, "  {ignored}"))
     }
 }

@@ -248,9 +248,9 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         required: false,
         value: "text",
         default: "given by the user of the scene",
-        what: "a URDF, seen from the scene's folder; instead of `robot`",
+        what: "a robot file (URDF, xacro, MJCF or SDF), seen from the scene's folder; instead of `robot`",
         read: |s, spot, log| {
-            s.robot = edits::name(spot, log, "the path of a URDF").map_or(Robot::Given, Robot::File);
+            s.robot = edits::name(spot, log, "the path of a robot file").map_or(Robot::Given, Robot::File);
             s.code.places.robot = spot.node.at;
         },
     },
@@ -259,7 +259,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         required: false,
         value: "text",
         default: "given by the user of the scene",
-        what: "a file of a robot in any format, as `urdf`: both keys are one",
+        what: "the same as `urdf`: both keys are one",
         read: |s, spot, log| {
             s.robot = edits::name(spot, log, "the path of a robot's file").map_or(Robot::Given, Robot::File);
             s.code.places.robot = spot.node.at;
@@ -357,7 +357,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
     Row {
         name: "rename",
         required: false,
-        value: "table: name in the URDF = text",
+        value: "table: name in the robot's file = text",
         default: "none",
         what: "names in Rust",
         read: |s, spot, log| {

@@ -146,7 +146,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         required: false,
         value: "list of `\"limits\"`, `\"contacts\"`, `\"stick_slip\"`",
         default: "none",
-        what: "what is looked for on the way and recorded: joints at the bounds of their effect `limit`, or else of the URDF; every effect `contact`; every effect `friction`",
+        what: "what is looked for on the way and recorded: joints at the bounds of their effect `limit`, or else of the robot's file; every effect `contact`; every effect `friction`",
         read: |x, s, log| x.events = events(s, log),
     },
     Row {

@@ -80,8 +80,8 @@ fn all_links_with_shapes_get_a_contact_for_each_of_their_points() {
     );
     let unused: Vec<&Subject> = resolved.report.ignored.iter().filter(|u| u.tag == "collision").map(|u| &u.subject).collect();
     assert_eq!(unused, [&hand]);
-    assert!(resolved.report.to_string().contains("contact on link \"shin\": radius 0.1 m (URDF: collision)"), "{}", resolved.report);
-    assert!(resolved.report.to_string().contains("xyz [0.0, 0.0, -1.0] m (URDF: collision)"), "{}", resolved.report);
+    assert!(resolved.report.to_string().contains("contact on link \"shin\": radius 0.1 m (file: collision)"), "{}", resolved.report);
+    assert!(resolved.report.to_string().contains("xyz [0.0, 0.0, -1.0] m (file: collision)"), "{}", resolved.report);
 }
 
 #[test]

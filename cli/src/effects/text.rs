@@ -28,7 +28,7 @@ pub(super) fn text(r: &Report) -> String {
     }
     let _ = writeln!(out, "\noff:{}", none(r.off.len()));
     r.off.iter().for_each(|e| out += &format!("  {}: {}\n", e.effect, e.why));
-    let _ = writeln!(out, "\nin the URDF, and not used:{}", none(r.ignored.len()));
+    let _ = writeln!(out, "\nin the robot's file, and not used:{}", none(r.ignored.len()));
     for (tag, why, subjects) in alike(&r.ignored) {
         let _ = writeln!(out, "  {}: {}: {}", plain(tag), plain(why), plain(&subjects.join(", ")));
     }
@@ -90,7 +90,7 @@ fn values(x: &[f64]) -> String {
 
 fn unit(unit: &str, from: Option<&str>) -> String {
     let unit = if unit.is_empty() || unit == "1" { String::new() } else { format!(" {unit}") };
-    from.map_or(unit.clone(), |tag| format!("{unit} (URDF: {tag})"))
+    from.map_or(unit.clone(), |tag| format!("{unit} (file: {tag})"))
 }
 
 fn table(cost: &Cost) -> Table {

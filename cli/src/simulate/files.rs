@@ -103,7 +103,11 @@ impl<'a> Files<'a> {
 
     /// The page. What cannot be drawn as it is becomes a warning.
     fn page(&self, session: &Session, motion: &Motion, summary: &mut Summary) -> Result<String, Failure> {
-        let meshes = Meshes::new(session.folders.clone(), self.packages, &session.request.file);
+        // Those of the command line are before those of the scene.
+        let of_scene =
+            session.request.options.robot.packages.iter().map(|(name, folder)| Package { name: name.clone(), folder: folder.clone() });
+        let packages: Vec<Package> = self.packages.iter().cloned().chain(of_scene).collect();
+        let meshes = Meshes::new(session.folders.clone(), &packages, &session.request.file);
         let setting = setting(session, &motion.recording, summary);
         let page = page::html(&motion.recording, &setting, &meshes).map_err(|e| Failure::tool(&e))?;
         // A line for each sort on the console, and all of them in the summary.

@@ -40,7 +40,7 @@ fn people_are_told_in_groups() {
     for part in [
         "\non:\n",
         "\noff:\n",
-        "in the URDF, and not used:",
+        "in the robot's file, and not used:",
         "joint_5, joint_6, joint_7: inertia 0.2 kg·m²",
         "mass_matrix: what",
         "without effects",

@@ -138,6 +138,11 @@ fn meshes_are_drawn_where_they_are_found_and_told_where_they_are_not() {
     assert_eq!(count(&page, "visual"), 2);
     assert_eq!((&page["solids"][0]["material"], &page["solids"][0]["color"]), (&"red".into(), &serde_json::json!([1.0, 0.0, 0.0, 1.0])));
     assert!(!ended.err.contains("rod.stl"), "{}", ended.err);
+    // A scene names packages too.
+    let scene_alone = std::fs::read_to_string(&scene).unwrap();
+    std::fs::write(&scene, format!("packages = {{ parts = \"../store\" }}\n{scene_alone}")).unwrap();
+    assert_eq!(count(&write(&[]).0, "visual"), 2);
+    std::fs::write(&scene, scene_alone).unwrap();
     // A package beside the robot needs no option.
     std::fs::rename(at("store"), at("parts")).unwrap();
     assert_eq!(count(&write(&[]).0, "visual"), 2);

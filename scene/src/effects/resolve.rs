@@ -375,7 +375,7 @@ pub(super) fn fill(
 pub(super) fn missing(row: &Effect, field: &str, one: &EffectRequest, on: &str, log: &mut Diagnostics) {
     let unit = row.fields.iter().find(|f| f.name == field).map_or("", |f| f.unit);
     let found = match urdf::tag(row.id, field).filter(|_| one.says.as_ref().is_some_and(|s| s.from_urdf)) {
-        Some(tag) => format!("no {field} for {on}, whose URDF has no <{tag}>"),
+        Some(tag) => format!("no {field} for {on}, whose file has no <{tag}>"),
         None => format!("no {field} for {on}"),
     };
     log.error((one.place, &one.key), Code::MissingKey, found, format!("{field}, {unit}"));

@@ -54,7 +54,7 @@ fn names_that_the_robot_does_not_have_are_told_with_the_nearest() {
         ("[effects.damping]\ntool = 1", "s.toml:2: effects.damping.tool: found a fixed joint, expected a joint that moves"),
         (
             "[effects.damping]\nelbow = \"urdf\"",
-            "s.toml:2: effects.damping.elbow: found no damping for joint \"elbow\", whose URDF has no <dynamics damping>, expected damping, N·m·s/rad|N·s/m",
+            "s.toml:2: effects.damping.elbow: found no damping for joint \"elbow\", whose file has no <dynamics damping>, expected damping, N·m·s/rad|N·s/m",
         ),
         (
             "[effects.limit.shoulder]\nlower = 1",

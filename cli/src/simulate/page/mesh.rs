@@ -92,7 +92,7 @@ impl<'a> Meshes<'a> {
 
 const EXPECTED: &str = "a mesh in STL, OBJ or COLLADA (.dae)";
 const BESIDE: &str = "one relative to the robot's file";
-const IN_PACKAGE: &str = "one in the folder of its package: --package NAME=FOLDER says where that is";
+const IN_PACKAGE: &str = "one in the folder of its package: --package NAME=FOLDER, or `packages` of the scene, says where that is";
 
 /// Folders of a package that contain this one, or that stand in one of those around it.
 fn upward(folder: &Path, package: &str) -> Vec<PathBuf> {
