@@ -21,7 +21,7 @@ const COMMIT: &str = match option_env!("ARTICULATED_COMMIT") {
 
 /// Options that do not apply to motions: reading and editing of a robot, which a scene determines,
 /// and functions and states to measure.
-const OF_FUNCTIONS: [&str; 18] = [
+const OF_FUNCTIONS: [&str; 19] = [
     "floating",
     "fixed",
     "gravity",

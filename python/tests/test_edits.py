@@ -142,8 +142,10 @@ def test_a_joint_follows_others():
 def test_options_of_the_reader():
     link = '<link name="{}"><inertial><mass value="1"/>{}<inertia ixx="{}" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>'
     joint = '<joint name="j" type="continuous"><parent link="base"/><child link="tip"/><axis xyz="0 0 1"/><origin rpy="0 1.5707 0"/></joint>'
-    unphysical = f'<robot name="r"><link name="base"/>{link.format("tip", "", -1)}{joint}</robot>'
-    twice = f'<robot name="r"><link name="base"/>{link.format("tip", "<mass value=\'2\'/>", 1)}{joint}</robot>'
+    def robot_of(second, ixx):
+        return f'<robot name="r"><link name="base"/>{link.format("tip", second, ixx)}{joint}</robot>'
+
+    plain, unphysical, twice = robot_of("", 1), robot_of("", -1), robot_of("<mass value='2'/>", 1)
     for text, option in ((unphysical, "allow_unphysical_inertia"), (twice, "first_of_duplicates")):
         with pytest.raises(articulated.RobotError, match=f"key `{option}`"):
             articulated.loads(text)
@@ -153,10 +155,10 @@ def test_options_of_the_reader():
         with pytest.raises(TypeError, match=f"{option}: found int, expected True or False"):
             articulated.loads(text, **{option: 1})
     with pytest.warns(articulated.RobotWarning, match="1.5707"):
-        articulated.loads(twice.replace("<mass value='2'/>", ""), snap_angles=1e-3)
+        articulated.loads(plain, snap_angles=1e-3)
     with pytest.raises(articulated.RobotError, match="snap_angles: found 0.7"):
-        articulated.loads(twice.replace("<mass value='2'/>", ""), snap_angles=0.7)
+        articulated.loads(plain, snap_angles=0.7)
     with pytest.raises(articulated.RobotError, match="coupling: found \"file\", and the robot's file has no linear equations"):
-        articulated.loads(twice.replace("<mass value='2'/>", ""), coupling="file")
+        articulated.loads(plain, coupling="file")
     with pytest.raises(ValueError, match='coupling: found {}, expected "file" or None'):
         articulated.loads(twice, coupling={})
