@@ -142,6 +142,7 @@ def test_a_joint_follows_others():
 def test_options_of_the_reader():
     link = '<link name="{}"><inertial><mass value="1"/>{}<inertia ixx="{}" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>'
     joint = '<joint name="j" type="continuous"><parent link="base"/><child link="tip"/><axis xyz="0 0 1"/><origin rpy="0 1.5707 0"/></joint>'
+
     def robot_of(second, ixx):
         return f'<robot name="r"><link name="base"/>{link.format("tip", second, ixx)}{joint}</robot>'
 
