@@ -31,6 +31,8 @@ pub struct World {
     pub step: Option<f64>,
     /// Integrator of a simulation, as the file calls it.
     pub integrator: Option<String>,
+    /// The state in which the file starts, where it is not that of joints at rest.
+    pub home: Option<Keyframe>,
     /// States, in the order of the file.
     pub keyframes: Vec<Keyframe>,
     /// Actuators, in the order of the file.
