@@ -14,6 +14,7 @@ use std::process::ExitCode;
 use articulated_core::algorithm::{Workspace, function};
 use articulated_core::description::{Base, Description};
 use articulated_core::model::Model;
+use articulated_formats::world::{Actuator, Keyframe, World};
 use articulated_formats::{Disk, MOST_BYTES, Options, Reading, read_file, read_with};
 
 fn main() -> ExitCode {
@@ -73,8 +74,57 @@ fn header(reading: &Reading, model: &Model<f64>) -> String {
     let order = model.joints().iter().map(|joint| format!("[{:?}, {:?}, {}, {}]", joint.name, joint.kind.name(), joint.q.0, joint.v.0));
     let frames = model.frames().iter().map(|frame| format!("{:?}", frame.name));
     let [order, frames] = [order.collect::<Vec<_>>(), frames.collect()].map(|all| all.join(", "));
-    let _ = write!(out, "{}], \"order\": [{order}], \"frame_names\": [{frames}]}}", joints(description));
+    let _ = write!(out, "{}], \"order\": [{order}], \"frame_names\": [{frames}]", joints(description));
+    let _ = write!(out, ", \"world\": {}}}", world(&reading.world));
     out
+}
+
+fn list<T>(all: &[T], one: impl Fn(&T) -> String) -> String {
+    format!("[{}]", all.iter().map(one).collect::<Vec<_>>().join(", "))
+}
+
+fn or_null<T: std::fmt::Debug>(value: Option<&T>) -> String {
+    value.map_or("null".to_owned(), |value| format!("{value:?}"))
+}
+
+/// Pairs of a name and numbers, which JSON and Rust write in the same way, but for brackets.
+fn by_name(all: &[(String, Vec<f64>)]) -> String {
+    list(all, |(name, numbers)| format!("[{name:?}, {numbers:?}]"))
+}
+
+fn world(world: &World) -> String {
+    let actuators = |all: &[Actuator]| {
+        list(all, |own| {
+            let (name, drives, [gain, bias]) = (&own.name, by_name(&own.drives), [own.gain, own.bias]);
+            let (control, force) = (or_null(own.control_range.as_ref()), or_null(own.force_range.as_ref()));
+            format!(
+                "{{\"name\": {name:?}, \"drives\": {drives}, \"gain\": {gain:?}, \"bias\": {bias:?}, \"control_range\": {control}, \"force_range\": {force}}}"
+            )
+        })
+    };
+    let keyframe = |own: &Keyframe| {
+        let (q, v) = (by_name(&own.q), by_name(&own.v));
+        format!("{{\"name\": {:?}, \"q\": {q}, \"v\": {v}, \"control\": {:?}}}", own.name, own.control)
+    };
+    let couplings = list(&world.couplings, |(own, _)| {
+        let leaders = list(&own.leaders, |(name, factor)| format!("[{name:?}, {factor:?}]"));
+        format!("{{\"joint\": {:?}, \"leaders\": {leaders}, \"offset\": {:?}}}", own.joint, own.offset)
+    });
+    let fields = [
+        ("gravity", or_null(world.gravity.as_ref())),
+        ("step", or_null(world.step.as_ref())),
+        ("integrator", or_null(world.integrator.as_ref())),
+        ("home", world.home.as_ref().map_or("null".to_owned(), keyframe)),
+        ("keyframes", list(&world.keyframes, keyframe)),
+        ("actuators", actuators(&world.actuators)),
+        ("passive", actuators(&world.passive)),
+        ("joint_forces", list(&world.joint_forces, |(name, range)| format!("[{name:?}, {range:?}]"))),
+        ("couplings", couplings),
+        ("planes", list(&world.planes, |own| format!("[{:?}, {:?}, {:?}]", own.name, own.point, own.normal))),
+        ("loops", list(&world.loops, |own| format!("{:?}", own.kind))),
+    ];
+    let fields = fields.map(|(name, value)| format!("\"{name}\": {value}"));
+    format!("{{{}}}", fields.join(", "))
 }
 
 fn link_of(link: &articulated_core::description::Link) -> String {

@@ -81,6 +81,17 @@ pub(crate) fn conjugate([w, x, y, z]: Quaternion) -> Quaternion {
     [w, -x, -y, -z]
 }
 
+/// (x, y, z, w) of norm one; of zero the identity, as in MuJoCo.
+pub(crate) fn scalar_last(quaternion: Quaternion) -> Quaternion {
+    let largest = quaternion.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let length = largest * quaternion.iter().map(|x| (x / largest) * (x / largest)).sum::<f64>().sqrt();
+    if length < 1e-15 || !length.is_finite() {
+        return [0.0, 0.0, 0.0, 1.0];
+    }
+    let [w, x, y, z] = if length == 1.0 { quaternion } else { quaternion.map(|x| x / length) };
+    [x, y, z, w]
+}
+
 /// The product, exact where one of the two is the identity.
 pub(crate) fn multiply(a: Quaternion, b: Quaternion) -> Quaternion {
     if is_identity(a) {

@@ -9,7 +9,9 @@
 
 For each file that MuJoCo compiles: masses, centres of mass and inertias of all bodies, armature, damping, friction, stiffness,
 rest and limits of all joints but free ones, and in random states the mass matrix, the bias force (inverse dynamics
-without acceleration), positions and orientations of all bodies, and the centre of mass of the whole.
+without acceleration), positions and orientations of all bodies, and the centre of mass of the whole. Of the rest, see world.py:
+gravity, step, integrator, the state at the start, keyframes, planes, which actuators are read and their forces, those of springs
+and dampers, and equations of joints.
 
 Packages are downloaded, not installed: their models are unpacked into target/mjcf. MuJoCo goes into a virtual environment
 there, with the versions of requirements.txt.
@@ -55,28 +57,31 @@ def main():
         code = subprocess.run([str(python), *words], cwd=PLACE, env={**os.environ, "MJCF_ORACLE": "1"}).returncode
         sys.exit(code)
     if arguments.file:
-        verdict, numbers = compare(Path(arguments.file))
-        print(verdict, *(f"{name}: {value:.1e}" for name, value in sorted(numbers.items())), sep="\n  ")
+        verdict, numbers, counts = compare(Path(arguments.file))
+        lines = [f"{name}: {value:.1e}" for name, value in sorted(numbers.items())]
+        print(verdict, *lines, *(f"{name}: {value}" for name, value in sorted(counts.items())), sep="\n  ")
         sys.exit(verdict != "equal")
     own = HERE / "models"
     rows = {}
     for name, path in [("files of this folder", own), *packages(arguments)]:
         rows[name] = files_of(path)
-        counts = collections.Counter(verdict.split(":")[0] for _, verdict, _ in rows[name])
+        counts = collections.Counter(verdict.split(":")[0] for _, verdict, *_ in rows[name])
         print(f"{name}: " + ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items())), flush=True)
-        for file, verdict, numbers in rows[name]:
+        for file, verdict, numbers, _ in rows[name]:
             if not verdict.startswith(("equal", "refused by MuJoCo")):
                 worst = ", ".join(f"{key} {value:.1e}" for key, value in numbers.items() if value > BOUND)
                 print(f"  {file}: {verdict} {worst}", flush=True)
-    worst = collections.Counter()
-    for _, verdict, numbers in (row for all_rows in rows.values() for row in all_rows):
+    worst, counts = collections.Counter(), collections.Counter()
+    for _, verdict, numbers, own in (row for all_rows in rows.values() for row in all_rows):
+        counts.update(own)
         if verdict == "equal":
             for key, value in numbers.items():
                 worst[key] = max(worst[key], value)
     print("largest differences: " + ", ".join(f"{key} {value:.1e}" for key, value in sorted(worst.items())))
+    print("numbers of things: " + ", ".join(f"{key} {value}" for key, value in sorted(counts.items())))
     if arguments.write:
-        write(rows, worst)
-    good = all(verdict.startswith(("equal", "refused by MuJoCo")) for all_rows in rows.values() for _, verdict, _ in all_rows)
+        write(rows, worst, counts)
+    good = all(verdict.startswith(("equal", "refused by MuJoCo")) for all_rows in rows.values() for _, verdict, *_ in all_rows)
     sys.exit(not good)
 
 
@@ -138,25 +143,27 @@ def fetch(wanted, folder):
 
 
 def files_of(folder):
-    """Name, verdict and numbers of each MJCF file."""
+    """Name, verdict, numbers and counts of each MJCF file."""
     rows = []
     for path in sorted(folder.rglob("*")):
         if path.suffix.lower() not in {".xml", ".mjcf"} or not re.search(rb"<mujoco[\s>/]", path.read_bytes()):
             continue
         try:
-            verdict, numbers = compare(path)
+            verdict, numbers, counts = compare(path)
         except subprocess.TimeoutExpired:
-            verdict, numbers = "differs: no answer in two minutes", {}
-        rows.append((path.relative_to(folder).as_posix(), verdict, numbers))
+            verdict, numbers, counts = "differs: no answer in two minutes", {}, {}
+        rows.append((path.relative_to(folder).as_posix(), verdict, numbers, counts))
     return rows
 
 
 def compare(path):
-    """A verdict, and the largest difference of each kind of number."""
+    """A verdict, the largest difference of each kind of number, and how many things there are of a kind."""
     import warnings
 
     import mujoco
     import numpy as np
+
+    import world
 
     warnings.simplefilter("ignore")
     mujoco.set_mju_user_warning(lambda text: None)
@@ -167,7 +174,7 @@ def compare(path):
             body.simple = 0  # so that inertias may be set
         model = spec.compile()
     except (ValueError, mujoco.FatalError) as error:
-        return "refused by MuJoCo: " + str(error).splitlines()[0][:120].replace(str(path.parent), "…"), {}
+        return "refused by MuJoCo: " + str(error).splitlines()[0][:120].replace(str(path.parent), "…"), {}, {}
     data = mujoco.MjData(model)
     armature = model.dof_armature.copy()
     model.dof_armature[:] = 0
@@ -183,18 +190,18 @@ def compare(path):
     answer = subprocess.run(command, input=sent, capture_output=True, timeout=120)
     if answer.returncode:
         first = answer.stderr.decode().splitlines()[0]
-        return "refused: " + first.replace(str(path.parent), "…")[:300], {}
+        return "refused: " + first.replace(str(path.parent), "…")[:300], {}, {}
     line, _, rest = answer.stdout.partition(b"\n")
     robot, numbers = json.loads(line), np.frombuffer(rest, "<f8")
     if (robot["nq"], robot["nv"]) != (model.nq, model.nv):
-        return f"differs: {robot['nq']} coordinates and {robot['nv']} freedoms, MuJoCo {model.nq} and {model.nv}", {}
+        return f"differs: {robot['nq']} coordinates and {robot['nv']} freedoms, MuJoCo {model.nq} and {model.nv}", {}, {}
     names = [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, body) for body in range(model.nbody)]
     by_name = {link["name"]: index for index, link in enumerate(robot["links"])}
     # Bodies that MuJoCo fuses are links here.
     fused = len(robot["links"]) != model.nbody
     index = [by_name.get(name, -1) for name in names] if fused else list(range(model.nbody))
     if -1 in index:
-        return f"differs: {len(robot['links'])} links, MuJoCo {model.nbody} bodies", {}
+        return f"differs: {len(robot['links'])} links, MuJoCo {model.nbody} bodies", {}, {}
     off = collections.Counter()
 
     def differ(kind, found, expected, scale=None):
@@ -203,6 +210,8 @@ def compare(path):
         value = (np.abs(found - expected) / np.maximum(scale, 1e-300)).max(initial=0)
         off[kind] = max(off[kind], float(value) if np.isfinite(value) else float("inf"))
 
+    counts = collections.Counter()
+    world.compare(model, states, robot, differ, lambda kind, number: counts.update({kind: number}))
     masses(model, robot, fused, differ, mujoco, np)
     joints(model, spec, robot, armature, differ, np)
     mujoco.mj_setConst(model, data)
@@ -229,7 +238,7 @@ def compare(path):
         centers = [pose[9:] + pose[:9].reshape(3, 3) @ np.array(link["center"]) for pose, link in zip(poses, robot["links"])]
         if weights.sum() > 0:
             differ("centre of mass", weights @ np.array(centers) / weights.sum(), data.subtree_com[0], length)
-    return "equal" if all(value <= BOUND for value in off.values()) else "differs:", dict(off)
+    return "equal" if all(value <= BOUND for value in off.values()) else "differs:", dict(off), counts
 
 
 def state(model, random):
@@ -317,7 +326,7 @@ def joints(model, spec, robot, armature, differ, np):
             differ("limits", 1, 0, 1.0)
 
 
-def write(rows, worst):
+def write(rows, worst, counts):
     """The table for people."""
     out = ["# MJCF files of Python packages", "", "Written by `python3 tests/mjcf/oracle.py --write`; [mjcf.md](mjcf.md) says what is compared.", ""]
     out += ["| package | files | MuJoCo compiles | read here | equal |", "| --- | ---: | ---: | ---: | ---: |"]
@@ -330,10 +339,11 @@ def write(rows, worst):
         out.append("| " + " | ".join([name, *map(str, counts)]) + " |")
     out.append("| " + " | ".join(["**all**", *map(str, total)]) + " |")
     out += ["", "Largest differences: " + ", ".join(f"{key} {value:.1e}" for key, value in sorted(worst.items())) + ".", ""]
+    out += ["Compared: " + ", ".join(f"{key} {value}" for key, value in sorted(counts.items())) + ".", ""]
     out += ["Files that MuJoCo refuses are parts of others, or their meshes are not in the package.", ""]
     for name, files in rows.items():
         out += [f"## {name}", "", "| file | verdict |", "| --- | --- |"]
-        out += [f"| {file} | {verdict.replace('|', '/')} |" for file, verdict, _ in files] + [""]
+        out += [f"| {file} | {verdict.replace('|', '/')} |" for file, verdict, *_ in files] + [""]
     TABLE.write_text("\n".join(out))
 
 

@@ -1,5 +1,6 @@
 //! From tags to bodies: frames, copies and attached models are gone, and classes are applied.
 
+use std::ops::Range;
 use std::rc::Rc;
 
 use articulated_core::description::{JointDynamics, Limit};
@@ -34,6 +35,8 @@ pub(crate) struct Body<'a> {
     pub(crate) geoms: Vec<Geom<'a>>,
     pub(crate) sites: Vec<Site<'a>>,
     pub(crate) inertial: Option<Explicit>,
+    /// The part of the tree that it is in.
+    pub(crate) part: usize,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,14 +59,25 @@ pub(crate) struct Joint<'a> {
     pub(crate) reference: f64,
     /// Whether its range is a bound.
     pub(crate) is_limited: bool,
+    /// Its range, bound or not, rad or m.
+    pub(crate) range: [f64; 2],
     pub(crate) limit: Option<Limit>,
+    /// Bounds of the sum of all actuators on it, N·m or N.
+    pub(crate) force_range: Option<[f64; 2]>,
     pub(crate) dynamics: JointDynamics,
+    /// The coordinate at which tendons are measured for `springlength="-1"`, rad or m.
+    pub(crate) rest: f64,
+    pub(crate) armature: f64,
+    /// The part of the tree that it is in.
+    pub(crate) part: usize,
 }
 
 pub(crate) struct Site<'a> {
     pub(crate) element: &'a Element,
     pub(crate) name: Option<String>,
     pub(crate) pose: Pose,
+    /// The part of the tree that it is in.
+    pub(crate) part: usize,
 }
 
 /// What `<inertial>` says.
@@ -93,6 +107,40 @@ fn explicit(values: &Values<'_>, compiler: &Compiler, log: &mut Diagnostics) -> 
     Some(Explicit { pose, mass, inertia })
 }
 
+/// The bodies of a model, and the documents that they are from.
+pub(crate) struct Tree<'a> {
+    /// Parents first; the first body is the world.
+    pub(crate) bodies: Vec<Body<'a>>,
+    /// The main document, then what is attached, in the order in which it is.
+    pub(crate) parts: Vec<Part<'a>>,
+}
+
+/// What of a document a part of the tree is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Extent {
+    /// All of it.
+    Whole,
+    /// A body or a frame. The rest of the document counts as far as it is about nothing else.
+    Attached,
+    /// One of several copies. The rest of the document counts as far as it is about the copy.
+    Copy,
+}
+
+/// A document, or a part of one, at one place in the tree.
+pub(crate) struct Part<'a> {
+    pub(crate) settings: Rc<Settings<'a>>,
+    pub(crate) prefix: String,
+    pub(crate) suffix: String,
+    pub(crate) extent: Extent,
+    /// The part that it is in; of the main document itself.
+    pub(crate) parent: usize,
+    /// Whether it is in no copy but the first.
+    pub(crate) is_first: bool,
+    /// Indices of its bodies, and of the parts from it to those that are attached inside.
+    pub(crate) bodies: Range<usize>,
+    pub(crate) parts: Range<usize>,
+}
+
 /// Where a tag is.
 #[derive(Clone)]
 struct Context<'a> {
@@ -104,6 +152,8 @@ struct Context<'a> {
     prefix: String,
     suffix: String,
     attached: usize,
+    part: usize,
+    is_first: bool,
 }
 
 impl Context<'_> {
@@ -113,23 +163,26 @@ impl Context<'_> {
     }
 }
 
-/// All bodies of a model, parents first.
-pub(crate) fn bodies<'a>(documents: &'a Documents, log: &mut Diagnostics) -> Vec<Body<'a>> {
+/// All bodies of a model.
+pub(crate) fn tree<'a>(documents: &'a Documents, log: &mut Diagnostics) -> Tree<'a> {
     let settings: Vec<Rc<Settings<'a>>> = documents.roots().map(|root| Rc::new(Settings::of(root, log))).collect();
-    let mut build = Build { documents, settings, bodies: Vec::new(), items: 0, depth: 0 };
+    let mut build = Build { documents, settings, bodies: Vec::new(), parts: Vec::new(), items: 0, depth: 0 };
     let root = documents.root(0);
     let context = build.context(0);
     build.add(None, root, 0, Pose::default(), &context);
+    build.begin(&context, Extent::Whole);
     for section in root.all("worldbody") {
         build.content(section, 0, &context, log);
     }
-    build.bodies
+    build.end(0);
+    Tree { bodies: build.bodies, parts: build.parts }
 }
 
 struct Build<'a> {
     documents: &'a Documents,
     settings: Vec<Rc<Settings<'a>>>,
     bodies: Vec<Body<'a>>,
+    parts: Vec<Part<'a>>,
     items: usize,
     depth: usize,
 }
@@ -137,7 +190,30 @@ struct Build<'a> {
 impl<'a> Build<'a> {
     fn context(&self, document: usize) -> Context<'a> {
         let settings = self.settings[document].clone();
-        Context { settings, document, frame: Pose::default(), class: 0, prefix: String::new(), suffix: String::new(), attached: 0 }
+        let (prefix, suffix) = (String::new(), String::new());
+        Context { settings, document, frame: Pose::default(), class: 0, prefix, suffix, attached: 0, part: 0, is_first: true }
+    }
+
+    /// Begins a part of the tree, and returns its index.
+    fn begin(&mut self, context: &Context<'a>, extent: Extent) -> usize {
+        let index = self.parts.len();
+        self.parts.push(Part {
+            settings: context.settings.clone(),
+            prefix: context.prefix.clone(),
+            suffix: context.suffix.clone(),
+            extent,
+            parent: context.part,
+            is_first: context.is_first,
+            bodies: self.bodies.len()..self.bodies.len(),
+            parts: index..index + 1,
+        });
+        index
+    }
+
+    fn end(&mut self, part: usize) {
+        let (bodies, parts) = (self.bodies.len(), self.parts.len());
+        let part = &mut self.parts[part];
+        (part.bodies.end, part.parts.end) = (bodies, parts);
     }
 
     fn add(&mut self, name: Option<String>, element: &'a Element, parent: usize, pose: Pose, context: &Context<'a>) -> usize {
@@ -151,6 +227,7 @@ impl<'a> Build<'a> {
             geoms: Vec::new(),
             sites: Vec::new(),
             inertial: None,
+            part: context.part,
         });
         self.bodies.len() - 1
     }
@@ -207,8 +284,13 @@ impl<'a> Build<'a> {
                         axis: [0.0, 0.0, 1.0],
                         reference: 0.0,
                         is_limited: false,
+                        range: [0.0; 2],
                         limit: None,
+                        force_range: None,
                         dynamics: JointDynamics::default(),
+                        rest: 0.0,
+                        armature: 0.0,
+                        part: context.part,
                     };
                     self.bodies[body].joints.push(free);
                 }
@@ -218,7 +300,8 @@ impl<'a> Build<'a> {
                     }
                 }
                 "site" => {
-                    let site = Site { element, name: context.name(element), pose: site(&values("site"), context, log) };
+                    let pose = site(&values("site"), context, log);
+                    let site = Site { element, name: context.name(element), pose, part: context.part };
                     self.bodies[body].sites.push(site);
                 }
                 "body" => self.body(element, body, context, log),
@@ -275,8 +358,11 @@ impl<'a> Build<'a> {
             let rotation = angles.euler(euler.map(|angle| angle * copy as f64));
             let pose = Pose { position, rotation };
             let suffix = format!("{separator}{copy:0digits$}{}", context.suffix);
-            let context = Context { frame: context.frame.then(&pose), class, suffix, ..context.clone() };
+            let mut context = Context { frame: context.frame.then(&pose), class, suffix, ..context.clone() };
+            context.is_first &= copy == 0;
+            context.part = self.begin(&context, Extent::Copy);
             self.content(element, body, &context, log);
+            self.end(context.part);
             position = pose.then(&Pose::at(offset)).position;
         }
     }
@@ -316,9 +402,11 @@ impl<'a> Build<'a> {
             (None, Some(name)) => ("frame", name),
             (None, None) if text("model").is_some() => {
                 inner.class = 0;
+                inner.part = self.begin(&inner, Extent::Whole);
                 for section in root.all("worldbody") {
                     self.content(section, body, &inner, log);
                 }
+                self.end(inner.part);
                 return;
             }
             (None, None) => {
@@ -331,14 +419,17 @@ impl<'a> Build<'a> {
             return;
         };
         inner.class = class;
+        inner.part = self.begin(&inner, Extent::Attached);
         if tag == "body" {
             self.body(source, body, &inner, log);
+            self.end(inner.part);
             return;
         }
         let pose = Values::alone(source, &Subject::Document).pose(&inner.settings.compiler.angles, log);
         inner.class = inner.settings.classes.find(source, "childclass", log).unwrap_or(class);
         inner.frame = inner.frame.then(&pose);
         self.content(source, body, &inner, log);
+        self.end(inner.part);
     }
 }
 
@@ -386,8 +477,10 @@ fn joint<'a>(values: &Values<'a>, context: &Context<'a>, log: &mut Diagnostics) 
         // As written, where it is a multiple of a unit vector already.
         axis = rotate(context.frame.rotation, if is_of_length_one(given) { given } else { unit });
     }
-    let (is_limited, limit) = limits(values, kind, context, log);
+    let (is_limited, limit, force_range) = limits(values, kind, context, log);
     let reference = if matches!(kind, Slide | Hinge) { angle(values.number("ref", log).unwrap_or(0.0)) } else { 0.0 };
+    // Mistakes in these are reported above and below.
+    let mut reported = log.apart();
     Some(Joint {
         name: context.name(values.element),
         element: values.element,
@@ -396,8 +489,13 @@ fn joint<'a>(values: &Values<'a>, context: &Context<'a>, log: &mut Diagnostics) 
         axis,
         reference,
         is_limited,
+        range: values.exactly("range", &mut reported).unwrap_or_default().map(angle),
         limit,
+        force_range,
+        rest: angle(values.number("springref", &mut reported).unwrap_or(0.0)),
+        armature: values.number("armature", &mut reported).unwrap_or(0.0),
         dynamics: dynamics(values, kind, &angle, log),
+        part: context.part,
     })
 }
 
@@ -418,7 +516,8 @@ fn is_bound(values: &Values<'_>, (flag, field): (&str, &str), range: [f64; 2], a
     }
 }
 
-fn limits(values: &Values<'_>, kind: Kind, context: &Context<'_>, log: &mut Diagnostics) -> (bool, Option<Limit>) {
+/// Whether the range is a bound, the bounds, and those of the force of all actuators.
+fn limits(values: &Values<'_>, kind: Kind, context: &Context<'_>, log: &mut Diagnostics) -> (bool, Option<Limit>, Option<[f64; 2]>) {
     let compiler = &context.settings.compiler;
     let range = values.exactly::<2>("range", log).unwrap_or_default();
     let force = values.exactly::<2>("actuatorfrcrange", log).unwrap_or_default();
@@ -429,16 +528,16 @@ fn limits(values: &Values<'_>, kind: Kind, context: &Context<'_>, log: &mut Diag
         }
     };
     match kind {
-        Kind::Free => return (false, None),
+        Kind::Free => return (false, None, None),
         Kind::Ball if is_limited => {
             ordered("range", range, log);
             if range[0] != 0.0 {
                 let expected = "0: the range of a ball joint is that of the angle of its rotation, which is not negative";
                 values.error("range", Code::LimitOrder, format!("the lower bound {}", range[0]), expected, log);
             }
-            return (true, Some(Limit { upper: compiler.angles.radians(range[1]), ..Limit::NONE }));
+            return (true, Some(Limit { upper: compiler.angles.radians(range[1]), ..Limit::NONE }), None);
         }
-        Kind::Ball => return (false, None),
+        Kind::Ball => return (false, None, None),
         Kind::Slide | Kind::Hinge => {}
     }
     let mut limit = Limit::NONE;
@@ -447,11 +546,12 @@ fn limits(values: &Values<'_>, kind: Kind, context: &Context<'_>, log: &mut Diag
         let convert = |bound: f64| if kind == Kind::Hinge { compiler.angles.radians(bound) } else { bound };
         [limit.lower, limit.upper] = range.map(convert);
     }
-    if is_bound(values, ("actuatorfrclimited", "actuatorfrcrange"), force, compiler.auto_limits, log) {
+    let is_force_limited = is_bound(values, ("actuatorfrclimited", "actuatorfrcrange"), force, compiler.auto_limits, log);
+    if is_force_limited {
         ordered("actuatorfrcrange", force, log);
         limit.effort = force[0].abs().max(force[1].abs());
     }
-    (is_limited, (limit != Limit::NONE).then_some(limit))
+    (is_limited, (limit != Limit::NONE).then_some(limit), is_force_limited.then_some(force))
 }
 
 fn dynamics(values: &Values<'_>, kind: Kind, angle: &dyn Fn(f64) -> f64, log: &mut Diagnostics) -> JointDynamics {

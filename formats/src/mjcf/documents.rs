@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
 use super::element::{Element, Loader};
-use super::{grammar, settings};
+use super::grammar;
 use crate::Input;
 
 /// A file may attach so many models.
@@ -27,7 +27,6 @@ impl Documents {
     pub(crate) fn read(input: &Input<'_>, log: &mut Diagnostics) -> Option<Self> {
         let file = &input.options.file;
         let root = Loader::new(input.sources, file).root(input.bytes, file, log)?;
-        settings::gravity(&root, log);
         let mut all = Self { all: vec![Document { root, path: file.into(), models: BTreeMap::new() }] };
         let mut next = 0;
         while next < all.all.len() {

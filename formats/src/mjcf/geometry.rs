@@ -207,11 +207,16 @@ impl Geom<'_> {
             (Kind::Ellipsoid, _) => unread("an ellipsoid"),
             (Kind::HeightField, _) => unread("a height field"),
             (Kind::Sdf, _) => unread("a signed distance field"),
-            // The floor of the scene
+            // Of the world, see `plane`
             (Kind::Plane, _) => return None,
             (Kind::Mesh, None) => return None,
         };
         Some((self.pose, shape))
+    }
+
+    /// The frame of a plane for contact: its z axis is the normal.
+    pub(crate) fn plane(&self) -> Option<Pose> {
+        (self.kind == Kind::Plane && self.mesh.is_none() && self.collides).then_some(self.pose)
     }
 
     fn mesh_shape(&self, mesh: &Element) -> CollisionShape {

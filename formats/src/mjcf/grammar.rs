@@ -33,11 +33,26 @@ const USER: &str = "numbers of the user";
 const DEFORMABLE: &str = "deformable bodies are not read: the dynamics are those without them";
 const PLUGIN: &str = "plugins of MuJoCo are not read";
 const ACTUATOR: &str = "controls are given by the scene";
+const UNREAD_ACTUATOR: &str = "actuators of this kind are not read";
 const FLUID: &str = "forces of the medium are given by the scene";
 
 const BODY_TAGS: Names = "body frame replicate attach inertial joint freejoint geom site";
 const BODY_UNUSED_TAGS: &[(Names, &str)] =
     &[("camera", "cameras play no part in the dynamics"), ("light", APPEARANCE), ("plugin", PLUGIN), ("composite flexcomp", DEFORMABLE)];
+
+const UNUSED_OF_TENDONS: &[(Names, &str)] =
+    &[("group material rgba width", APPEARANCE), ("margin solreflimit solimplimit solreffriction solimpfriction", SOLVER), ("user", USER)];
+
+/// The attributes of all actuators, and those of a kind.
+macro_rules! of_actuators {
+    ($own:literal) => {
+        concat!(
+            "name class group forcelimited ctrlrange forcerange gear damping armature delay nsample interp lengthrange cranklength joint ",
+            "jointinparent tendon site refsite cranksite slidersite ",
+            $own
+        )
+    };
+}
 
 /// All tags that are used. A tag of two rows is the first that fits what it is in.
 const ROWS: &[Row] = &[
@@ -46,7 +61,7 @@ const ROWS: &[Row] = &[
         within: "",
         attributes: "model",
         unused_attributes: &[],
-        tags: "compiler option default asset worldbody",
+        tags: "compiler option default asset worldbody keyframe actuator tendon equality",
         unused_tags: &[
             ("visual", APPEARANCE),
             ("statistic size", SIMULATOR),
@@ -55,10 +70,6 @@ const ROWS: &[Row] = &[
             ("extension", PLUGIN),
             ("deformable", DEFORMABLE),
             ("contact", CONTACT),
-            ("keyframe", "initial states are given by the scene"),
-            ("actuator", ACTUATOR),
-            ("tendon", "tendons are not read: the dynamics are those without them"),
-            ("equality", "constraints are not read: the dynamics are those of the tree"),
         ],
     },
     Row {
@@ -78,9 +89,8 @@ const ROWS: &[Row] = &[
     Row {
         name: "option",
         within: "mujoco",
-        attributes: "gravity",
+        attributes: "gravity timestep integrator actuatorgroupdisable",
         unused_attributes: &[
-            ("timestep integrator", "step and integrator are given by the scene"),
             ("wind density viscosity", FLUID),
             ("magnetic", "sensors play no part in the dynamics"),
             ("o_margin o_solref o_solimp o_friction", CONTACT),
@@ -89,7 +99,6 @@ const ROWS: &[Row] = &[
                  ls_iterations noslip_iterations ccd_iterations sdf_iterations sdf_initpoints",
                 SOLVER,
             ),
-            ("actuatorgroupdisable", ACTUATOR),
         ],
         tags: "flag",
         unused_tags: &[],
@@ -97,10 +106,10 @@ const ROWS: &[Row] = &[
     Row {
         name: "flag",
         within: "option",
-        attributes: "gravity",
+        attributes: "gravity constraint equality clampctrl actuation",
         unused_attributes: &[(
-            "constraint equality frictionloss limit contact spring damper clampctrl warmstart filterparent actuation refsafe sensor \
-             midphase eulerdamp autoreset nativeccd island multiccd override energy fwdinv invdiscrete sleep diagexact",
+            "frictionloss limit contact spring damper warmstart filterparent refsafe sensor midphase eulerdamp autoreset nativeccd \
+             island multiccd override energy fwdinv invdiscrete sleep diagexact ipc speculative",
             "what acts on the robot is given by the scene",
         )],
         tags: "",
@@ -111,13 +120,11 @@ const ROWS: &[Row] = &[
         within: "mujoco default",
         attributes: "class",
         unused_attributes: &[],
-        tags: "default mesh joint geom site",
+        tags: "default mesh joint geom site equality tendon general motor position velocity damper",
         unused_tags: &[
-            ("material camera light", APPEARANCE),
+            ("material camera light texture", APPEARANCE),
             ("pair", CONTACT),
-            ("equality", "constraints are not read: the dynamics are those of the tree"),
-            ("tendon", "tendons are not read: the dynamics are those without them"),
-            ("general motor position velocity intvelocity orientation pid damper cylinder muscle adhesion dcmotor", ACTUATOR),
+            ("intvelocity orientation pid cylinder muscle adhesion dcmotor", UNREAD_ACTUATOR),
         ],
     },
     Row {
@@ -180,6 +187,7 @@ const ROWS: &[Row] = &[
             ("group", APPEARANCE),
             ("solreflimit solimplimit solreffriction solimpfriction margin", SOLVER),
             ("actuatorgravcomp", ACTUATOR),
+            ("springyield", "springs are elastic"),
             ("user", USER),
         ],
         tags: "",
@@ -213,6 +221,116 @@ const ROWS: &[Row] = &[
         within: IN_BODIES,
         attributes: "name class pos quat axisangle xyaxes zaxis euler fromto",
         unused_attributes: &[("type group material size rgba", APPEARANCE), ("user", USER)],
+        tags: "",
+        unused_tags: &[],
+    },
+    Row { name: "keyframe", within: "mujoco", attributes: "", unused_attributes: &[], tags: "key", unused_tags: &[] },
+    Row {
+        name: "key",
+        within: "keyframe",
+        attributes: "name qpos qvel ctrl act mpos mquat plastic",
+        unused_attributes: &[("time", "a simulation starts at 0 s")],
+        tags: "",
+        unused_tags: &[],
+    },
+    Row { name: "tendon", within: "mujoco", attributes: "", unused_attributes: &[], tags: "spatial fixed", unused_tags: &[] },
+    Row {
+        name: "fixed",
+        within: "tendon",
+        attributes: "name class limited range actuatorfrclimited actuatorfrcrange frictionloss springlength springyield stiffness damping \
+                     armature",
+        unused_attributes: UNUSED_OF_TENDONS,
+        tags: "joint",
+        unused_tags: &[],
+    },
+    Row { name: "joint", within: "fixed", attributes: "joint coef", unused_attributes: &[], tags: "", unused_tags: &[] },
+    Row {
+        name: "tendon",
+        within: "default",
+        attributes: "limited range actuatorfrclimited actuatorfrcrange frictionloss springlength springyield stiffness damping armature",
+        unused_attributes: UNUSED_OF_TENDONS,
+        tags: "",
+        unused_tags: &[],
+    },
+    Row {
+        name: "equality",
+        within: "mujoco",
+        attributes: "",
+        unused_attributes: &[],
+        tags: "connect weld joint tendon flex flexvert flexstrain",
+        unused_tags: &[],
+    },
+    Row {
+        name: "equality",
+        within: "default",
+        attributes: "active",
+        unused_attributes: &[("solref solimp", SOLVER)],
+        tags: "",
+        unused_tags: &[],
+    },
+    Row {
+        name: "joint",
+        within: "equality",
+        attributes: "name class active joint1 joint2 polycoef",
+        unused_attributes: &[("solref solimp", SOLVER)],
+        tags: "",
+        unused_tags: &[],
+    },
+    Row {
+        name: "tendon",
+        within: "equality",
+        attributes: "name class active tendon1 tendon2 polycoef",
+        unused_attributes: &[("solref solimp", SOLVER)],
+        tags: "",
+        unused_tags: &[],
+    },
+    Row {
+        name: "actuator",
+        within: "mujoco",
+        attributes: "",
+        unused_attributes: &[],
+        tags: "general motor position velocity intvelocity orientation pid damper cylinder muscle adhesion dcmotor plugin",
+        unused_tags: &[],
+    },
+    Row {
+        name: "general",
+        within: "actuator default",
+        attributes: of_actuators!(
+            "actdim actearly actlimited actrange dyntype dynprm gaintype gainprm biastype biasprm inheritrange input velrange ffrange body ctrllimited"
+        ),
+        unused_attributes: &[("user", USER)],
+        tags: "",
+        unused_tags: &[],
+    },
+    Row {
+        name: "motor",
+        within: "actuator default",
+        attributes: of_actuators!("ctrllimited"),
+        unused_attributes: &[("user", USER)],
+        tags: "",
+        unused_tags: &[],
+    },
+    Row {
+        name: "position",
+        within: "actuator default",
+        attributes: of_actuators!("ctrllimited kp kv dampratio timeconst inheritrange"),
+        unused_attributes: &[("user", USER)],
+        tags: "",
+        unused_tags: &[],
+    },
+    Row {
+        name: "velocity",
+        within: "actuator default",
+        attributes: of_actuators!("ctrllimited kv"),
+        unused_attributes: &[("user", USER)],
+        tags: "",
+        unused_tags: &[],
+    },
+    Row {
+        name: "damper",
+        within: "actuator default",
+        attributes: of_actuators!("kv"),
+        unused_attributes: &[("user", USER)],
         tags: "",
         unused_tags: &[],
     },

@@ -16,20 +16,22 @@ use crate::reading::HELD;
 /// The link that does not move.
 const WORLD: &str = "world";
 
-/// The description of all bodies; `None` where an error leaves no sense in it.
+/// The description of all bodies, and the names of their joints in the order of the bodies; `None`
+/// where an error leaves no sense in it.
 pub(crate) fn lower(
     name: &str,
     bodies: &[Body<'_>],
     meshes: &mut Meshes<'_>,
     options: &Options,
     log: &mut Diagnostics,
-) -> Option<Description> {
+) -> Option<(Description, Vec<String>)> {
     let mut lower = Lower {
         description: Description { name: name.to_owned(), ..Description::default() },
         links: BTreeSet::from([WORLD.to_owned()]),
         joints: BTreeSet::new(),
         link_of: Vec::with_capacity(bodies.len()),
         is_fixed: Vec::with_capacity(bodies.len()),
+        names: Vec::new(),
     };
     lower.reserve(bodies, log);
     let mut inertials: Vec<Option<Inertial>> = Vec::with_capacity(bodies.len());
@@ -47,7 +49,7 @@ pub(crate) fn lower(
         lower.content(index, body);
     }
     lower.sites(bodies, log);
-    Some(lower.description)
+    Some((lower.description, lower.names))
 }
 
 /// Scales all masses so that they are the `settotalmass` of the main file.
@@ -72,6 +74,8 @@ struct Lower {
     link_of: Vec<usize>,
     /// Whether nothing moves the body.
     is_fixed: Vec<bool>,
+    /// Names of joints of the file, or made for them.
+    names: Vec<String>,
 }
 
 /// Reports the numbers of a joint that only effects use, under the names by which those take them.
@@ -165,16 +169,14 @@ impl Lower {
             let found = if body.parent == 0 { "a free joint beside others" } else { "a free joint inside a moving body" };
             joint.element.error((&subject, "type"), Code::Misplaced, found, "it alone, in a body directly inside the world", log);
         }
-        if body.pose != Pose::default() {
-            let why = "the place of a free body is its coordinates: no initial state is read";
-            body.element.unused(&super::grammar::subject(body.element), body.element.attribute("pos"), why, log);
-        }
         let align = joint.element.text("align");
         if align == Some("true") || (align != Some("false") && body.settings.compiler.align_free) {
             let why = "the coordinates are those of the body's frame, not of its inertia";
             joint.element.unused(&subject, joint.element.attribute("align"), why, log);
         }
         let name = joint.name.clone().unwrap_or_else(|| free(&mut self.joints, format!("{}_free", link.name)));
+        // One beside others is an error.
+        self.names.extend(body.joints.iter().map(|_| name.clone()));
         let child = self.add_link(link);
         self.add_joint(Joint { name, kind: JointKind::Floating, parent: 0, child, ..Joint::default() });
     }
@@ -207,6 +209,7 @@ impl Lower {
             };
             let name = joint.name.clone().unwrap_or_else(|| free(&mut self.joints, format!("{body_name}_{word}")));
             keep_dynamics(joint, &name, log);
+            self.names.push(name.clone());
             let origin = at_reference(joint, frame).origin();
             let axis = if kind == JointKind::Spherical { Joint::default().axis } else { joint.axis };
             self.add_joint(Joint {

@@ -15,21 +15,30 @@
 //! * A site is a frame. Names that the file leaves out are made: `body_3`, `arm_hinge`.
 //! * Masses are those of `<inertial>` or of the geoms, as `<compiler>` says.
 //! * Limits, damping, friction, armature and springs of joints are kept in the description.
+//! * Gravity, step, integrator, states, actuators, springs of tendons, equations of joints and
+//!   planes become a [`World`](crate::world::World).
 //!
 //! The rest of the file is listed as unused, with its line. An unknown tag or attribute is an
 //! error.
 
+mod actuators;
 mod bodies;
 mod documents;
 mod element;
+mod equalities;
 mod geometry;
 mod grammar;
 mod hull;
 mod inertia;
 mod lower;
 mod mesh;
+mod reflected;
+mod scope;
 mod settings;
+mod states;
+mod tendons;
 mod values;
+mod world;
 
 use std::collections::BTreeSet;
 
@@ -66,8 +75,10 @@ impl Format for Mjcf {
         input.options.warn_of_arguments(&BTreeSet::new(), diagnostics);
         let documents = documents::Documents::read(input, diagnostics)?;
         let name = documents.root(0).text("model").filter(|name| !name.trim().is_empty()).unwrap_or("robot");
-        let bodies = bodies::bodies(&documents, diagnostics);
+        let tree = bodies::tree(&documents, diagnostics);
         let mut meshes = mesh::Meshes::new(input.sources);
-        lower::lower(name, &bodies, &mut meshes, input.options, diagnostics).map(Document::from)
+        let (description, names) = lower::lower(name, &tree.bodies, &mut meshes, input.options, diagnostics)?;
+        let world = world::world(&documents, &tree, &names, &description, diagnostics);
+        Some(Document { description, world })
     }
 }

@@ -164,15 +164,22 @@ impl<'a> Classes<'a> {
         found
     }
 
-    /// The tags of this name of a class and the classes above, the nearest first.
-    pub(crate) fn tags(&self, class: usize, name: &str) -> Vec<&'a Element> {
+    /// The tags of a class, and of the classes above, the farthest first.
+    pub(crate) fn lineage(&self, class: usize) -> Vec<&[&'a Element]> {
         let mut all = Vec::new();
         let mut next = Some(class);
         while let Some(class) = next.map(|index| &self.classes[index]) {
-            all.extend(class.tags.iter().rev().filter(|tag| tag.is(name)).copied());
+            all.push(class.tags.as_slice());
             next = class.above;
         }
+        all.reverse();
         all
+    }
+
+    /// The tags of this name of a class and the classes above, the nearest first.
+    pub(crate) fn tags(&self, class: usize, name: &str) -> Vec<&'a Element> {
+        let lineage = self.lineage(class);
+        lineage.iter().rev().flat_map(|tags| tags.iter().rev()).filter(|tag| tag.is(name)).copied().collect()
     }
 }
 
@@ -187,6 +194,11 @@ pub(crate) struct Settings<'a> {
     pub(crate) meshes: BTreeMap<String, &'a Element>,
     /// Other documents by their names.
     pub(crate) models: BTreeMap<String, &'a Element>,
+    /// What is in the sections of these names.
+    pub(crate) tendons: Vec<&'a Element>,
+    pub(crate) actuators: Vec<&'a Element>,
+    pub(crate) equations: Vec<&'a Element>,
+    pub(crate) keyframes: Vec<&'a Element>,
 }
 
 impl<'a> Settings<'a> {
@@ -211,7 +223,9 @@ impl<'a> Settings<'a> {
                 asset.error((&Subject::Document, "name"), Code::DuplicateName, found, "a name of its own", log);
             }
         }
-        Self { folder, compiler, classes, meshes, models }
+        let section = |name| root.all(name).flat_map(|section| &section.children).collect();
+        let [tendons, actuators, equations, keyframes] = ["tendon", "actuator", "equality", "keyframe"].map(section);
+        Self { folder, compiler, classes, meshes, models, tendons, actuators, equations, keyframes }
     }
 }
 
@@ -221,24 +235,63 @@ fn stem(file: &str) -> String {
     name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_owned()
 }
 
-/// Reports what the file says of gravity where it is not the Earth's.
-pub(crate) fn gravity(root: &Element, log: &mut Diagnostics) {
-    const EARTH: [f64; 3] = [0.0, 0.0, -9.81];
-    const EXPECTED: &str = "`gravity` of the scene or of the request, which is (0 0 -9.81) m/s² unless given; this value is not used";
-    for section in root.all("option") {
-        let values = Values::alone(section, &Subject::Document);
-        if let Some(gravity) = values.exactly::<3>("gravity", log).filter(|gravity| *gravity != EARTH) {
-            let [x, y, z] = gravity;
-            section.warning((&Subject::Document, "gravity"), Code::LostDynamics, format!("gravity ({x:?} {y:?} {z:?})"), EXPECTED, log);
-        }
-        for flag in section.all("flag").filter(|flag| flag.text("gravity") == Some("disable")) {
-            flag.warning((&Subject::Document, "gravity"), Code::LostDynamics, "gravity that is disabled", EXPECTED, log);
-        }
-        for name in ["density", "viscosity"] {
-            if values.number(name, log).is_some_and(|number| number != 0.0) {
-                let expected = "effects of the scene, as `drag` and `buoyancy`: the forces of the medium are not read";
-                section.warning((&Subject::Document, name), Code::LostDynamics, "a medium", expected, log);
+/// What `<option>` says of a simulation.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Simulation {
+    /// m/s².
+    pub(crate) gravity: Option<[f64; 3]>,
+    /// s.
+    pub(crate) step: Option<f64>,
+    pub(crate) integrator: Option<String>,
+    /// Groups of actuators that give no force.
+    pub(crate) disabled_groups: Vec<i64>,
+    /// Whether actuators give no force.
+    pub(crate) no_actuation: bool,
+    /// Whether controls go beyond their bounds.
+    pub(crate) no_clamp: bool,
+    /// Whether no equation is kept.
+    pub(crate) no_equality: bool,
+}
+
+impl Simulation {
+    /// Of the main document. A medium is a warning.
+    pub(crate) fn of(root: &Element, log: &mut Diagnostics) -> Self {
+        let mut all = Self::default();
+        let (mut is_weightless, mut no_constraint) = (false, false);
+        for section in root.all("option") {
+            let values = Values::alone(section, &Subject::Document);
+            all.gravity = values.exactly("gravity", log).or(all.gravity);
+            if let Some(step) = values.number("timestep", log) {
+                if step <= 0.0 {
+                    values.error("timestep", Code::Number, format!("{step}"), "a time step above zero, s", log);
+                }
+                all.step = Some(step);
+            }
+            let words = ["Euler", "RK4", "implicit", "implicitfast", "discrete"].map(|word| (word, word));
+            all.integrator = values.word("integrator", &words, log).map(str::to_owned).or(all.integrator);
+            all.disabled_groups.extend(values.list("actuatorgroupdisable", log).unwrap_or_default().iter().map(|group| *group as i64));
+            for name in ["density", "viscosity"] {
+                if values.number(name, log).is_some_and(|number| number != 0.0) {
+                    let expected = "effects of the scene, as `drag` and `buoyancy`: the forces of the medium are not read";
+                    section.warning((&Subject::Document, name), Code::LostDynamics, "a medium", expected, log);
+                }
+            }
+            for flag in section.all("flag") {
+                let flags = Values::alone(flag, &Subject::Document);
+                let mut disables = |name: &str, into: &mut bool| {
+                    *into = flags.word(name, &[("disable", true), ("enable", false)], log).unwrap_or(*into);
+                };
+                disables("gravity", &mut is_weightless);
+                disables("actuation", &mut all.no_actuation);
+                disables("clampctrl", &mut all.no_clamp);
+                disables("equality", &mut all.no_equality);
+                disables("constraint", &mut no_constraint);
             }
         }
+        all.no_equality |= no_constraint;
+        if is_weightless {
+            all.gravity = Some([0.0; 3]);
+        }
+        all
     }
 }

@@ -1,0 +1,593 @@
+//! The section `<actuator>`: forces with an affine law on joints and fixed tendons.
+//!
+//! All kinds share one default, as in MuJoCo: gear, bounds and the like are those of any kind. The
+//! numbers of the law (`kp`, `kv`) come from a default of the same kind or of `<general>`, of the
+//! nearest class that has one.
+
+use articulated_core::description::Description;
+use articulated_core::diagnostic::{Code, Diagnostics, Subject};
+
+use super::bodies::Kind;
+use super::element::Element;
+use super::reflected::{Drives, Inertia};
+use super::scope::{References, Scope, Sort};
+use super::settings::{Settings, Simulation};
+use super::tendons::Tendon;
+use super::values::Values;
+use crate::world::{Actuator, World};
+
+const KINDS: [&str; 13] = [
+    "general",
+    "motor",
+    "position",
+    "velocity",
+    "intvelocity",
+    "orientation",
+    "pid",
+    "damper",
+    "cylinder",
+    "muscle",
+    "adhesion",
+    "dcmotor",
+    "plugin",
+];
+
+pub(crate) fn is_actuator(name: &str) -> bool {
+    KINDS.contains(&name)
+}
+
+/// The control of an actuator of the file, in the order of MuJoCo's.
+pub(crate) struct Control {
+    /// The part of the tree that the actuator is of.
+    pub(crate) part: usize,
+    /// The index of the actuator, if it is read.
+    pub(crate) actuator: Option<usize>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Dynamics {
+    None,
+    /// With a state, as the file calls it.
+    State(&'static str),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Gain {
+    Fixed,
+    Affine,
+    Other(&'static str),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Bias {
+    None,
+    Affine,
+    Other(&'static str),
+}
+
+const DYNAMICS: [(&str, Dynamics); 8] = [
+    ("none", Dynamics::None),
+    ("integrator", Dynamics::State("integrator")),
+    ("filter", Dynamics::State("filter")),
+    ("filterexact", Dynamics::State("filterexact")),
+    ("pid", Dynamics::State("pid")),
+    ("dcmotor", Dynamics::State("dcmotor")),
+    ("muscle", Dynamics::State("muscle")),
+    ("user", Dynamics::State("user")),
+];
+const GAINS: [(&str, Gain); 7] = [
+    ("fixed", Gain::Fixed),
+    ("affine", Gain::Affine),
+    ("muscle", Gain::Other("muscle")),
+    ("dcmotor", Gain::Other("dcmotor")),
+    ("pid", Gain::Other("pid")),
+    ("so3", Gain::Other("so3")),
+    ("user", Gain::Other("user")),
+];
+const BIASES: [(&str, Bias); 6] = [
+    ("none", Bias::None),
+    ("affine", Bias::Affine),
+    ("muscle", Bias::Other("muscle")),
+    ("dcmotor", Bias::Other("dcmotor")),
+    ("so3", Bias::Other("so3")),
+    ("user", Bias::Other("user")),
+];
+
+/// The attributes that name what an actuator acts on.
+const TARGETS: [(&str, Sort); 6] = [
+    ("joint", Sort::Joint),
+    ("jointinparent", Sort::Joint),
+    ("tendon", Sort::Tendon),
+    ("site", Sort::Site),
+    ("cranksite", Sort::Site),
+    ("body", Sort::Body),
+];
+
+/// The numbers of an actuator, or of a default.
+#[derive(Clone, Debug)]
+struct General {
+    /// The kind of the last tag.
+    kind: String,
+    dynamics: Dynamics,
+    gain: Gain,
+    bias: Bias,
+    gains: [f64; 10],
+    biases: [f64; 10],
+    gear: [f64; 6],
+    control_limited: Option<bool>,
+    force_limited: Option<bool>,
+    control_range: [f64; 2],
+    force_range: [f64; 2],
+    inherit_range: f64,
+    damping: [f64; 3],
+    armature: f64,
+    delay: f64,
+    group: i64,
+    /// Which controls it has.
+    input: Option<String>,
+    /// The kind whose numbers these are, if they are not read.
+    foreign: Option<String>,
+}
+
+/// The numbers of the law that a tag starts from.
+struct Base {
+    dynamics: Dynamics,
+    gain: Gain,
+    bias: Bias,
+    gains: [f64; 10],
+    biases: [f64; 10],
+    inherit_range: f64,
+}
+
+impl Default for General {
+    fn default() -> Self {
+        let mut gains = [0.0; 10];
+        gains[0] = 1.0;
+        Self {
+            kind: "general".to_owned(),
+            dynamics: Dynamics::None,
+            gain: Gain::Fixed,
+            bias: Bias::None,
+            gains,
+            biases: [0.0; 10],
+            gear: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            control_limited: None,
+            force_limited: None,
+            control_range: [0.0; 2],
+            force_range: [0.0; 2],
+            inherit_range: 0.0,
+            damping: [0.0; 3],
+            armature: 0.0,
+            delay: 0.0,
+            group: 0,
+            input: None,
+            foreign: None,
+        }
+    }
+}
+
+impl General {
+    /// The numbers of the default class of a tag, then of the tag.
+    fn of(element: &Element, settings: &Settings<'_>, log: &mut Diagnostics) -> Self {
+        let class = settings.classes.find(element, "class", log).unwrap_or(0);
+        // A mistake in a default is one error, not one for each actuator.
+        let mut own = log.apart();
+        let mut above = vec![Self::default()];
+        for tags in settings.classes.lineage(class) {
+            let mut state = above.last().cloned().unwrap_or_default();
+            tags.iter().filter(|tag| is_actuator(&tag.name)).for_each(|tag| state.apply(tag, &above, &mut own));
+            above.push(state);
+        }
+        let mut all = above.last().cloned().unwrap_or_default();
+        all.apply(element, &above, &mut own);
+        own.errors.retain(|error| !log.errors.contains(error));
+        log.take(own);
+        all
+    }
+
+    /// Takes what a tag says; `above`: the defaults of the classes above.
+    fn apply(&mut self, element: &Element, above: &[Self], log: &mut Diagnostics) {
+        let values = Values::alone(element, &Subject::Document);
+        self.gear = values.at_most("gear", self.gear, log);
+        self.damping = values.at_most("damping", self.damping, log);
+        for (name, into) in [("ctrllimited", &mut self.control_limited), ("forcelimited", &mut self.force_limited)] {
+            if values.has(name) {
+                *into = values.yes_or_auto(name, log);
+            }
+        }
+        for (name, into) in [("armature", &mut self.armature), ("delay", &mut self.delay)] {
+            *into = values.number(name, log).unwrap_or(*into);
+        }
+        self.group = values.integer("group", log).unwrap_or(self.group);
+        self.force_range = values.exactly("forcerange", log).unwrap_or(self.force_range);
+        self.control_range = values.exactly("ctrlrange", log).unwrap_or(self.control_range);
+        let gain = self.gain;
+        self.law_of(&values, above, log);
+        if gain != self.gain {
+            self.input = None;
+        }
+        self.input = values.text("input").map(str::to_owned).or(self.input.take());
+        element.name.clone_into(&mut self.kind);
+    }
+
+    /// The numbers that a kind starts from: those of the nearest default of this kind or of
+    /// `<general>`.
+    fn base(&self, kind: &str, above: &[Self]) -> Base {
+        let fits = |own: &&Self| own.kind == kind || own.kind == "general";
+        let Self { dynamics, gain, bias, gains, biases, inherit_range, .. } =
+            Some(self).filter(fits).or_else(|| above.iter().rev().find(fits)).unwrap_or(self).clone();
+        Base { dynamics, gain, bias, gains, biases, inherit_range }
+    }
+
+    /// The law of the force that a tag stands for.
+    fn law_of(&mut self, values: &Values<'_>, above: &[Self], log: &mut Diagnostics) {
+        let kind = values.element.name.as_str();
+        if kind == "general" {
+            self.dynamics = of_word(values, "dyntype", &DYNAMICS, self.dynamics, log);
+            self.gain = of_word(values, "gaintype", &GAINS, self.gain, log);
+            self.bias = of_word(values, "biastype", &BIASES, self.bias, log);
+            self.gains = values.at_most("gainprm", self.gains, log);
+            self.biases = values.at_most("biasprm", self.biases, log);
+            self.inherit_range = values.number("inheritrange", log).unwrap_or(self.inherit_range);
+            return;
+        }
+        let base = self.base(kind, above);
+        let fixed = if base.gain == Gain::Fixed { base.gains[0] } else { 1.0 };
+        (self.dynamics, self.gain, self.bias, self.foreign) = (Dynamics::None, Gain::Fixed, Bias::None, None);
+        (self.gains, self.biases, self.inherit_range) = ([0.0; 10], [0.0; 10], 0.0);
+        match kind {
+            "motor" => self.gains[0] = 1.0,
+            "position" => self.servo(&base, fixed, values, log),
+            "velocity" => {
+                let kv = values.number("kv", log).unwrap_or(fixed);
+                (self.gains[0], self.biases[2], self.bias) = (kv, -kv, Bias::Affine);
+            }
+            "damper" => {
+                let kv = values.number("kv", log).unwrap_or(if base.gain == Gain::Affine { -base.gains[2] } else { 0.0 });
+                (self.gains[2], self.gain, self.control_limited) = (-kv, Gain::Affine, Some(true));
+                if kv < 0.0 {
+                    values.error("kv", Code::Number, format!("{kv}"), "zero or more", log);
+                }
+                if self.control_range.iter().any(|bound| *bound < 0.0) {
+                    let [lower, upper] = self.control_range;
+                    values.error("ctrlrange", Code::Number, format!("{lower} and {upper}"), "bounds of a damper, zero or more", log);
+                }
+            }
+            other => {
+                self.foreign = Some(other.to_owned());
+                self.gain = match other {
+                    "orientation" => Gain::Other("so3"),
+                    "pid" => Gain::Other("pid"),
+                    "dcmotor" => Gain::Other("dcmotor"),
+                    "muscle" => Gain::Other("muscle"),
+                    _ => Gain::Fixed,
+                };
+            }
+        }
+    }
+
+    fn servo(&mut self, base: &Base, kp: f64, values: &Values<'_>, log: &mut Diagnostics) {
+        let kp = values.number("kp", log).unwrap_or(kp);
+        let not_negative = |name: &str, log: &mut Diagnostics| {
+            let number = values.number(name, log);
+            if let Some(number) = number.filter(|number| *number < 0.0) {
+                values.error(name, Code::Number, format!("{number}"), "zero or more", log);
+            }
+            number
+        };
+        let [kv, ratio, time] = ["kv", "dampratio", "timeconst"].map(|name| not_negative(name, log));
+        let inherited = if base.bias == Bias::Affine { base.biases[2] } else { 0.0 };
+        let damping = match (kv, ratio) {
+            (Some(_), Some(_)) => {
+                values.error("dampratio", Code::Together, "both kv and dampratio", "one of them", log);
+                0.0
+            }
+            (Some(kv), None) => -kv,
+            // Above zero it is a ratio, until the inertia is known.
+            (None, Some(ratio)) => ratio,
+            (None, None) => inherited,
+        };
+        (self.gains[0], self.biases[1], self.biases[2], self.bias) = (kp, -kp, damping, Bias::Affine);
+        let has_range = values.exactly::<2>("ctrlrange", &mut log.apart()).is_some_and(|range| range != [0.0; 2]);
+        let inherited = values.number("inheritrange", log);
+        if has_range && inherited.is_some_and(|part| part > 0.0) {
+            values.error("inheritrange", Code::Together, "both ctrlrange and inheritrange", "one of them", log);
+        }
+        self.inherit_range = inherited.unwrap_or(if has_range { 0.0 } else { base.inherit_range });
+        let filtered = Dynamics::State("filterexact");
+        self.dynamics = match time {
+            Some(time) if time > 0.0 => filtered,
+            None if base.dynamics == filtered => filtered,
+            _ => Dynamics::None,
+        };
+    }
+
+    /// How many controls it has.
+    fn controls(&self) -> usize {
+        let tokens = self.input.as_deref().map(|input| input.split_ascii_whitespace().count());
+        match self.gain {
+            Gain::Other("so3") => 3 + usize::from(self.input.as_deref() == Some("quat")),
+            Gain::Other("pid") => tokens.filter(|count| *count > 0).unwrap_or(2),
+            Gain::Other("dcmotor") if self.input.as_deref() == Some("none") => 0,
+            Gain::Other("dcmotor") => tokens.filter(|count| *count > 0).unwrap_or(1),
+            _ => 1,
+        }
+    }
+
+    /// Whether the control is a length that the force leads to.
+    fn is_servo(&self) -> bool {
+        (self.gain, self.bias) == (Gain::Fixed, Bias::Affine) && self.gains[0] == -self.biases[1]
+    }
+
+    /// Why it is not read, apart from what it acts on.
+    fn obstacle(&self, simulation: &Simulation) -> Option<String> {
+        if let Some(kind) = &self.foreign {
+            return Some(format!("an actuator of the kind <{kind}>"));
+        }
+        if simulation.no_actuation {
+            return Some("an actuator, where a flag of <option> turns actuators off".to_owned());
+        }
+        if simulation.disabled_groups.contains(&self.group) {
+            return Some("an actuator of a group that <option> turns off".to_owned());
+        }
+        match (self.dynamics, self.gain, self.bias) {
+            (Dynamics::State(word), ..) => Some(format!("an actuator with a state (dyntype {word})")),
+            (_, Gain::Other(word), _) => Some(format!("an actuator with a gain that is not affine (gaintype {word})")),
+            (.., Bias::Other(word)) => Some(format!("an actuator with a bias that is not affine (biastype {word})")),
+            _ if self.delay > 0.0 => Some("an actuator with a delay".to_owned()),
+            _ => None,
+        }
+    }
+
+    /// The law of the force, where the ratio of damping is not one yet.
+    fn law(&self) -> ([f64; 3], [f64; 3]) {
+        let first = |all: &[f64; 10]| [all[0], all[1], all[2]];
+        let gain = if self.gain == Gain::Affine { first(&self.gains) } else { [self.gains[0], 0.0, 0.0] };
+        (gain, if self.bias == Bias::None { [0.0; 3] } else { first(&self.biases) })
+    }
+
+    /// The bounds of control and force of an actuator on something of this range.
+    fn bounds(&self, element: &Element, settings: &Settings<'_>, target: Option<[f64; 2]>, log: &mut Diagnostics) -> [Option<[f64; 2]>; 2] {
+        let mut control = self.control_range;
+        if self.is_servo() && self.inherit_range > 0.0 {
+            match target {
+                Some([lower, upper]) if lower != upper => {
+                    let (middle, radius) = ((lower + upper) / 2.0, (upper - lower) / 2.0 * self.inherit_range);
+                    control = [middle - radius, middle + radius];
+                }
+                _ => {
+                    let expected = "an actuator on a joint or a tendon that has a range";
+                    element.error((&Subject::Document, "inheritrange"), Code::LimitMissing, "no range to inherit", expected, log);
+                }
+            }
+        }
+        let sides = [
+            ("ctrllimited", "ctrlrange", self.control_limited, control),
+            ("forcelimited", "forcerange", self.force_limited, self.force_range),
+        ];
+        sides.map(|(flag, field, limited, range)| {
+            let is_limited = match limited {
+                Some(limited) => limited,
+                None if !settings.compiler.auto_limits && range != [0.0; 2] => {
+                    let expected = format!("{flag}, since <compiler autolimits=\"false\">");
+                    element.error((&Subject::Document, field), Code::LimitIncomplete, "a range alone", expected, log);
+                    false
+                }
+                None => range[0] < range[1],
+            };
+            if is_limited && range[0] >= range[1] {
+                let found = format!("{} and {}", range[0], range[1]);
+                element.error((&Subject::Document, field), Code::LimitOrder, found, "the lower bound, then a greater one", log);
+            }
+            is_limited.then_some(range)
+        })
+    }
+}
+
+fn of_word<T: Copy>(values: &Values<'_>, name: &str, words: &[(&str, T)], base: T, log: &mut Diagnostics) -> T {
+    values.word(name, words, log).unwrap_or(base)
+}
+
+/// What an actuator acts on.
+struct Target {
+    drives: Drives,
+    /// Of the coordinate or length, if it has one.
+    range: Option<[f64; 2]>,
+    is_ball: bool,
+}
+
+/// Reads all actuators; returns the controls of all of the file.
+pub(crate) fn actuators(
+    scope: &mut Scope<'_>,
+    tendons: &[Tendon],
+    simulation: &Simulation,
+    description: &Description,
+    world: &mut World,
+    log: &mut Diagnostics,
+) -> Vec<Control> {
+    let mut controls = Vec::new();
+    let mut armatures: Vec<(f64, Drives)> = Vec::new();
+    // Actuators with a ratio of damping instead of a coefficient
+    let mut ratios: Vec<(usize, &Element)> = Vec::new();
+    let mut drives_of: Vec<Drives> = Vec::new();
+    let mut number = 0;
+    for index in 0..scope.tree.parts.len() {
+        if scope.is_full() {
+            break;
+        }
+        let part = scope.part(index);
+        for element in part.settings.actuators.iter().copied().filter(|element| is_actuator(&element.name)) {
+            let references = references(element, log);
+            let Some(found) = scope.resolve(index, element, &references, log) else { continue };
+            let general = General::of(element, &part.settings, log);
+            let name = scope.full(index, element).unwrap_or_else(|| format!("actuator_{number}"));
+            number += 1;
+            let found = references.first().zip(found.first()).map(|((_, field, _), at)| (*field, *at));
+            let target = match found {
+                Some((field, at)) => target(field, at, &general, scope, tendons),
+                None => Err("an actuator that acts on nothing"),
+            };
+            let obstacle = general.obstacle(simulation).or(target.as_ref().err().map(|why| (*why).to_owned()));
+            if let Ok(target) = &target {
+                passive(&name, element, &general, target, scope, world, log);
+                armatures.push((general.armature, target.drives.clone()));
+            }
+            let read = match (obstacle, target) {
+                (None, Ok(target)) => {
+                    let [control_range, force_range] = general.bounds(element, &part.settings, target.range, log);
+                    let (gain, bias) = general.law();
+                    if target.is_ball && general.is_servo() {
+                        let found = "a servo of a ball joint: MuJoCo takes the nearest of the targets that whole turns make";
+                        scope.warn(element, "", (found, "targets within half a turn of the length: this is as written"), log);
+                    }
+                    if general.gains[0] == -general.biases[1] && general.bias == Bias::Affine && bias[2] > 0.0 {
+                        ratios.push((world.actuators.len(), element));
+                    }
+                    let names = target.drives.iter().map(|(joint, gear)| (scope.joints[*joint].name.to_owned(), gear.clone()));
+                    world.actuators.push(Actuator {
+                        name,
+                        drives: names.collect(),
+                        gain,
+                        bias,
+                        control_range: control_range.filter(|_| !simulation.no_clamp),
+                        force_range,
+                        place: scope.place(element),
+                    });
+                    drives_of.push(target.drives);
+                    Some(world.actuators.len() - 1)
+                }
+                (why, _) => {
+                    let why = why.unwrap_or_default();
+                    lose(element, &why, scope, log);
+                    None
+                }
+            };
+            controls.extend((0..general.controls()).map(|_| Control { part: index, actuator: read }));
+        }
+    }
+    let lost = damp(&ratios, (&armatures, &drives_of), scope, tendons, description, world, log);
+    forget(&lost, &mut controls, world);
+    controls
+}
+
+const LOST: &str = "a force that is affine in control, length and rate: this actuator gives no force";
+
+fn lose(element: &Element, why: &str, scope: &mut Scope<'_>, log: &mut Diagnostics) {
+    scope.unread(element, &format!("{why} is not read"), Some((why, LOST)), log);
+}
+
+/// What an actuator refers to: what it acts on first.
+fn references<'a>(element: &'a Element, log: &mut Diagnostics) -> References<'a> {
+    let mut all: References<'_> = TARGETS.iter().filter_map(|(field, sort)| Some((*sort, *field, element.text(field)?))).collect();
+    let expected = "one of joint, jointinparent, tendon, site, cranksite and body";
+    match all.as_slice() {
+        [] => element.error((&Subject::Document, "joint"), Code::MissingAttribute, "none", expected, log),
+        [_] => {}
+        [_, (_, field, _), ..] => element.error((&Subject::Document, field), Code::Together, "two things to act on", expected, log),
+    }
+    let others = ["refsite", "slidersite"];
+    all.extend(others.iter().filter_map(|field| Some((Sort::Site, *field, element.text(field)?))));
+    all
+}
+
+fn target(field: &str, index: usize, general: &General, scope: &Scope<'_>, tendons: &[Tendon]) -> Result<Target, &'static str> {
+    let gear = general.gear[0];
+    match field {
+        "joint" | "jointinparent" => {
+            let joint = scope.joints[index].joint;
+            let is_ball = joint.kind == Kind::Ball;
+            let gears = match joint.kind {
+                Kind::Hinge | Kind::Slide => vec![gear],
+                Kind::Ball if field == "joint" => general.gear[..3].to_vec(),
+                Kind::Ball => return Err("an actuator of a ball joint in axes of the parent"),
+                Kind::Free => return Err("an actuator of a free joint"),
+            };
+            let range = (!is_ball && field == "joint").then_some(joint.range);
+            Ok(Target { drives: vec![(index, gears)], range, is_ball })
+        }
+        "tendon" => {
+            let tendon = &tendons[index];
+            if tendon.terms.is_empty() {
+                return Err("an actuator of a spatial tendon");
+            }
+            let drives = tendon.terms.iter().map(|(joint, factor)| (*joint, vec![gear * factor])).collect();
+            Ok(Target { drives, range: Some(tendon.range), is_ball: false })
+        }
+        "site" => Err("an actuator of a site"),
+        "cranksite" => Err("an actuator of a crank"),
+        _ => Err("an actuator of the contacts of a body"),
+    }
+}
+
+/// The damping of an actuator acts without its control: −d gear² on what it acts on.
+fn passive(
+    name: &str,
+    element: &Element,
+    general: &General,
+    target: &Target,
+    scope: &mut Scope<'_>,
+    world: &mut World,
+    log: &mut Diagnostics,
+) {
+    let [damping, second, third] = general.damping;
+    if general.armature != 0.0 {
+        scope.warn(element, "armature", ("armature of an actuator", "that of its joint: this one is not read"), log);
+    }
+    if [second, third] != [0.0; 2] || (damping != 0.0 && target.is_ball) {
+        let expected = "one coefficient, of a hinge, a slide or a fixed tendon: else it is not used";
+        scope.warn(element, "damping", ("damping of an actuator", expected), log);
+    }
+    if damping != 0.0 && !target.is_ball {
+        let names = target.drives.iter().map(|(joint, gear)| (scope.joints[*joint].name.to_owned(), gear.clone()));
+        world.passive.push(Actuator {
+            name: name.to_owned(),
+            drives: names.collect(),
+            bias: [0.0, 0.0, -damping],
+            place: scope.place(element),
+            ..Actuator::default()
+        });
+    }
+}
+
+/// Turns ratios of damping into coefficients: b₂ = −2 ζ √(kp m) with the mass m that the actuator
+/// feels at the reference state. Returns those for which there is none.
+fn damp(
+    ratios: &[(usize, &Element)],
+    (armatures, drives_of): (&[(f64, Drives)], &[Drives]),
+    scope: &mut Scope<'_>,
+    tendons: &[Tendon],
+    description: &Description,
+    world: &mut World,
+    log: &mut Diagnostics,
+) -> Vec<usize> {
+    let mut lost = Vec::new();
+    if ratios.is_empty() {
+        return lost;
+    }
+    let of_tendon = |tendon: &Tendon| (tendon.armature, tendon.terms.iter().map(|(joint, factor)| (*joint, vec![*factor])).collect());
+    let all: Vec<(f64, Drives)> = armatures.iter().cloned().chain(tendons.iter().map(of_tendon)).collect();
+    let is_known = tendons.iter().all(|tendon| tendon.armature == 0.0 || !tendon.terms.is_empty());
+    let inertia = if is_known && log.is_ok() { Inertia::at_reference(description, scope, &all) } else { None };
+    for (index, element) in ratios {
+        let mass = inertia.as_ref().and_then(|inertia| inertia.reflected(&drives_of[*index]));
+        let actuator = &mut world.actuators[*index];
+        match mass {
+            Some(mass) if actuator.gain[0] >= 0.0 => actuator.bias[2] = -2.0 * actuator.bias[2] * (actuator.gain[0] * mass).sqrt(),
+            _ => {
+                lose(element, "an actuator with a dampratio, but without an inertia or with kp below zero,", scope, log);
+                lost.push(*index);
+            }
+        }
+    }
+    lost
+}
+
+/// Removes actuators.
+fn forget(lost: &[usize], controls: &mut [Control], world: &mut World) {
+    for index in lost.iter().rev() {
+        world.actuators.remove(*index);
+        for control in controls.iter_mut() {
+            control.actuator = control.actuator.filter(|own| own != index).map(|own| if own > *index { own - 1 } else { own });
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! The section `<equality>`: linear equations of joints, and loops.
+
+use articulated_core::description::Coupling;
+use articulated_core::diagnostic::{Code, Diagnostics, Subject};
+
+use super::bodies::Kind;
+use super::element::Element;
+use super::scope::{References, Scope, Sort};
+use super::tendons::Tendon;
+use super::values::Values;
+use crate::world::{Loop, World};
+
+const OFF: &str = "the equation is not active";
+const FLAG: &str = "a flag of <option> turns equations off";
+const LOOP: &str = "loops are not read: the motion does not keep this equation";
+const APPLY: &str = "`coupling = \"file\"`, which applies it: else the motion does not keep this equation";
+
+/// Reads all equations.
+pub(crate) fn equalities(scope: &mut Scope<'_>, tendons: &[Tendon], is_off: bool, world: &mut World, log: &mut Diagnostics) {
+    for index in 0..scope.tree.parts.len() {
+        if scope.is_full() {
+            break;
+        }
+        let part = scope.part(index);
+        for element in part.settings.equations.iter().copied() {
+            let references = references(element, log);
+            let Some(found) = scope.resolve(index, element, &references, log) else { continue };
+            let class = part.settings.classes.find(element, "class", log).unwrap_or(0);
+            let values = Values::new(element, part.settings.classes.tags(class, "equality"), &Subject::Document);
+            let polynomial = values.at_most("polycoef", [0.0, 1.0, 0.0, 0.0, 0.0], log);
+            let is_active = values.yes("active", log).unwrap_or(true);
+            if is_off || !is_active {
+                scope.unread(element, if is_off { FLAG } else { OFF }, None, log);
+                continue;
+            }
+            let place = scope.place(element);
+            match linear(element, &found, polynomial, scope, tendons) {
+                Ok(coupling) => {
+                    scope.warn(element, "", ("an equation of joints", APPLY), log);
+                    world.couplings.push((coupling, place));
+                }
+                Err(kind) => {
+                    scope.unread(element, LOOP, Some((kind, "a tree: the motion does not keep this equation")), log);
+                    let full = |own: &str| format!("{}{own}{}", part.prefix, part.suffix);
+                    world.loops.push(Loop {
+                        name: scope.full(index, element).unwrap_or_default(),
+                        kind: element.name.clone(),
+                        between: references.iter().map(|(_, _, own)| full(own)).collect(),
+                        place,
+                    });
+                }
+            }
+        }
+    }
+}
+
+fn references<'a>(element: &'a Element, log: &mut Diagnostics) -> References<'a> {
+    const ALL: [(&str, Sort, &str); 8] = [
+        ("joint", Sort::Joint, "joint1"),
+        ("joint", Sort::Joint, "joint2"),
+        ("tendon", Sort::Tendon, "tendon1"),
+        ("tendon", Sort::Tendon, "tendon2"),
+        ("connect weld", Sort::Body, "body1"),
+        ("connect weld", Sort::Body, "body2"),
+        ("connect weld", Sort::Site, "site1"),
+        ("connect weld", Sort::Site, "site2"),
+    ];
+    let own = ALL.iter().filter(|(tags, ..)| tags.split(' ').any(|tag| element.is(tag)));
+    for (_, _, field) in own.clone().filter(|(_, _, field)| matches!(*field, "joint1" | "tendon1") && element.attribute(field).is_none()) {
+        element.error((&Subject::Document, field), Code::MissingAttribute, "none", format!("the attribute {field}"), log);
+    }
+    own.filter_map(|(_, sort, field)| {
+        let name = element.text(field).filter(|name| !(*sort == Sort::Body && *name == "world"))?;
+        Some((*sort, *field, name))
+    })
+    .collect()
+}
+
+/// Σ aᵢ (qᵢ − refᵢ) = c₀ as the first coordinate by the others; else what stands against it.
+fn linear(
+    element: &Element,
+    found: &[usize],
+    [c0, c1, c2, c3, c4]: [f64; 5],
+    scope: &Scope<'_>,
+    tendons: &[Tendon],
+) -> Result<Coupling, &'static str> {
+    let of = |index: usize| match element.is("joint") {
+        true => vec![(index, 1.0)],
+        false => tendons[index].terms.clone(),
+    };
+    let (first, second) = match (element.name.as_str(), found) {
+        ("joint" | "tendon", [first]) => (of(*first), Vec::new()),
+        ("joint" | "tendon", [first, second]) => (of(*first), of(*second)),
+        ("connect", _) => return Err("a loop that is closed at a point"),
+        ("weld", _) => return Err("a loop of bodies that are welded"),
+        _ => return Err("an equation of deformable bodies"),
+    };
+    if first.is_empty() || (second.is_empty() && found.len() > 1) {
+        return Err("an equation of spatial tendons");
+    }
+    if !second.is_empty() && [c2, c3, c4] != [0.0; 3] {
+        return Err("an equation of higher degree");
+    }
+    // l₁ − l₁(ref) = c₀ + c₁ (l₂ − l₂(ref))
+    let mut terms = first;
+    for (joint, factor) in second {
+        let factor = -c1 * factor;
+        match terms.iter_mut().find(|(known, _)| *known == joint) {
+            Some((_, sum)) => *sum += factor,
+            None => terms.push((joint, factor)),
+        }
+    }
+    terms.retain(|(_, factor)| *factor != 0.0);
+    if terms.iter().any(|(joint, _)| !matches!(scope.joints[*joint].joint.kind, Kind::Hinge | Kind::Slide)) {
+        return Err("an equation of joints with several coordinates");
+    }
+    let Some(((joint, own), leaders)) = terms.split_first().filter(|(_, leaders)| !leaders.is_empty()) else {
+        return Err("an equation that holds one joint");
+    };
+    let name = |joint: usize| scope.joints[joint].name.to_owned();
+    let reference = |joint: usize| scope.joints[joint].joint.reference;
+    let at_reference: f64 = terms.iter().map(|(joint, factor)| factor * reference(*joint)).sum();
+    Ok(Coupling {
+        joint: name(*joint),
+        leaders: leaders.iter().map(|(leader, factor)| (name(*leader), -factor / own)).collect(),
+        offset: (c0 + at_reference) / own,
+    })
+}

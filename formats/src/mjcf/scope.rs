@@ -1,0 +1,206 @@
+//! Names of joints and tendons, as other parts of the file refer to them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use articulated_core::diagnostic::{At, Code, Diagnostics, Subject, quote};
+use articulated_core::suggest::nearest;
+
+use super::bodies::{Extent, Joint, Kind, Part, Tree};
+use super::element::Element;
+use crate::pose::{IDENTITY, scalar_last};
+
+/// Actuators, tendons and equations may have so many references, those of copies among them.
+const MOST: usize = 1_000_000;
+
+/// What a name is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Sort {
+    Joint,
+    Tendon,
+    Site,
+    Body,
+}
+
+impl Sort {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Joint => "joint",
+            Self::Tendon => "tendon",
+            Self::Site => "site",
+            Self::Body => "body",
+        }
+    }
+}
+
+/// A joint with its name in the description.
+#[derive(Clone, Copy)]
+pub(crate) struct Known<'a> {
+    pub(crate) joint: &'a Joint<'a>,
+    pub(crate) name: &'a str,
+    /// The index of its body.
+    pub(crate) body: usize,
+}
+
+/// The names of a model.
+pub(crate) struct Scope<'a> {
+    pub(crate) tree: &'a Tree<'a>,
+    /// In the order of MuJoCo's coordinates.
+    pub(crate) joints: Vec<Known<'a>>,
+    /// Indices and parts by full names.
+    names: BTreeMap<(Sort, String), (usize, usize)>,
+    /// Names as the documents have them.
+    own: BTreeSet<(Sort, &'a str)>,
+    /// Whether all joints are known: else a name that is not may be one with a mistake.
+    is_complete: bool,
+    /// What has been reported, by the address of the tag: a document may be in several parts.
+    reported: BTreeSet<(*const Element, String)>,
+    looked_up: usize,
+    /// The name of the main file.
+    main: &'a str,
+}
+
+/// References of a tag: what of, the attribute, and the name.
+pub(crate) type References<'a> = Vec<(Sort, &'static str, &'a str)>;
+
+impl<'a> Scope<'a> {
+    /// `names`: those of all joints in the description, in the order of the bodies.
+    pub(crate) fn new(main: &'a str, tree: &'a Tree<'a>, names: &'a [String], is_complete: bool) -> Self {
+        let all = tree.bodies.iter().enumerate().flat_map(|(body, own)| own.joints.iter().map(move |joint| (body, joint)));
+        let joints: Vec<Known<'_>> = all.zip(names).map(|((body, joint), name)| Known { joint, name, body }).collect();
+        let (names, own, reported) = (BTreeMap::new(), BTreeSet::new(), BTreeSet::new());
+        let mut scope = Self { tree, joints: Vec::new(), names, own, is_complete, reported, looked_up: 0, main };
+        for (index, Known { joint, .. }) in joints.iter().enumerate() {
+            scope.add(Sort::Joint, joint.element, joint.name.as_ref(), (index, joint.part));
+        }
+        for (index, body) in tree.bodies.iter().enumerate() {
+            scope.add(Sort::Body, body.element, body.name.as_ref(), (index, body.part));
+            for site in &body.sites {
+                scope.add(Sort::Site, site.element, site.name.as_ref(), (index, site.part));
+            }
+        }
+        scope.joints = joints;
+        scope
+    }
+
+    /// Adds the full name of what a tag of a part makes, with its index.
+    pub(crate) fn add(&mut self, sort: Sort, element: &'a Element, full: Option<&String>, (index, part): (usize, usize)) {
+        if let (Some(full), Some(own)) = (full, element.text("name")) {
+            self.names.entry((sort, full.clone())).or_insert((index, part));
+            self.own.insert((sort, own));
+        }
+    }
+
+    /// Whether there have been so many references that no more are looked up.
+    pub(crate) fn is_full(&self) -> bool {
+        self.looked_up >= MOST
+    }
+
+    /// The part itself.
+    pub(crate) fn part(&self, part: usize) -> &'a Part<'a> {
+        &self.tree.parts[part]
+    }
+
+    /// The index of what a name in a part is of, and whether it is inside the part.
+    fn find(&self, part: usize, sort: Sort, own: &str) -> Option<(usize, bool)> {
+        let mut at = part;
+        loop {
+            let Part { prefix, suffix, extent, parent, parts, .. } = self.part(at);
+            let found = self.names.get(&(sort, format!("{prefix}{own}{suffix}"))).copied();
+            match found.filter(|(_, of)| *extent == Extent::Whole || parts.contains(of)) {
+                Some((index, _)) => return Some((index, at == part)),
+                None if *extent == Extent::Copy => at = *parent,
+                None => return None,
+            }
+        }
+    }
+
+    /// The indices of what the references of a tag of a part are of; `None` if the tag is not about
+    /// this part. An error if it is about none.
+    pub(crate) fn resolve(
+        &mut self,
+        part: usize,
+        element: &Element,
+        references: &References<'_>,
+        log: &mut Diagnostics,
+    ) -> Option<Vec<usize>> {
+        self.looked_up += references.len().max(1);
+        if self.is_full() {
+            let found = "very many copies of actuators, tendons and equations";
+            if self.looked_up - references.len().max(1) < MOST {
+                element.error((&Subject::Document, ""), Code::TooLarge, found, format!("at most {MOST} references"), log);
+            }
+            return None;
+        }
+        let found: Vec<Option<(usize, bool)>> = references.iter().map(|(sort, _, own)| self.find(part, *sort, own)).collect();
+        let extent = self.part(part).extent;
+        let is_inside = match extent {
+            Extent::Whole | Extent::Attached => true,
+            Extent::Copy => found.iter().flatten().any(|(_, is_inside)| *is_inside),
+        };
+        let all: Option<Vec<usize>> = found.iter().map(|found| found.map(|(index, _)| index)).collect();
+        if all.is_none() && extent == Extent::Whole && self.is_complete {
+            let unknown =
+                |(sort, _, own): &&(Sort, &'static str, &str)| !self.own.contains(&(*sort, *own)) && self.find(part, *sort, own).is_none();
+            if let Some((sort, field, own)) = references.iter().find(unknown) {
+                let names = self.names.keys().filter(|(known, _)| known == sort).map(|(_, name)| name.as_str());
+                let hint = nearest(own, names).map(|near| format!(" (did you mean {near:?}?)")).unwrap_or_default();
+                let expected = format!("the name of a {}{hint}", sort.name());
+                element.error((&Subject::Document, field), Code::UnknownName, quote(own), expected, log);
+            }
+        }
+        all.filter(|_| is_inside)
+    }
+
+    /// Reports once that a tag is not used; a warning if the motion is another without it.
+    pub(crate) fn unread(&mut self, element: &Element, why: &str, lost: Option<(&str, &str)>, log: &mut Diagnostics) {
+        if self.reported.insert((std::ptr::from_ref(element), String::new())) {
+            element.unused(&Subject::Document, None, why, log);
+        }
+        if let Some(lost) = lost {
+            self.warn(element, "", lost, log);
+        }
+    }
+
+    /// Warns once of what a tag says: `found`, `expected`.
+    pub(crate) fn warn(&mut self, element: &Element, field: &str, (found, expected): (&str, &str), log: &mut Diagnostics) {
+        if self.reported.insert((std::ptr::from_ref(element), format!("{field} {found}"))) {
+            element.warning((&Subject::Document, field), Code::LostDynamics, found, expected, log);
+        }
+    }
+
+    /// The place of a tag, if it is in the main file.
+    pub(crate) fn place(&self, element: &Element) -> At {
+        if element.file.name == self.main { element.at } else { At::Nowhere }
+    }
+
+    /// The name of a tag in a part; `None` where the file has none.
+    pub(crate) fn full(&self, part: usize, element: &Element) -> Option<String> {
+        let own = element.text("name").filter(|name| !name.is_empty())?;
+        let Part { prefix, suffix, .. } = self.part(part);
+        Some(format!("{prefix}{own}{suffix}"))
+    }
+}
+
+/// How many rates a joint has.
+pub(crate) fn freedoms(kind: Kind) -> usize {
+    match kind {
+        Kind::Free => 6,
+        Kind::Ball => 3,
+        Kind::Slide | Kind::Hinge => 1,
+    }
+}
+
+/// How many coordinates a joint has.
+pub(crate) fn coordinates(kind: Kind) -> usize {
+    freedoms(kind) + usize::from(matches!(kind, Kind::Free | Kind::Ball))
+}
+
+/// The coordinates of a joint at which its body is where its `pos` says.
+pub(crate) fn reference(scope: &Scope<'_>, known: &Known<'_>) -> Vec<f64> {
+    let pose = scope.tree.bodies[known.body].pose;
+    match known.joint.kind {
+        Kind::Free => pose.position.into_iter().chain(scalar_last(pose.rotation)).collect(),
+        Kind::Ball => scalar_last(IDENTITY).to_vec(),
+        Kind::Slide | Kind::Hinge => vec![known.joint.reference],
+    }
+}

@@ -1,0 +1,190 @@
+//! The section `<tendon>`: sums of coordinates, with the springs and dampers on them.
+
+use articulated_core::diagnostic::{Code, Diagnostics, Subject};
+
+use super::bodies::Kind;
+use super::element::Element;
+use super::scope::{References, Scope, Sort};
+use super::settings::Settings;
+use super::values::Values;
+use crate::world::Actuator;
+
+/// A tendon of one copy of a tag.
+pub(crate) struct Tendon {
+    pub(crate) name: String,
+    /// Joints by their indices, each once, with the lengths for a unit of their coordinates; empty
+    /// where it is no sum of coordinates.
+    pub(crate) terms: Vec<(usize, f64)>,
+    /// Bound or not, m.
+    pub(crate) range: [f64; 2],
+    pub(crate) armature: f64,
+}
+
+const LIMITED: &str = "forces of the spring and the damper alone: its limits do not bound the motion";
+const ONE: &str = "one coefficient: the others are not used";
+
+/// All tendons. Their springs and dampers become `passive`.
+pub(crate) fn tendons(scope: &mut Scope<'_>, passive: &mut Vec<Actuator>, log: &mut Diagnostics) -> Vec<Tendon> {
+    let mut all = Vec::new();
+    for index in 0..scope.tree.parts.len() {
+        if scope.is_full() {
+            break;
+        }
+        let part = scope.part(index);
+        for element in part.settings.tendons.iter().copied() {
+            let references = references(element, log);
+            let Some(found) = scope.resolve(index, element, &references, log) else { continue };
+            let class = part.settings.classes.find(element, "class", log).unwrap_or(0);
+            let values = Values::new(element, part.settings.classes.tags(class, "tendon"), &Subject::Document);
+            let own = Own::of(&values, &part.settings, log);
+            let full = scope.full(index, element);
+            scope.add(Sort::Tendon, element, full.as_ref(), (all.len(), index));
+            let name = full.unwrap_or_else(|| format!("tendon_{}", all.len()));
+            let tendon = Tendon { name, terms: own.terms(scope, &found, log), range: own.range, armature: own.armature };
+            own.force(&tendon, scope, passive, log);
+            all.push(tendon);
+        }
+    }
+    all
+}
+
+/// What a tendon is made of.
+fn references<'a>(element: &'a Element, log: &mut Diagnostics) -> References<'a> {
+    let mut all = Vec::new();
+    for inner in &element.children {
+        let (sort, field) = match (element.is("fixed"), inner.name.as_str()) {
+            (true, "joint") => (Sort::Joint, "joint"),
+            (false, "site") => (Sort::Site, "site"),
+            _ => continue,
+        };
+        match inner.text(field) {
+            Some(name) => all.push((sort, field, name)),
+            None => inner.error((&Subject::Document, field), Code::MissingAttribute, "none", format!("the name of a {field}"), log),
+        }
+    }
+    if element.is("fixed") && element.children.is_empty() {
+        element.error((&Subject::Document, ""), Code::MissingAttribute, "no <joint>", "the joints of the tendon", log);
+    }
+    all
+}
+
+/// The numbers of a tag.
+struct Own<'a> {
+    element: &'a Element,
+    stiffness: f64,
+    damping: f64,
+    /// Lengths at which the spring is at rest, between which it gives no force; `None`: that of the
+    /// rest of the joints.
+    rest: Option<[f64; 2]>,
+    range: [f64; 2],
+    is_limited: bool,
+    is_force_limited: bool,
+    armature: f64,
+    friction: f64,
+    yields: bool,
+    has_higher_terms: bool,
+}
+
+impl<'a> Own<'a> {
+    fn of(values: &Values<'a>, settings: &Settings<'_>, log: &mut Diagnostics) -> Self {
+        let [stiffness, k2, k3] = values.at_most("stiffness", [0.0; 3], log);
+        let [damping, d2, d3] = values.at_most("damping", [0.0; 3], log);
+        let lengths = values.list("springlength", log).unwrap_or_else(|| vec![-1.0]);
+        let rest = match lengths.as_slice() {
+            [length] => [*length; 2],
+            [lower, upper] => [*lower, *upper],
+            other => {
+                values.error("springlength", Code::WrongCount, format!("{} numbers", other.len()), "one or two lengths", log);
+                [-1.0; 2]
+            }
+        };
+        if rest[0] > rest[1] {
+            values.error("springlength", Code::LimitOrder, format!("{} and {}", rest[0], rest[1]), "the shorter length first", log);
+        }
+        let range = |name: &str, log: &mut Diagnostics| values.exactly::<2>(name, log).unwrap_or_default();
+        let (length, force) = (range("range", log), range("actuatorfrcrange", log));
+        let bound = |flag: &str, range: [f64; 2], log: &mut Diagnostics| {
+            let auto = settings.compiler.auto_limits && range[0] < range[1];
+            values.yes_or_auto(flag, log).unwrap_or(auto)
+        };
+        let number = |name: &str, log: &mut Diagnostics| values.number(name, log).unwrap_or(0.0);
+        Self {
+            element: values.element,
+            stiffness,
+            damping,
+            rest: (rest != [-1.0; 2]).then_some(rest),
+            range: length,
+            is_limited: bound("limited", length, log),
+            is_force_limited: bound("actuatorfrclimited", force, log),
+            armature: number("armature", log),
+            friction: number("frictionloss", log),
+            yields: number("springyield", log) > 0.0,
+            has_higher_terms: [k2, k3, d2, d3] != [0.0; 4],
+        }
+    }
+
+    /// The joints of these indices with their factors; none where it is no sum of coordinates.
+    fn terms(&self, scope: &Scope<'_>, found: &[usize], log: &mut Diagnostics) -> Vec<(usize, f64)> {
+        let mut terms: Vec<(usize, f64)> = Vec::new();
+        if !self.element.is("fixed") {
+            return terms;
+        }
+        let with_names = self.element.all("joint").filter(|inner| inner.attribute("joint").is_some());
+        for (inner, joint) in with_names.zip(found) {
+            let mut error = |field: &str, code: Code, found: &str, expected: &str| {
+                inner.error((&Subject::Document, field), code, found, expected, log);
+            };
+            if !matches!(scope.joints[*joint].joint.kind, Kind::Hinge | Kind::Slide) {
+                error("joint", Code::Unsupported, "a joint of several coordinates", "a hinge or a slide");
+            }
+            if terms.iter().any(|(known, _)| known == joint) {
+                error("joint", Code::DuplicateName, "the same joint again", "each joint once");
+            }
+            if inner.attribute("coef").is_none() {
+                error("coef", Code::MissingAttribute, "none", "the length for a unit of the joint");
+            }
+            terms.push((*joint, Values::alone(inner, &Subject::Document).number("coef", log).unwrap_or(0.0)));
+        }
+        terms
+    }
+
+    /// f = −k (l − l₀) − d l̇.
+    fn force(&self, tendon: &Tendon, scope: &mut Scope<'_>, passive: &mut Vec<Actuator>, log: &mut Diagnostics) {
+        let element = self.element;
+        let has_force = [self.stiffness, self.damping, self.friction, self.armature] != [0.0; 4] || self.has_higher_terms;
+        if !element.is("fixed") {
+            let lost = ("a spatial tendon with forces", "fixed tendons: the motion is that without it");
+            let why = "the length of a spatial tendon is no sum of coordinates";
+            scope.unread(element, why, (has_force || self.is_limited).then_some(lost), log);
+            return;
+        }
+        let losses = [
+            (self.is_limited, "range", ("limits of a tendon", LIMITED)),
+            (self.is_force_limited, "actuatorfrcrange", ("limits of the forces on a tendon", "those of its actuators and joints")),
+            (self.friction != 0.0, "frictionloss", ("friction of a tendon", "friction of the joints: that of tendons is not read")),
+            (self.armature != 0.0, "armature", ("armature of a tendon", "armature of the joints: that of tendons is not read")),
+            (self.has_higher_terms, "stiffness", ("stiffness or damping of higher degree", ONE)),
+            (self.yields, "springyield", ("a spring that yields", "a spring that does not: it is elastic")),
+        ];
+        for (_, field, lost) in losses.iter().filter(|(is_lost, ..)| *is_lost) {
+            scope.warn(element, field, *lost, log);
+        }
+        let at_rest = tendon.terms.iter().map(|(joint, factor)| factor * scope.joints[*joint].joint.rest).sum();
+        let (mut stiffness, [lower, upper]) = (self.stiffness, self.rest.unwrap_or([at_rest; 2]));
+        if stiffness != 0.0 && lower != upper {
+            let lost = ("a spring that is slack between two lengths", "one length: the spring is left out");
+            scope.warn(element, "springlength", lost, log);
+            stiffness = 0.0;
+        }
+        if stiffness == 0.0 && self.damping == 0.0 {
+            return;
+        }
+        passive.push(Actuator {
+            name: tendon.name.clone(),
+            drives: tendon.terms.iter().map(|(joint, factor)| (scope.joints[*joint].name.to_owned(), vec![*factor])).collect(),
+            bias: [stiffness * lower, -stiffness, -self.damping],
+            place: scope.place(element),
+            ..Actuator::default()
+        });
+    }
+}

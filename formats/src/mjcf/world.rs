@@ -1,0 +1,79 @@
+//! What a document says beside its bodies, as a [`World`].
+
+use articulated_core::description::Description;
+use articulated_core::diagnostic::Diagnostics;
+
+use super::actuators::actuators;
+use super::bodies::{Kind, Tree};
+use super::documents::Documents;
+use super::element::Element;
+use super::equalities::equalities;
+use super::grammar::subject;
+use super::scope::Scope;
+use super::settings::Simulation;
+use super::states;
+use super::tendons::tendons;
+use crate::pose::{Pose, rotate};
+use crate::world::{Plane, World};
+
+/// Reads the rest of a model. `names`: those of all joints, in the order of the bodies.
+pub(crate) fn world(documents: &Documents, tree: &Tree<'_>, names: &[String], description: &Description, log: &mut Diagnostics) -> World {
+    let main = documents.root(0);
+    let simulation = Simulation::of(main, log);
+    let has_unread_joints = documents.roots().any(has_deformable);
+    let mut scope = Scope::new(&main.file.name, tree, names, log.is_ok() && !has_unread_joints);
+    let mut world = World {
+        gravity: simulation.gravity,
+        step: simulation.step,
+        integrator: simulation.integrator.clone(),
+        planes: planes(&scope, log),
+        home: states::home(&scope),
+        ..World::default()
+    };
+    let bounds = scope.joints.iter().filter(|known| matches!(known.joint.kind, Kind::Hinge | Kind::Slide));
+    world.joint_forces = bounds.filter_map(|known| Some((known.name.to_owned(), known.joint.force_range?))).collect();
+    let tendons = tendons(&mut scope, &mut world.passive, log);
+    let controls = actuators(&mut scope, &tendons, &simulation, description, &mut world, log);
+    equalities(&mut scope, &tendons, simulation.no_equality, &mut world, log);
+    states::keyframes(&mut scope, &controls, has_unread_joints, &mut world, log);
+    world
+}
+
+/// Whether a document has joints that MuJoCo makes for deformable bodies.
+fn has_deformable(root: &Element) -> bool {
+    let mut next = vec![root];
+    while let Some(element) = next.pop() {
+        if element.is("composite") || element.is("flexcomp") {
+            return true;
+        }
+        next.extend(&element.children);
+    }
+    false
+}
+
+/// The planes of bodies that do not move.
+fn planes(scope: &Scope<'_>, log: &mut Diagnostics) -> Vec<Plane> {
+    let bodies = &scope.tree.bodies;
+    let mut all = Vec::new();
+    // The pose in the world, of bodies that do not move
+    let mut poses: Vec<Option<Pose>> = Vec::with_capacity(bodies.len());
+    for (index, body) in bodies.iter().enumerate() {
+        let parent = if index == 0 { Some(Pose::default()) } else { poses[body.parent] };
+        let own = parent.filter(|_| body.joints.is_empty()).map(|parent| parent.then(&body.pose));
+        poses.push(own);
+        for geom in &body.geoms {
+            let Some(plane) = geom.plane() else { continue };
+            let Some(frame) = own.map(|own| own.then(&plane)) else {
+                geom.element.unused(&subject(geom.element), None, "a plane that moves makes no contact", log);
+                continue;
+            };
+            all.push(Plane {
+                name: geom.element.text("name").unwrap_or_default().to_owned(),
+                point: frame.position,
+                normal: rotate(frame.rotation, [0.0, 0.0, 1.0]),
+                place: scope.place(geom.element),
+            });
+        }
+    }
+    all
+}

@@ -1,0 +1,422 @@
+//! MJCF: what a file says beside its robot.
+
+use std::collections::BTreeMap;
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
+use std::io::{Error, ErrorKind, Result};
+use std::path::{Path, PathBuf};
+
+use articulated_core::diagnostic::{At, Code};
+use articulated_formats::world::{Actuator, World};
+use articulated_formats::{Options, Reading, Sources, read, read_with};
+
+fn options() -> Options {
+    Options { file: "arm.xml".to_owned(), ..Options::default() }
+}
+
+fn accepted(text: &str) -> Reading {
+    read(text.as_bytes(), &options()).unwrap_or_else(|found| panic!("{found}\n{text}"))
+}
+
+/// An arm with a slide `x` (ref 0.5), a hinge `h` (ref 90°) and a ball `b`; line 6 is `rest`.
+fn with(head: &str, rest: &str) -> String {
+    format!(
+        "<mujoco>{head}<worldbody>\n<body><joint name=\"x\" type=\"slide\" ref=\"0.5\" range=\"-1 3\" actuatorfrcrange=\"-4 5\"/><geom size=\"1\"/>\n\
+         <body><joint name=\"h\" ref=\"90\" springref=\"90\" range=\"-90 90\"/><geom size=\"1\"/>\n\
+         <body><joint name=\"b\" type=\"ball\"/><geom size=\"1\"/></body></body></body>\n\
+         </worldbody>\n{rest}\n</mujoco>"
+    )
+}
+
+fn world(rest: &str) -> World {
+    accepted(&with("", rest)).world
+}
+
+fn actuators(tags: &str) -> Vec<Actuator> {
+    world(&format!("<actuator>{tags}</actuator>")).actuators
+}
+
+fn actuator(tag: &str) -> Actuator {
+    let all = actuators(tag);
+    assert_eq!(all.len(), 1, "{tag}");
+    all[0].clone()
+}
+
+/// The law of an actuator on `h` with these defaults.
+fn law(defaults: &str, tag: &str) -> ([f64; 3], [f64; 3]) {
+    let text = with(&format!("<default>{defaults}</default>"), &format!("<actuator>{tag}</actuator>"));
+    let all = accepted(&text).world.actuators;
+    assert_eq!(all.len(), 1, "{text}");
+    (all[0].gain, all[0].bias)
+}
+
+fn drive(name: &str, gear: &[f64]) -> (String, Vec<f64>) {
+    (name.to_owned(), gear.to_vec())
+}
+
+#[test]
+fn options_are_those_of_a_simulation() {
+    let option = |text: &str| accepted(&with(text, "")).world;
+    let found = option("<option gravity=\"1 2 -3\" timestep=\"0.004\"/><option integrator=\"RK4\"/>");
+    assert_eq!((found.gravity, found.step, found.integrator.as_deref()), (Some([1.0, 2.0, -3.0]), Some(0.004), Some("RK4")));
+    let found = option("");
+    assert_eq!((found.gravity, found.step, found.integrator), (None, None, None));
+    assert_eq!(option("<option gravity=\"1 2 -3\"><flag gravity=\"disable\"/></option>").gravity, Some([0.0; 3]));
+    for wrong in ["timestep=\"0\"", "integrator=\"euler\"", "gravity=\"1 2\""] {
+        let found = read(with(&format!("\n<option {wrong}/>"), "").as_bytes(), &options()).unwrap_err();
+        assert_eq!((found.errors.len(), found.errors[0].line()), (1, Some(2)), "{found}");
+    }
+}
+
+#[test]
+fn a_motor_has_a_gear_and_bounds() {
+    let found = actuator("<motor name=\"m\" joint=\"x\" gear=\"-3\" ctrlrange=\"-1 2\" forcerange=\"-7 8\"/>");
+    assert_eq!((found.name.as_str(), found.drives), ("m", vec![drive("x", &[-3.0])]));
+    assert_eq!((found.gain, found.bias), ([1.0, 0.0, 0.0], [0.0; 3]));
+    assert_eq!((found.control_range, found.force_range), (Some([-1.0, 2.0]), Some([-7.0, 8.0])));
+    assert_eq!(found.place.line(), Some(6));
+    let found = actuator("<motor jointinparent=\"h\" ctrlrange=\"-1 2\" ctrllimited=\"false\"/>");
+    assert_eq!((found.name.as_str(), found.control_range, found.drives), ("actuator_0", None, vec![drive("h", &[1.0])]));
+    let found = actuator("<motor joint=\"b\" gear=\"1 2 3\"/>");
+    assert_eq!(found.drives, [drive("b", &[1.0, 2.0, 3.0])]);
+}
+
+#[test]
+fn shortcuts_are_affine_laws() {
+    let laws = [
+        ("<position joint=\"h\" kp=\"5\" kv=\"2\"/>", [5.0, 0.0, 0.0], [0.0, -5.0, -2.0]),
+        ("<position joint=\"h\"/>", [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]),
+        ("<velocity joint=\"h\" kv=\"3\"/>", [3.0, 0.0, 0.0], [0.0, 0.0, -3.0]),
+        ("<damper joint=\"h\" kv=\"4\" ctrlrange=\"0 1\"/>", [0.0, 0.0, -4.0], [0.0; 3]),
+        (
+            "<general joint=\"h\" gaintype=\"affine\" gainprm=\"1 2 3\" biastype=\"affine\" biasprm=\"4 5 6\"/>",
+            [1.0, 2.0, 3.0],
+            [4.0, 5.0, 6.0],
+        ),
+        ("<general joint=\"h\" gainprm=\"1 2 3\" biasprm=\"4 5 6\"/>", [1.0, 0.0, 0.0], [0.0; 3]),
+    ];
+    for (tag, gain, bias) in laws {
+        assert_eq!(law("", tag), (gain, bias), "{tag}");
+    }
+    assert_eq!(actuator("<damper joint=\"h\" kv=\"4\" ctrlrange=\"0 1\"/>").control_range, Some([0.0, 1.0]));
+}
+
+#[test]
+fn the_law_comes_from_a_default_of_the_same_kind_or_of_general() {
+    let servo = "<position joint=\"h\"/>";
+    assert_eq!(law("<position kp=\"5\" kv=\"2\"/>", servo), ([5.0, 0.0, 0.0], [0.0, -5.0, -2.0]));
+    assert_eq!(law("<velocity kv=\"5\"/>", servo), ([1.0, 0.0, 0.0], [0.0, -1.0, 0.0]));
+    assert_eq!(law("<general gainprm=\"3\"/>", servo), ([3.0, 0.0, 0.0], [0.0, -3.0, 0.0]));
+    assert_eq!(law("<position kp=\"5\"/>", "<motor joint=\"h\"/>"), ([1.0, 0.0, 0.0], [0.0; 3]));
+    assert_eq!(law("<position kp=\"5\" kv=\"2\"/>", "<general joint=\"h\"/>"), ([5.0, 0.0, 0.0], [0.0, -5.0, -2.0]));
+    // The nearest class that has one
+    let nested =
+        "<position kp=\"5\"/><default class=\"a\"><velocity kv=\"3\"/><default class=\"c\"><motor gear=\"2\"/></default></default>";
+    assert_eq!(law(nested, "<position joint=\"h\" class=\"c\"/>"), ([5.0, 0.0, 0.0], [0.0, -5.0, 0.0]));
+    assert_eq!(law(nested, "<velocity joint=\"h\" class=\"c\"/>"), ([3.0, 0.0, 0.0], [0.0, 0.0, -3.0]));
+    // Gear and bounds are those of any kind.
+    let text = with("<default><motor gear=\"4\" ctrlrange=\"-1 1\"/></default>", "<actuator><velocity joint=\"h\"/></actuator>");
+    let found = &accepted(&text).world.actuators[0];
+    assert_eq!((&found.drives, found.control_range), (&vec![drive("h", &[4.0])], Some([-1.0, 1.0])));
+}
+
+#[test]
+fn a_range_is_inherited_from_the_joint() {
+    let found = actuator("<position joint=\"h\" inheritrange=\"0.5\"/>");
+    assert_eq!(found.control_range, Some([-FRAC_PI_2 / 2.0, FRAC_PI_2 / 2.0]));
+    let found = actuator("<position joint=\"x\" inheritrange=\"1.5\"/>");
+    assert_eq!(found.control_range, Some([-2.0, 4.0]));
+    // What is nearer counts.
+    let ranges = [
+        ("<position inheritrange=\"1\"/>", "ctrlrange=\"0 9\"", [0.0, 9.0]),
+        ("<motor ctrlrange=\"0 9\"/>", "inheritrange=\"1\"", [-1.0, 3.0]),
+    ];
+    for (default, own, expected) in ranges {
+        let text = with(&format!("<default>{default}</default>"), &format!("<actuator><position joint=\"x\" {own}/></actuator>"));
+        assert_eq!(accepted(&text).world.actuators[0].control_range, Some(expected));
+    }
+}
+
+#[test]
+fn a_ratio_of_damping_is_of_the_mass_that_the_actuator_feels() {
+    // A point on a rod: m = 2 (0.5² + 2/5 0.1²) + 0.3; b₂ = −2 ζ √(kp m)
+    let text = "<mujoco><worldbody><body><joint name=\"j\" axis=\"0 1 0\" armature=\"0.3\"/><geom size=\"0.1\" mass=\"2\" pos=\"0 0 0.5\"/></body></worldbody>
+        <actuator><position joint=\"j\" kp=\"7\" dampratio=\"0.6\" gear=\"2\"/></actuator></mujoco>";
+    let found = &accepted(text).world.actuators[0];
+    let mass = (2.0 * (0.25 + 0.4 * 0.01) + 0.3) / 4.0;
+    assert!((found.bias[2] + 2.0 * 0.6 * f64::sqrt(7.0 * mass)).abs() < 1e-13, "{found:?}");
+}
+
+#[test]
+fn an_actuator_of_a_fixed_tendon_drives_its_joints() {
+    let found = world(
+        "<tendon><fixed name=\"t\"><joint joint=\"x\" coef=\"2\"/><joint joint=\"h\" coef=\"-0.5\"/></fixed></tendon><actuator><motor tendon=\"t\" gear=\"3\"/></actuator>",
+    );
+    assert_eq!(found.actuators[0].drives, [drive("x", &[6.0]), drive("h", &[-1.5])]);
+    assert_eq!(found.passive, []);
+}
+
+#[test]
+fn springs_of_tendons_are_actuators_without_gain() {
+    let tendon = |attributes: &str| {
+        world(&format!(
+            "<tendon><fixed name=\"t\" {attributes}><joint joint=\"x\" coef=\"2\"/><joint joint=\"h\" coef=\"-0.5\"/></fixed></tendon>"
+        ))
+        .passive
+    };
+    // f = −4 (l − 0.3) − 0.5 l̇
+    let found = tendon("stiffness=\"4\" damping=\"0.5\" springlength=\"0.3\"");
+    assert_eq!((found[0].name.as_str(), found[0].gain, found[0].bias), ("t", [0.0; 3], [1.2, -4.0, -0.5]));
+    assert_eq!(found[0].drives, [drive("x", &[2.0]), drive("h", &[-0.5])]);
+    // At rest x is 0 and h is π/2.
+    assert_eq!(tendon("stiffness=\"4\"")[0].bias, [-FRAC_PI_2 * 2.0, -4.0, 0.0]);
+    assert_eq!(tendon("stiffness=\"0\""), []);
+    // The damping of an actuator is on what it acts on.
+    let found = world("<actuator><motor name=\"m\" joint=\"x\" gear=\"3\" damping=\"0.2\"/></actuator>").passive;
+    assert_eq!((&found[0].drives, found[0].bias), (&vec![drive("x", &[3.0])], [0.0, 0.0, -0.2]));
+}
+
+#[test]
+fn equations_of_joints_are_couplings() {
+    let coupling = |tags: &str| {
+        let found = world(&format!(
+            "<tendon><fixed name=\"t\"><joint joint=\"x\" coef=\"2\"/></fixed><fixed name=\"u\"><joint joint=\"h\" coef=\"4\"/></fixed>
+             <fixed name=\"w\"><joint joint=\"x\" coef=\"2\"/><joint joint=\"h\" coef=\"4\"/></fixed></tendon><equality>{tags}</equality>"
+        ));
+        assert_eq!((found.couplings.len(), found.loops.len()), (1, 0), "{tags}");
+        let own = &found.couplings[0].0;
+        (own.joint.clone(), own.leaders.clone(), own.offset)
+    };
+    // x − 0.5 = 0.1 + 3 (h − π/2)
+    let found = coupling("<joint joint1=\"x\" joint2=\"h\" polycoef=\"0.1 3\"/>");
+    assert_eq!((found.0.as_str(), &found.1), ("x", &vec![("h".to_owned(), 3.0)]));
+    assert!((found.2 - (0.6 - 3.0 * FRAC_PI_2)).abs() < 1e-15, "{found:?}");
+    // 2 (x − 0.5) = 0.1 + 3 · 4 (h − π/2)
+    let found = coupling("<tendon tendon1=\"t\" tendon2=\"u\" polycoef=\"0.1 3\"/>");
+    assert_eq!((found.0.as_str(), &found.1), ("x", &vec![("h".to_owned(), 6.0)]));
+    assert!((found.2 - (0.55 - 6.0 * FRAC_PI_2)).abs() < 1e-14, "{found:?}");
+    // 2 (x − 0.5) + 4 (h − π/2) = 0.1
+    let found = coupling("<tendon tendon1=\"w\" polycoef=\"0.1\"/>");
+    assert_eq!((found.0.as_str(), &found.1), ("x", &vec![("h".to_owned(), -2.0)]));
+    assert!((found.2 - (0.55 + 2.0 * FRAC_PI_2)).abs() < 1e-15, "{found:?}");
+}
+
+#[test]
+fn what_is_no_coupling_is_a_loop() {
+    let tags = [
+        ("<joint joint1=\"x\"/>", "joint"),
+        ("<joint joint1=\"x\" joint2=\"h\" polycoef=\"0 1 2\"/>", "joint"),
+        ("<connect body1=\"c\" body2=\"d\" anchor=\"0 0 0\"/>", "connect"),
+        ("<weld body1=\"c\"/>", "weld"),
+    ];
+    for (tag, kind) in tags {
+        let text = with("", &format!("<equality>\n{tag}\n</equality>"))
+            .replace("</worldbody>", "<body name=\"c\"/><body name=\"d\"/></worldbody>");
+        let reading = accepted(&text);
+        assert_eq!((reading.world.couplings.len(), reading.world.loops.len()), (0, 1), "{tag}");
+        assert_eq!(reading.world.loops[0].kind, kind);
+        let lines: Vec<_> = reading.warnings.iter().map(|warning| (warning.code, warning.line())).collect();
+        assert_eq!(lines, [(Code::LostDynamics, Some(7))], "{tag}");
+        assert!(reading.unused.iter().any(|unused| (unused.line, unused.tag.as_str()) == (Some(7), kind)), "{tag}");
+    }
+    let off = accepted(&with("", "<equality><joint joint1=\"x\" joint2=\"h\" active=\"false\"/></equality>"));
+    assert_eq!((off.world.couplings.len(), off.world.loops.len(), off.warnings.len()), (0, 0, 0));
+    assert!(off.unused.iter().any(|unused| unused.tag == "joint" && unused.why.contains("not active")));
+    let on = accepted(&with("", "<equality><joint joint1=\"x\" joint2=\"h\"/></equality>"));
+    assert!(on.warnings[0].to_string().contains("coupling = \"file\""), "{}", on.warnings[0]);
+}
+
+#[test]
+fn what_gives_no_force_is_a_warning_with_its_line() {
+    let actuators = [
+        "<muscle joint=\"h\"/>",
+        "<intvelocity joint=\"h\"/>",
+        "<cylinder joint=\"h\"/>",
+        "<adhesion body=\"c\"/>",
+        "<dcmotor joint=\"h\" motorconst=\"1\" resistance=\"1\"/>",
+        "<orientation joint=\"b\"/>",
+        "<pid joint=\"h\"/>",
+        "<general joint=\"h\" dyntype=\"filter\"/>",
+        "<position joint=\"h\" timeconst=\"0.1\"/>",
+        "<general joint=\"h\" gaintype=\"user\"/>",
+        "<general joint=\"h\" biastype=\"muscle\"/>",
+        "<motor jointinparent=\"b\"/>",
+        "<motor joint=\"f\"/>",
+        "<motor site=\"s\"/>",
+        "<motor joint=\"h\" delay=\"0.1\" nsample=\"3\"/>",
+        "<motor joint=\"h\" group=\"3\"/>",
+    ];
+    for tag in actuators {
+        let text = with("<option actuatorgroupdisable=\"3\"/>", &format!("<actuator>\n{tag}\n<motor name=\"m\" joint=\"h\"/></actuator>"))
+            .replace("</worldbody>", "<site name=\"s\"/><body name=\"c\"><freejoint name=\"f\"/><geom size=\"1\"/></body></worldbody>");
+        let reading = accepted(&text);
+        let names: Vec<&str> = reading.world.actuators.iter().map(|own| own.name.as_str()).collect();
+        assert_eq!(names, ["m"], "{tag}");
+        let found: Vec<_> = reading.warnings.iter().map(|warning| (warning.code, warning.line())).collect();
+        assert_eq!(found, [(Code::LostDynamics, Some(7))], "{tag}");
+        assert!(reading.warnings[0].to_string().contains("no force"), "{}", reading.warnings[0]);
+        assert!(reading.unused.iter().any(|unused| unused.line == Some(7) && tag.starts_with(&format!("<{}", unused.tag))), "{tag}");
+    }
+    let tendon = |attributes: &str, tag: &str| {
+        format!(
+            "<tendon>\n<{tag} name=\"t\" {attributes}>{}</{tag}></tendon>",
+            match tag {
+                "fixed" => "<joint joint=\"x\" coef=\"1\"/>",
+                _ => "<site site=\"s\"/><site site=\"s2\"/>",
+            }
+        )
+    };
+    let tendons = [
+        tendon("stiffness=\"1\" springlength=\"0 1\"", "fixed"),
+        tendon("range=\"0 1\"", "fixed"),
+        tendon("frictionloss=\"1\"", "fixed"),
+        tendon("armature=\"1\"", "fixed"),
+        tendon("damping=\"1 2\"", "fixed"),
+        tendon("actuatorfrcrange=\"-1 1\"", "fixed"),
+        tendon("stiffness=\"1\"", "spatial"),
+        "<actuator>\n<motor joint=\"x\" armature=\"1\"/></actuator>".to_owned(),
+        "<actuator>\n<position joint=\"b\"/></actuator>".to_owned(),
+    ];
+    for tag in tendons {
+        let text = with("", &tag).replace("</worldbody>", "<site name=\"s\"/><site name=\"s2\"/></worldbody>");
+        let found: Vec<_> = accepted(&text).warnings.iter().map(|warning| (warning.code, warning.line())).collect();
+        assert_eq!(found, [(Code::LostDynamics, Some(7))], "{tag}");
+    }
+    assert_eq!(accepted(&with("", &tendon("", "fixed"))).warnings.len(), 0);
+}
+
+#[test]
+fn mistakes_are_errors_with_their_lines() {
+    let actuator = |tag: &str| with("", &format!("<actuator>\n{tag}\n</actuator>"));
+    let tendon = |inside: &str| with("", &format!("<tendon>\n{inside}\n</tendon>"));
+    let key = |attributes: &str| with("", &format!("<keyframe>\n<key {attributes}/>\n</keyframe>"));
+    let mistakes = [
+        (actuator("<motor joint=\"y\"/>"), Code::UnknownName, "the name of a joint"),
+        (actuator("<motor tendon=\"h\"/>"), Code::UnknownName, "the name of a tendon"),
+        (actuator("<motor/>"), Code::MissingAttribute, "one of joint"),
+        (actuator("<motor joint=\"x\" jointinparent=\"h\"/>"), Code::Together, "two things"),
+        (actuator("<motor joint=\"x\" kp=\"1\"/>"), Code::Unknown, "attribute of <motor>"),
+        (actuator("<motr joint=\"x\"/>"), Code::Unknown, "motor, perhaps"),
+        (actuator("<motor joint=\"x\" ctrlrange=\"1\"/>"), Code::WrongCount, "2 numbers"),
+        (actuator("<motor joint=\"x\" ctrlrange=\"2 1\" ctrllimited=\"true\"/>"), Code::LimitOrder, "2 and 1"),
+        (actuator("<motor joint=\"x\" gear=\"1 2 3 4 5 6 7\"/>"), Code::WrongCount, "1 to 6 numbers"),
+        (actuator("<position joint=\"x\" kv=\"-1\"/>"), Code::Number, "zero or more"),
+        (actuator("<position joint=\"x\" kv=\"1\" dampratio=\"1\"/>"), Code::Together, "both kv and dampratio"),
+        (actuator("<position joint=\"x\" ctrlrange=\"0 1\" inheritrange=\"1\"/>"), Code::Together, "both ctrlrange and inheritrange"),
+        (actuator("<position joint=\"b\" inheritrange=\"1\"/>"), Code::LimitMissing, "no range to inherit"),
+        (actuator("<damper joint=\"x\" kv=\"1\"/>"), Code::LimitOrder, "0 and 0"),
+        (actuator("<damper joint=\"x\" kv=\"-1\" ctrlrange=\"0 1\"/>"), Code::Number, "zero or more"),
+        (actuator("<general joint=\"x\" gaintype=\"fix\"/>"), Code::Word, "did you mean \"fixed\""),
+        (tendon("<fixed><joint joint=\"x\"/></fixed>"), Code::MissingAttribute, "coef"),
+        (tendon("<fixed/>"), Code::MissingAttribute, "the joints of the tendon"),
+        (tendon("<fixed><joint joint=\"b\" coef=\"1\"/></fixed>"), Code::Unsupported, "several coordinates"),
+        (tendon("<fixed><joint joint=\"x\" coef=\"1\"/><joint joint=\"x\" coef=\"1\"/></fixed>"), Code::DuplicateName, "each joint once"),
+        (tendon("<fixed springlength=\"2 1\"><joint joint=\"x\" coef=\"1\"/></fixed>"), Code::LimitOrder, "the shorter length first"),
+        (with("", "<equality>\n<joint joint2=\"x\"/>\n</equality>"), Code::MissingAttribute, "joint1"),
+        (with("", "<equality>\n<joint joint1=\"x\" joint2=\"y\"/>\n</equality>"), Code::UnknownName, "the name of a joint"),
+        (key("qpos=\"1 2 3 4 5 6 7\""), Code::WrongCount, "7 numbers"),
+        (key("qvel=\"1 2 3 4 5 6\""), Code::WrongCount, "6 numbers"),
+        (key("ctrl=\"1\""), Code::WrongCount, "1 numbers"),
+        (key("qpos=\"x\""), Code::NotANumber, "\"x\""),
+    ];
+    for (text, code, part) in mistakes {
+        let found = read(text.as_bytes(), &options()).map(|_| ()).expect_err(&text);
+        assert_eq!(found.errors.len(), 1, "{found}\n{text}");
+        assert_eq!((found.errors[0].code, found.errors[0].line()), (code, Some(7)), "{found}");
+        assert!(found.to_string().contains(part), "{part}: {found}");
+    }
+}
+
+/// A free body, turned by a quarter about z, and a ball.
+const FREE: &str = "<mujoco><worldbody><body pos=\"1 2 3\" quat=\"1 0 0 1\"><freejoint name=\"f\"/><geom size=\"1\"/>
+    <body><joint name=\"b\" type=\"ball\"/><geom size=\"1\"/></body></body><body><joint name=\"h\" ref=\"90\"/><geom size=\"1\"/></body></worldbody>";
+
+#[test]
+fn states_are_in_the_conventions_of_the_library() {
+    let text = format!(
+        "{FREE}<actuator><motor joint=\"h\"/><muscle joint=\"h\"/><motor joint=\"h\"/></actuator><keyframe>\n<key name=\"k\" qpos=\"4 5 6 2 0 0 2 0 3 0 0 7\" qvel=\"1 2 3 4 5 6 7 8 9 10\" ctrl=\"1 2 3\"/>\n\
+         <key qpos=\"9\" qvel=\"\"/><key/></keyframe></mujoco>"
+    );
+    let found = accepted(&text).world;
+    let r = FRAC_1_SQRT_2;
+    let home = found.home.unwrap();
+    assert_eq!(home.q[0].0, "f");
+    assert!(near(&home.q[0].1, &[1.0, 2.0, 3.0, 0.0, 0.0, r, r]) && home.q[2] == ("h".to_owned(), vec![FRAC_PI_2]), "{home:?}");
+    assert_eq!(home.q[1].1, [0.0, 0.0, 0.0, 1.0]);
+    let names: Vec<&str> = found.keyframes.iter().map(|key| key.name.as_str()).collect();
+    assert_eq!(names, ["k", "key_1", "key_2"]);
+    let key = &found.keyframes[0];
+    assert!(near(&key.q[0].1, &[4.0, 5.0, 6.0, 0.0, 0.0, r, r]), "{key:?}");
+    assert_eq!((&key.q[1].1, &key.q[2].1), (&vec![1.0, 0.0, 0.0, 0.0], &vec![7.0]));
+    // x of the world is −y of the body, y of the world its x.
+    assert!(near(&key.v[0].1, &[4.0, 5.0, 6.0, 2.0, -1.0, 3.0]), "{key:?}");
+    assert_eq!((&key.v[1].1, &key.v[2].1), (&vec![7.0, 8.0, 9.0], &vec![10.0]));
+    assert_eq!((key.control.as_slice(), key.place.line()), (&[1.0, 3.0][..], Some(3)));
+    // Fewer numbers are completed with those at the start, none are all of those.
+    let key = &found.keyframes[1];
+    assert!(near(&key.q[0].1, &[9.0, 2.0, 3.0, 0.0, 0.0, r, r]) && key.v.is_empty() && key.control.is_empty(), "{key:?}");
+    assert_eq!(found.keyframes[2].q, home.q);
+}
+
+fn near(found: &[f64], expected: &[f64]) -> bool {
+    found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15)
+}
+
+#[test]
+fn the_place_of_a_free_body_is_where_a_motion_starts() {
+    let reading = accepted(&format!("{FREE}</mujoco>"));
+    assert!(reading.unused.iter().all(|unused| !unused.tag.starts_with("body")), "{:?}", reading.unused);
+    let at_rest = accepted("<mujoco><worldbody><body><freejoint/><geom size=\"1\"/></body></worldbody></mujoco>");
+    assert_eq!(at_rest.world.home, None);
+}
+
+#[test]
+fn bounds_of_forces_and_planes_are_read() {
+    let found = world("");
+    assert_eq!(found.joint_forces, [("x".to_owned(), [-4.0, 5.0])]);
+    let text = "<mujoco><worldbody>\n<geom name=\"floor\" type=\"plane\" size=\"1 1 1\"/>\n<body pos=\"0 0 2\" euler=\"90 0 0\"><geom type=\"plane\" size=\"1 1 1\" pos=\"0 1 0\"/>
+        <geom type=\"plane\" size=\"1 1 1\" contype=\"0\" conaffinity=\"0\"/></body><body><joint/><geom size=\"1\"/><geom type=\"plane\" size=\"1 1 1\"/></body></worldbody></mujoco>";
+    let reading = accepted(text);
+    let planes = &reading.world.planes;
+    assert_eq!(planes.len(), 2);
+    assert_eq!(
+        (planes[0].name.as_str(), planes[0].point, planes[0].normal, planes[0].place),
+        ("floor", [0.0; 3], [0.0, 0.0, 1.0], At::Text { line: 2, column: 1 })
+    );
+    assert_eq!((planes[1].point, planes[1].normal), ([0.0, 0.0, 3.0], [0.0, -1.0, 0.0]));
+    assert!(reading.unused.iter().any(|unused| unused.why.contains("a plane that moves")));
+}
+
+/// One file.
+struct File(&'static str);
+
+impl Sources for File {
+    fn read(&self, path: &Path) -> Result<Vec<u8>> {
+        let files = BTreeMap::from([(PathBuf::from("cart.xml"), self.0)]);
+        files.get(path).map(|text| text.as_bytes().to_vec()).ok_or_else(|| Error::new(ErrorKind::NotFound, "no such file"))
+    }
+}
+
+#[test]
+fn attached_models_and_copies_bring_their_actuators() {
+    let cart = "<mujoco><worldbody><body name=\"c\"><joint name=\"a\"/><geom size=\"1\"/></body><body name=\"d\"><joint name=\"b\"/><geom size=\"1\"/></body></worldbody>
+        <tendon><fixed name=\"t\" stiffness=\"1\"><joint joint=\"a\" coef=\"1\"/><joint joint=\"b\" coef=\"2\"/></fixed></tendon>
+        <actuator><motor name=\"m\" joint=\"a\"/><motor name=\"n\" joint=\"b\"/><motor name=\"t\" tendon=\"t\"/></actuator>
+        <equality><joint joint1=\"a\" joint2=\"b\"/></equality><keyframe><key name=\"k\" qpos=\"5 6\" ctrl=\"1 2 3\"/></keyframe></mujoco>";
+    let main = "<mujoco><asset><model name=\"m\" file=\"cart.xml\"/></asset><worldbody>
+        <replicate count=\"2\" sep=\"-\"><body><joint name=\"r\"/><geom size=\"1\"/></body></replicate>
+        <attach model=\"m\" prefix=\"l_\"/><attach model=\"m\" body=\"d\" prefix=\"p_\"/></worldbody>
+        <actuator><motor name=\"r\" joint=\"r\"/><motor name=\"far\" joint=\"l_a\"/></actuator><keyframe><key name=\"own\" ctrl=\"1 2 3 4 5 6 7\"/></keyframe></mujoco>";
+    let found = read_with(&File(cart), main.as_bytes(), &options()).unwrap().world;
+    let drives: Vec<(&str, &str)> = found.actuators.iter().map(|own| (own.name.as_str(), own.drives[0].0.as_str())).collect();
+    // As in MuJoCo: those of the file, then of each copy and attached model in the order of the tree
+    let expected = [("far", "l_a"), ("r-0", "r-0"), ("r-1", "r-1"), ("l_m", "l_a"), ("l_n", "l_b"), ("l_t", "l_a"), ("p_n", "p_b")];
+    assert_eq!(drives, expected);
+    assert_eq!(found.passive.iter().map(|own| own.name.as_str()).collect::<Vec<_>>(), ["l_t"]);
+    assert_eq!((found.couplings.len(), found.couplings[0].0.joint.as_str(), found.couplings[0].1), (1, "l_a", At::Nowhere));
+    let keys: Vec<_> = found.keyframes.iter().map(|key| (key.name.as_str(), key.control.clone())).collect();
+    assert_eq!(keys[0], ("own", vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]));
+    assert_eq!(keys[1], ("l_k", vec![0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 0.0]));
+    assert_eq!(keys.len(), 2);
+    let q: Vec<(&str, f64)> = found.keyframes[1].q.iter().map(|(name, q)| (name.as_str(), q[0])).collect();
+    assert_eq!(q, [("r-0", 0.0), ("r-1", 0.0), ("l_a", 5.0), ("l_b", 6.0), ("p_b", 0.0)]);
+}
