@@ -146,5 +146,16 @@ fn equations_of_the_file_are_couplings_where_the_scene_says_so() {
         "s.toml: coupling: found \"file\", and the robot's file has no linear equations of joints, expected no key coupling, or a table of joints"
     );
     assert_eq!(refused("").unwrap(), 2);
-    assert!(scene("coupling = \"file\"").code.file_coupling);
+    const GRIPPER: &str = "<mujoco><option gravity='0 0 -3.7'/><worldbody>
+      <body name='a'><joint name='one' axis='0 0 1'/><geom size='0.1'/></body>
+      <body name='b'><joint name='two' axis='0 0 1' ref='10'/><geom size='0.1'/></body></worldbody>
+      <equality><joint joint1='two' joint2='one' polycoef='0 -2 0 0 0'/></equality></mujoco>";
+    let built = |text: &str| articulated_scene::Opened::new(scene(text), "g.xml", GRIPPER.into(), Base::Fixed, vec![]).build().unwrap();
+    let (free, coupled) = (built(""), built("coupling = \"file\""));
+    assert_eq!((free.model.nv(), coupled.model.nv()), (2, 1));
+    let warned = |robot: &articulated_scene::BuiltRobot| robot.reading.warnings.iter().filter(|w| w.field == "coupling").count();
+    assert_eq!((warned(&free), warned(&coupled)), (1, 0));
+    let mimic = coupled.reading.description.joints[1].mimic.unwrap();
+    assert_eq!((mimic.joint, mimic.multiplier, mimic.offset), (0, -2.0, 10.0_f64.to_radians()));
+    assert_eq!((free.model.gravity().z, built("gravity = [0, 0, -1]").model.gravity().z), (-3.7, -1.0));
 }

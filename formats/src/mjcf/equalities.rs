@@ -13,7 +13,7 @@ use crate::world::{Loop, World};
 const OFF: &str = "the equation is not active";
 const FLAG: &str = "a flag of <option> turns equations off";
 const LOOP: &str = "loops are not read: the motion does not keep this equation";
-const APPLY: &str = "`coupling = \"file\"`, which applies it: else the motion does not keep this equation";
+const APPLY: &str = "`--coupling file` (key `coupling = \"file\"`, method `Build::file_coupling`), which applies it: else the motion does not keep this equation";
 
 /// Reads all equations.
 pub(crate) fn equalities(scope: &mut Scope<'_>, tendons: &[Tendon], is_off: bool, world: &mut World, log: &mut Diagnostics) {
@@ -36,7 +36,8 @@ pub(crate) fn equalities(scope: &mut Scope<'_>, tendons: &[Tendon], is_off: bool
             let place = scope.place(element);
             match linear(element, &found, polynomial, scope, tendons) {
                 Ok(coupling) => {
-                    scope.warn(element, "", ("an equation of joints", APPLY), log);
+                    // The field is that of the option, which withdraws the warning.
+                    scope.warn(element, "coupling", ("an equation of joints", APPLY), log);
                     world.couplings.push((coupling, place));
                 }
                 Err(kind) => {
