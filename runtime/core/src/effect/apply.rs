@@ -6,7 +6,6 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::places::Places;
-use super::unit::of_length_one;
 use super::{Applied, BodyEffect, Effect, EffectId, Enters, Field, JointEffect, On};
 use crate::Scalar;
 use crate::model::Model;
@@ -212,11 +211,8 @@ impl Model<f64> {
 
 /// The numbers of an effect, with its directions ([`super::Field::is_direction`]) of length one.
 fn with_unit_vectors(effect: &Effect, mut parameters: Vec<f64>) -> Vec<f64> {
-    directions(effect, &mut parameters, |vector| match vector {
-        &mut [x, y, z] => of_length_one([x, y, z]).into_iter().for_each(|unit| vector.copy_from_slice(&unit)),
-        &mut [x, y, z, w] => of_length_one([x, y, z, w]).into_iter().for_each(|unit| vector.copy_from_slice(&unit)),
-        _ => {}
-    });
+    // A direction of zeros is an error already.
+    directions(effect, &mut parameters, |vector| _ = super::unit::normalise(vector));
     parameters
 }
 

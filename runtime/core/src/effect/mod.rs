@@ -330,11 +330,12 @@ pub(crate) struct BallLaw<S: 'static> {
     pub(crate) rest: fn(&[S]) -> Quaternion<S>,
     pub(crate) torque: OnBall<S>,
     pub(crate) slope: OnBall<Dual<S>>,
-    pub(crate) energy: fn(&[S], Vector3<S>) -> S,
-    pub(crate) rise: fn(&[Dual<S>], Vector3<Dual<S>>) -> Dual<S>,
+    pub(crate) energy: StoredOnBall<S>,
+    pub(crate) rise: StoredOnBall<Dual<S>>,
 }
 
 type OnBall<S> = fn(&[S], Vector3<S>, Vector3<S>) -> Vector3<S>;
+type StoredOnBall<S> = fn(&[S], Vector3<S>) -> S;
 type OnFreedom<S> = fn(&[S], S, S) -> S;
 type AtStation<S, T> = fn(&[S], &Station<S>) -> T;
 

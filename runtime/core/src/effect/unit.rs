@@ -4,19 +4,21 @@
 ///
 /// First by the largest of its numbers: squares, and the length itself, may be more or less than a
 /// number can say.
-pub fn unit(vector: [f64; 3]) -> Option<[f64; 3]> {
-    of_length_one(vector)
+pub fn unit(mut vector: [f64; 3]) -> Option<[f64; 3]> {
+    normalise(&mut vector).then_some(vector)
 }
 
-/// As [`unit`], of as many numbers as there are.
-pub(super) fn of_length_one<const N: usize>(vector: [f64; N]) -> Option<[f64; N]> {
+/// As [`unit`], in place and of as many numbers as there are; false where it has no direction, and
+/// is left as it is.
+pub(super) fn normalise(vector: &mut [f64]) -> bool {
     let largest = vector.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     if largest == 0.0 || !vector.iter().all(|x| x.is_finite()) {
-        return None;
+        return false;
     }
-    let scaled = vector.map(|x| x / largest);
-    let length = libm::sqrt(scaled.iter().map(|x| x * x).sum());
-    Some(scaled.map(|x| x / length))
+    vector.iter_mut().for_each(|x| *x /= largest);
+    let length = libm::sqrt(vector.iter().map(|x| x * x).sum());
+    vector.iter_mut().for_each(|x| *x /= length);
+    true
 }
 
 #[cfg(test)]
