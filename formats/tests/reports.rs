@@ -202,7 +202,7 @@ const LOST: &[(&str, &[&str])] = &[
         "<mujoco><equality><connect body1='hook'/></equality><tendon><spatial/></tendon></mujoco>",
         &["<equality>: found a closed loop", "<tendon>: found a spring"],
     ),
-    ("<drake:linear_bushing_rpy/>", &["<drake:linear_bushing_rpy>: found a closed loop"]),
+    ("<drake:linear_bushing_rpy/>", &["<drake:linear_bushing_rpy>: found a spring and damper between two links"]),
     ("<drake:ball_constraint/>", &["<drake:ball_constraint>: found a closed loop"]),
     ("<odd:joint name='d' type='ball'><parent link='hook'/><child link='boom'/></odd:joint>", &["<odd:joint>: found a joint \"d\""]),
     ("<group><link name='ghost'/><joint name='g'/></group>", &["<group>: found 1 links and 1 joints inside <group>"]),

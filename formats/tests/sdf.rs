@@ -330,6 +330,21 @@ fn limits_and_forces_are_kept() {
     }
 }
 
+/// 5.5e-6 · 113.9² = 0.071352655, in the tags of Drake.
+#[test]
+fn a_rotor_behind_its_gear_is_kept() {
+    let tags = "<axis><xyz>0 0 1</xyz></axis><drake:rotor_inertia>5.5e-6</drake:rotor_inertia><drake:gear_ratio>113.9</drake:gear_ratio>";
+    let read = |kind: &str, tags: &str| accepted(&model("1.9", &(link("a", "") + &joint("j", kind, ["world", "a"], tags))));
+    let reading = read("revolute", tags);
+    let found = reading.description.joints[0].dynamics.armature.unwrap();
+    assert!((found - 0.071352655).abs() < 1e-15 && reading.warnings.is_empty(), "{found} {:?}", reading.warnings);
+    assert!(reading.unused.iter().any(|unused| unused.tag == "joint armature") && reading.unused.len() == 1, "{:?}", reading.unused);
+    let negative = read("revolute", &tags.replace("5.5e-6", "-1"));
+    assert!(negative.warnings.len() == 1 && negative.description.joints[0].dynamics.armature.is_none(), "{:?}", negative.warnings);
+    let ball = read("ball", &tags.replace("<axis><xyz>0 0 1</xyz></axis>", ""));
+    assert_eq!(ball.unused.iter().map(|unused| unused.tag.as_str()).collect::<Vec<_>>(), ["drake:rotor_inertia", "drake:gear_ratio"]);
+}
+
 #[test]
 fn a_follower_follows() {
     let content = [

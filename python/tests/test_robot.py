@@ -174,22 +174,22 @@ def test_a_file_that_includes_another(tmp_path):
 def test_a_file_of_xacro_with_arguments_and_packages(tmp_path):
     (tmp_path / "store").mkdir()
     (tmp_path / "store" / "mass.xacro").write_text('<robot><xacro:property name="mass" value="$(arg mass)"/></robot>')
-    text = """<robot name="$(arg side)"><xacro:arg name="side" default="right"/><xacro:arg name="mass" default="1"/>
+    text = """<robot name="arm"><xacro:arg name="side" default="right"/><xacro:arg name="mass" default="1"/>
     <xacro:arg name="long" default="false"/><xacro:include filename="$(find parts)/mass.xacro"/><link name="base"/>
-    <link name="bob"><inertial><origin xyz="0 0 ${-1.0 if '$(arg long)' == 'true' else -0.5}"/><mass value="${mass}"/>
+    <link name="$(arg side)"><inertial><origin xyz="0 0 ${-1.0 if '$(arg long)' == 'true' else -0.5}"/><mass value="${mass}"/>
     <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
-    <joint name="swing" type="continuous"><parent link="base"/><child link="bob"/><axis xyz="0 1 0"/></joint></robot>"""
+    <joint name="swing" type="continuous"><parent link="base"/><child link="$(arg side)"/><axis xyz="0 1 0"/></joint></robot>"""
     path = tmp_path / "arm.xacro"
     path.write_text(text)
     packages = {"parts": tmp_path / "store"}
     robot = articulated.load(path, args={"side": "left", "mass": 2.5, "long": True}, packages=packages)
-    assert robot.name == "left" and robot.moving_mass == 2.5
+    assert robot.links == ("left",) and robot.moving_mass == 2.5
     assert robot.gravity_torque([0.5])[0] == pytest.approx(2.5 * 9.81 * np.sin(0.5))
     default = articulated.load(path, packages=packages)
-    assert (default.name, default.moving_mass) == ("right", 1)
+    assert (default.links, default.moving_mass) == (("right",), 1)
     # Edits and copies keep both.
-    assert robot.lock("swing").name == pickle.loads(pickle.dumps(robot)).name == "left"
-    assert articulated.loads(PENDULUM).append(default, "bob", "a_").nv == 2
+    assert robot.payload("left", 1).moving_mass == 3.5 and pickle.loads(pickle.dumps(robot)).links == ("left",)
+    assert articulated.loads(PENDULUM).append(default, "bob", "a_").lock("a_swing").nv == 1
     with pytest.raises(ValueError, match="found a robot with args, expected one without"):
         robot.append(robot, "bob", "a_")
     with pytest.raises(articulated.RobotError, match="parts"):
@@ -205,8 +205,8 @@ def test_a_file_of_xacro_with_arguments_and_packages(tmp_path):
         with pytest.raises(TypeError) as found:
             articulated.load(path, **options)
         assert message in str(found.value)
-    plain = articulated.loads('<robot name="$(arg side)"><xacro:arg name="side" default="right"/><link name="base"/></robot>', args={"side": "left"})
-    assert plain.name == "left"
+    plain = articulated.loads('<robot name="r"><xacro:arg name="side" default="right"/><link name="$(arg side)"/></robot>', args={"side": "left"})
+    assert plain.frames == ("left",)
 
 
 def test_the_class_makes_no_robots():

@@ -34,7 +34,7 @@ const PLUGIN: &str = "plugins of a simulator are not read";
 const SENSOR: &str = "sensors play no part in the dynamics";
 const WORLD: &str = "of the world, models alone are read";
 const LABEL: &str = "a label that nothing refers to";
-const DYNAMICS: &str = "kept for scenes that turn on such forces; no part of the rigid-body dynamics";
+pub(crate) const DYNAMICS: &str = "kept for scenes that turn on such forces; no part of the rigid-body dynamics";
 const STOP: &str = "the stops of joints are given by the scene";
 const AUTO: &str = "densities count where inertias are computed of shapes, which is not done";
 const MEDIUM: &str = "forces of the medium are given by the scene";
@@ -139,7 +139,7 @@ const ROWS: &[Row] = &[
         names: "joint",
         within: "",
         attributes: "name type",
-        tags: "parent child pose axis axis2 thread_pitch screw_thread_pitch physics",
+        tags: "parent child pose axis axis2 thread_pitch screw_thread_pitch physics drake:rotor_inertia drake:gear_ratio",
         unused: &[("gearbox_ratio gearbox_reference_body", "it belongs to joints of the type gearbox"), ("sensor", SENSOR)],
     },
     Row { names: "physics", within: "joint", attributes: "", tags: "simbody", unused: &[("ode provide_feedback", SIMULATOR)] },

@@ -6,7 +6,7 @@ use articulated_core::description::{JointDynamics, JointKind, Limit};
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 use articulated_core::suggest::Suggester;
 
-use super::grammar::subject;
+use super::grammar::{DYNAMICS, subject};
 use super::names::{Reference, Version, WORLD_NAME};
 use super::values::{bound, exactly, name, number, only, yes};
 use crate::pose::Vector;
@@ -141,7 +141,31 @@ pub(crate) fn joint<'a>(
         }
     }
     let pitch = pitch(element, kind, about, log);
+    if let [axis] = axes.as_mut_slice() {
+        axis.dynamics.armature = armature(element, about, log);
+    } else {
+        let rotor = element.children.iter().filter(|child| ROTOR.contains(&child.name.as_str()));
+        rotor.for_each(|tag| tag.unused(about, None, "a joint of one axis alone has a rotor", log));
+    }
     is_good.then_some(Joint { element, node: 0, kind, parent: parent?, parent_node: 0, child: child?, axes, pitch, is_cut })
+}
+
+/// The inertia of a rotor about its own axis, kg·m², and its gear ratio, as Drake has them.
+const ROTOR: [&str; 2] = ["drake:rotor_inertia", "drake:gear_ratio"];
+
+/// The inertia of the rotor, seen behind its gear.
+fn armature(element: &Element, about: &Subject, log: &mut Diagnostics) -> Option<f64> {
+    let [inertia, gear] = ROTOR.map(|name| number(element, name, about, log));
+    let tag = element.children.iter().find(|child| child.is(ROTOR[0]))?;
+    let (inertia, gear) = (inertia?, gear.unwrap_or(1.0));
+    if inertia < 0.0 || gear == 0.0 {
+        let found = format!("the inertia {inertia} behind the gear ratio {gear}");
+        let expected = "an inertia of at least 0 and a gear ratio other than 0: the inertia of the rotor is not used";
+        tag.warning((about, ROTOR[0]), Code::Negative, found, expected, log);
+        return None;
+    }
+    tag.unused_part(about, (None, "joint armature".to_owned()), DYNAMICS, log);
+    Some(inertia * gear * gear)
 }
 
 fn kind(element: &Element, is_cut: bool, about: &Subject, suggester: &mut Suggester, log: &mut Diagnostics) -> Option<Type> {

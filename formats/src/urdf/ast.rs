@@ -3,6 +3,9 @@
 use articulated_core::description::{Collision, Inertial, JointDynamics, JointKind, Limit, Origin, Visual};
 use articulated_core::diagnostic::{At, Subject};
 
+/// The joint that Drake has for types that the format does not know.
+pub(crate) const DRAKE_JOINT: &str = "drake:joint";
+
 #[derive(Default)]
 pub(crate) struct Draft {
     pub(crate) name: String,

@@ -5,7 +5,7 @@ use articulated_core::description::{JointDynamics, JointKind};
 use articulated_core::diagnostic::{Code, Diagnostics, Place, Subject, quote};
 use articulated_core::suggest::nearest;
 
-use super::ast::{DraftJoint, DraftMimic, Reference, has_one_coordinate};
+use super::ast::{DRAKE_JOINT, DraftJoint, DraftMimic, Reference, has_one_coordinate};
 use super::robot::{Context, Version};
 use super::{frame, limits, unused};
 use crate::xml::element::Tag;
@@ -16,8 +16,6 @@ const TAGS: [&str; 10] = ["origin", "parent", "child", "axis", "axis2", "thread"
 /// Tags that only `<drake:joint>` has.
 const DRAKE_TAGS: [&str; 3] = [DRAKE_PARENT, DRAKE_CHILD, DRAKE_PITCH];
 
-/// The joint that Drake has for types that the format does not know.
-pub(crate) const DRAKE_JOINT: &str = "drake:joint";
 const DRAKE_MIMIC: &str = "drake:mimic";
 const DRAKE_PARENT: &str = "drake:parent";
 const DRAKE_CHILD: &str = "drake:child";

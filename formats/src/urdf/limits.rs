@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 
 use articulated_core::description::{JointDynamics, JointKind, Limit};
 
-use super::joints::DRAKE_JOINT;
+use super::ast::DRAKE_JOINT;
 use super::robot::Version;
 use super::unused;
 use crate::xml::element::Tag;

@@ -45,7 +45,7 @@ fn shown(tag: &Tag<'_>) -> String {
 
 /// What a tag states that is lost, and what is expected in its place.
 fn loss(tag: &Tag<'_>) -> Option<(&'static str, &'static str)> {
-    const LOOPS: [&str; 5] = ["loopjoint", "closedloop", "kinematicloop", "equality", "bushing"];
+    const LOOPS: [&str; 4] = ["loopjoint", "closedloop", "kinematicloop", "equality"];
     let name = letters(tag);
     let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
     if has(&LOOPS) || name.ends_with("constraint") {
@@ -53,6 +53,9 @@ fn loss(tag: &Tag<'_>) -> Option<(&'static str, &'static str)> {
             "a closed loop or a constraint",
             "a tree of joints: it is not closed, and the dynamics are those of the tree without it",
         ));
+    }
+    if has(&["bushing"]) {
+        return Some(("a spring and damper between two links", "none: it is not read, and no such force acts"));
     }
     if is_joint(tag) {
         return Some(("a joint", "<joint> directly inside <robot>: it is not read, and the dynamics are those without it"));

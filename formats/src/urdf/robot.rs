@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::ast::{Draft, DraftLink, PassedOver};
-use super::joints::DRAKE_JOINT;
+use super::ast::{DRAKE_JOINT, Draft, DraftLink, PassedOver};
 use super::{compiler, frame, joint_forces, joints, links, lost, unused, visual};
 use crate::Options;
 use crate::xml::element::Tag;
