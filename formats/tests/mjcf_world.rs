@@ -125,6 +125,10 @@ fn a_range_is_inherited_from_the_joint() {
     assert_eq!(found.control_range, Some([-FRAC_PI_2 / 2.0, FRAC_PI_2 / 2.0]));
     let found = actuator("<position joint=\"x\" inheritrange=\"1.5\"/>");
     assert_eq!(found.control_range, Some([-2.0, 4.0]));
+    // A range that is inherited replaces that of the defaults, also for other kinds.
+    let defaults = "<default><motor ctrlrange=\"0 9\"/><default class=\"a\"><position inheritrange=\"1\"/></default></default>";
+    let found = accepted(&with(defaults, "<actuator><motor joint=\"x\" class=\"a\"/><velocity joint=\"x\"/></actuator>")).world.actuators;
+    assert_eq!((found[0].control_range, found[1].control_range), (None, Some([0.0, 9.0])));
     // What is nearer counts.
     let ranges = [
         ("<position inheritrange=\"1\"/>", "ctrlrange=\"0 9\"", [0.0, 9.0]),

@@ -129,16 +129,6 @@ struct General {
     foreign: Option<String>,
 }
 
-/// The numbers of the law that a tag starts from.
-struct Base {
-    dynamics: Dynamics,
-    gain: Gain,
-    bias: Bias,
-    gains: [f64; 10],
-    biases: [f64; 10],
-    inherit_range: f64,
-}
-
 impl Default for General {
     fn default() -> Self {
         let mut gains = [0.0; 10];
@@ -210,13 +200,12 @@ impl General {
         element.name.clone_into(&mut self.kind);
     }
 
-    /// The numbers that a kind starts from: those of the nearest default of this kind or of
-    /// `<general>`.
-    fn base(&self, kind: &str, above: &[Self]) -> Base {
-        let fits = |own: &&Self| own.kind == kind || own.kind == "general";
-        let Self { dynamics, gain, bias, gains, biases, inherit_range, .. } =
-            Some(self).filter(fits).or_else(|| above.iter().rev().find(fits)).unwrap_or(self).clone();
-        Base { dynamics, gain, bias, gains, biases, inherit_range }
+    /// The numbers that a kind starts from: those of the nearest default of this kind, or of
+    /// `<general>` with a gain of this type.
+    fn base(&self, kind: &str, above: &[Self]) -> Self {
+        let gain = if kind == "damper" { Gain::Affine } else { Gain::Fixed };
+        let fits = |own: &&Self| own.kind == kind || (own.kind == "general" && own.gain == gain);
+        Some(self).filter(fits).or_else(|| above.iter().rev().find(fits)).cloned().unwrap_or_default()
     }
 
     /// The law of the force that a tag stands for.
@@ -234,11 +223,20 @@ impl General {
         let base = self.base(kind, above);
         let fixed = if base.gain == Gain::Fixed { base.gains[0] } else { 1.0 };
         (self.dynamics, self.gain, self.bias, self.foreign) = (Dynamics::None, Gain::Fixed, Bias::None, None);
-        (self.gains, self.biases, self.inherit_range) = ([0.0; 10], [0.0; 10], 0.0);
+        (self.gains, self.biases) = ([0.0; 10], [0.0; 10]);
+        // A number of a kind that is not read, such as the area of a cylinder
+        let foreign = base.foreign.clone().filter(|_| base.gain == Gain::Fixed);
         match kind {
             "motor" => self.gains[0] = 1.0,
-            "position" => self.servo(&base, fixed, values, log),
+            "position" | "intvelocity" => {
+                self.servo(&base, fixed, values, log);
+                self.foreign = foreign;
+                if kind == "intvelocity" {
+                    self.dynamics = Dynamics::State("integrator");
+                }
+            }
             "velocity" => {
+                self.foreign = foreign;
                 let kv = values.number("kv", log).unwrap_or(fixed);
                 (self.gains[0], self.biases[2], self.bias) = (kv, -kv, Bias::Affine);
             }
@@ -266,7 +264,7 @@ impl General {
         }
     }
 
-    fn servo(&mut self, base: &Base, kp: f64, values: &Values<'_>, log: &mut Diagnostics) {
+    fn servo(&mut self, base: &Self, kp: f64, values: &Values<'_>, log: &mut Diagnostics) {
         let kp = values.number("kp", log).unwrap_or(kp);
         let not_negative = |name: &str, log: &mut Diagnostics| {
             let number = values.number(name, log);
@@ -276,7 +274,7 @@ impl General {
             number
         };
         let [kv, ratio, time] = ["kv", "dampratio", "timeconst"].map(|name| not_negative(name, log));
-        let inherited = if base.bias == Bias::Affine { base.biases[2] } else { 0.0 };
+        let inherited = if base.gain == Gain::Fixed { base.biases[2] } else { 0.0 };
         let damping = match (kv, ratio) {
             (Some(_), Some(_)) => {
                 values.error("dampratio", Code::Together, "both kv and dampratio", "one of them", log);
@@ -288,12 +286,15 @@ impl General {
             (None, None) => inherited,
         };
         (self.gains[0], self.biases[1], self.biases[2], self.bias) = (kp, -kp, damping, Bias::Affine);
-        let has_range = values.exactly::<2>("ctrlrange", &mut log.apart()).is_some_and(|range| range != [0.0; 2]);
+        let range: Option<[f64; 2]> = values.exactly("ctrlrange", &mut log.apart());
         let inherited = values.number("inheritrange", log);
-        if has_range && inherited.is_some_and(|part| part > 0.0) {
+        if range.is_some_and(|range| range != [0.0; 2]) && inherited.is_some_and(|part| part > 0.0) {
             values.error("inheritrange", Code::Together, "both ctrlrange and inheritrange", "one of them", log);
         }
-        self.inherit_range = inherited.unwrap_or(if has_range { 0.0 } else { base.inherit_range });
+        if range.is_none() && inherited.is_some_and(|part| part > 0.0) {
+            self.control_range = [0.0; 2];
+        }
+        self.inherit_range = inherited.unwrap_or(if range.is_some() { 0.0 } else { base.inherit_range });
         let filtered = Dynamics::State("filterexact");
         self.dynamics = match time {
             Some(time) if time > 0.0 => filtered,

@@ -2,8 +2,43 @@
 //! fuzz target `mjcf_grammar` is made of it, too.
 
 const IN_BODIES: &[&str] = &["body", "frame", "replicate", "joint", "geom", "site", "inertial", "freejoint", "attach", "include", "camera"];
-const IN_ROOT: &[&str] = &["compiler", "option", "default", "asset", "worldbody", "actuator", "keyframe", "equality"];
-const IN_DEFAULT: &[&str] = &["default", "joint", "geom", "site", "mesh", "motor"];
+const IN_ROOT: &[&str] = &["compiler", "option", "default", "asset", "worldbody", "actuator", "keyframe", "equality", "tendon"];
+const IN_DEFAULT: &[&str] = &["default", "joint", "geom", "site", "mesh", "motor", "position", "tendon", "equality"];
+const IN_ACTUATOR: &[&str] = &["motor", "position", "velocity", "damper", "general", "intvelocity", "muscle", "pid"];
+const IN_EQUALITY: &[&str] = &["joint", "tendon", "connect", "weld"];
+/// Attributes of tags that are beside the bodies.
+const BESIDE: &[&str] = &[
+    "name",
+    "class",
+    "joint",
+    "joint1",
+    "joint2",
+    "tendon",
+    "tendon1",
+    "tendon2",
+    "body1",
+    "site",
+    "coef",
+    "polycoef",
+    "active",
+    "qpos",
+    "qvel",
+    "ctrl",
+    "gear",
+    "kp",
+    "kv",
+    "dampratio",
+    "ctrlrange",
+    "forcerange",
+    "inheritrange",
+    "gainprm",
+    "biastype",
+    "stiffness",
+    "damping",
+    "springlength",
+    "armature",
+    "group",
+];
 const IN_ASSET: &[&str] = &["mesh", "model", "texture", "hfield"];
 const NAMES: &[&str] = &["a", "b", "c", "world", "main", ""];
 const NUMBERS: &[&str] = &["0", "1", "-1", "0.5", "90", "1e-20", "1e300", "3.14159", "-0", "7", "x", "400000"];
@@ -106,9 +141,9 @@ impl Writer<'_> {
         self.out += word;
     }
 
-    fn attributes(&mut self) {
+    fn attributes(&mut self, names: &[&str]) {
         for _ in 0..self.next() % 6 {
-            let name = self.one(ATTRIBUTES);
+            let name = self.one(names);
             let already = format!(" {name}=");
             let tag = self.out.rfind('<').unwrap_or_default();
             if self.out[tag..].contains(&already) {
@@ -130,17 +165,22 @@ impl Writer<'_> {
         }
     }
 
-    fn tags(&mut self, names: &[&str], depth: usize) {
+    fn tags(&mut self, names: &[&str], attributes: &[&str], depth: usize) {
         while !self.bytes.is_empty() && !self.next().is_multiple_of(5) {
             let name = self.one(names);
             self.out += &format!("<{name}");
-            self.attributes();
+            self.attributes(attributes);
             self.out.push('>');
             if depth < 20 {
                 match name {
-                    "worldbody" | "body" | "frame" | "replicate" => self.tags(IN_BODIES, depth + 1),
-                    "default" => self.tags(IN_DEFAULT, depth + 1),
-                    "asset" => self.tags(IN_ASSET, depth + 1),
+                    "worldbody" | "body" | "frame" | "replicate" => self.tags(IN_BODIES, ATTRIBUTES, depth + 1),
+                    "default" => self.tags(IN_DEFAULT, ATTRIBUTES, depth + 1),
+                    "asset" => self.tags(IN_ASSET, ATTRIBUTES, depth + 1),
+                    "actuator" => self.tags(IN_ACTUATOR, BESIDE, depth + 1),
+                    "equality" if depth == 0 => self.tags(IN_EQUALITY, BESIDE, depth + 1),
+                    "tendon" if depth == 0 => self.tags(&["fixed", "spatial"], BESIDE, depth + 1),
+                    "fixed" => self.tags(&["joint"], BESIDE, depth + 1),
+                    "keyframe" => self.tags(&["key"], BESIDE, depth + 1),
                     _ => {}
                 }
             }
@@ -153,7 +193,7 @@ impl Writer<'_> {
 pub(crate) fn document(bytes: &[u8]) -> String {
     let mut writer = Writer { bytes, out: "<mujoco>".to_owned() };
     while !writer.bytes.is_empty() {
-        writer.tags(IN_ROOT, 0);
+        writer.tags(IN_ROOT, ATTRIBUTES, 0);
     }
     writer.out + "</mujoco>"
 }
