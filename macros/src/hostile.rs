@@ -11,7 +11,7 @@ const SEEDS: [&str; 3] = [
 ];
 
 /// Words that an invocation may have in a place where they are wrong.
-const WORDS: [&str; 25] = [
+const WORDS: [&str; 26] = [
     "=",
     ",",
     "{",

@@ -163,7 +163,7 @@ def run(scene, model, *options):
             raise RuntimeError(next((line for line in runs[0].stderr.splitlines() if "error" in line), runs[0].stderr))
         with open(Path(folder) / "recording.csv", newline="") as opened:
             rows = list(csv.reader(opened))
-        seconds = min(1 / json.loads(one.stdout)["simulated_seconds_per_second"] for one in runs)
+        seconds = min(1 / json.loads(one.stdout)["simulated_s_per_wall_s"] for one in runs)
     last = [float(x) for name, x in zip(rows[0], rows[-1]) if name.startswith("q.")]
     q = np.zeros(model.nq)
     q[order(model)] = last
