@@ -132,8 +132,8 @@ pub(crate) enum Command {
         "articulated simulate chain --against target/peers/peers.json",
     ]))]
     Simulate(SimulateArguments),
-    /// Says which effects of a scene are on and off, what of the robot's file is not used, and what each
-    /// effect costs
+    /// Says which effects of a scene are on and off, what of the robot's file is not used, and what
+    /// each effect costs
     #[command(after_help = examples(&[
         "articulated effects golf_swing",
         "articulated effects arm.toml --time",

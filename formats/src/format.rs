@@ -23,7 +23,8 @@ pub trait Format: Sync + std::panic::RefUnwindSafe {
         false
     }
 
-    /// The robot of a document, and its world. Reports all findings; `None` if there is an error, or no robot.
+    /// The robot of a document, and its world. Reports all findings; `None` if there is an error,
+    /// or no robot.
     fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Document>;
 }
 

@@ -224,8 +224,8 @@ fn a_capsule_is_collision_geometry_and_appearance() {
     assert_eq!((&link.collision[0].shape, &link.visual[0].shape), (&shape, &shape));
 }
 
-/// MuJoCo's compiler changes inertias; where it would leave those of this robot as they are, nothing
-/// is reported.
+/// MuJoCo's compiler changes inertias; where it would leave those of this robot as they are,
+/// nothing is reported.
 #[test]
 fn settings_of_mujoco_that_change_inertias_are_warned_of() {
     let count = |setting: &str| {

@@ -85,8 +85,8 @@ mod tree;
 ///
 /// Names of links and joints are words, or they are in quotation marks. Edits happen in this order:
 /// append robots, attach payloads, lock joints. Beside a scene, `motion` in `functions` means all
-/// functions that the motion of the scene calls. The macro runs again when a robot file or the scene
-/// changes. A build script (`articulated_codegen::Build`) generates the same code, to read and to
+/// functions that the motion of the scene calls. The macro runs again when a robot file or the
+/// scene changes. A build script (`articulated_codegen::Build`) generates the same code, to read and to
 /// step through.
 ///
 /// # Parameters

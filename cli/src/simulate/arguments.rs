@@ -9,8 +9,8 @@ use crate::arguments::Package;
 #[derive(Args, Debug, Default)]
 #[command(group = ArgGroup::new("written").args(["output", "mcap"]).multiple(true))]
 pub(crate) struct SimulateArguments {
-    /// A bundled scene's name, the path of a scene, or the path of a robot's file (MJCF, SDF, URDF),
-    /// whose smooth motion is simulated
+    /// A bundled scene's name, the path of a scene, or the path of a robot's file (URDF, xacro, MJCF
+    /// or SDF), whose smooth motion is simulated
     #[arg(value_name = "SCENE", required_unless_present = "all")]
     pub(crate) scene: Option<PathBuf>,
     /// Print the scene that a robot's file is simulated as, to begin a scene of your own

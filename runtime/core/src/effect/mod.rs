@@ -181,8 +181,8 @@ pub struct Effect {
     pub source: &'static str,
     /// Its parameters, in order.
     pub fields: &'static [Field],
-    /// Those on a ball joint, in order, if the law on it is another one; each has the name of one of
-    /// `fields`.
+    /// Those on a ball joint, in order, if the law on it is another one; each has the name of one
+    /// of `fields`.
     pub ball_fields: Option<&'static [Field]>,
 }
 
