@@ -412,7 +412,7 @@ fn attached_models_and_copies_bring_their_actuators() {
         <actuator><motor name=\"r\" joint=\"r\"/><motor name=\"far\" joint=\"l_a\"/></actuator><keyframe><key name=\"own\" ctrl=\"1 2 3 4 5 6 7\"/></keyframe></mujoco>";
     let found = read_with(&File(cart), main.as_bytes(), &options()).unwrap().world;
     let drives: Vec<(&str, &str)> = found.actuators.iter().map(|own| (own.name.as_str(), own.drives[0].0.as_str())).collect();
-    // As in MuJoCo: those of the file, then of each copy and attached model in the order of the tree
+    // As in MuJoCo: those of the file, then of each copy and attached model in order of the tree
     let expected = [("far", "l_a"), ("r-0", "r-0"), ("r-1", "r-1"), ("l_m", "l_a"), ("l_n", "l_b"), ("l_t", "l_a"), ("p_n", "p_b")];
     assert_eq!(drives, expected);
     assert_eq!(found.passive.iter().map(|own| own.name.as_str()).collect::<Vec<_>>(), ["l_t"]);

@@ -568,7 +568,7 @@ fn damp(
     let of_tendon = |tendon: &Tendon| (tendon.armature, tendon.terms.iter().map(|(joint, factor)| (*joint, vec![*factor])).collect());
     let all: Vec<(f64, Drives)> = armatures.iter().cloned().chain(tendons.iter().map(of_tendon)).collect();
     let is_known = tendons.iter().all(|tendon| tendon.armature == 0.0 || !tendon.terms.is_empty());
-    let inertia = if is_known && log.is_ok() { Inertia::at_reference(description, scope, &all) } else { None };
+    let inertia = if is_known && log.is_ok() { Inertia::at_reference(ratios.len(), description, scope, &all) } else { None };
     for (index, element) in ratios {
         let mass = inertia.as_ref().and_then(|inertia| inertia.reflected(&drives_of[*index]));
         let actuator = &mut world.actuators[*index];
