@@ -113,6 +113,10 @@ fn the_law_comes_from_a_default_of_the_same_kind_or_of_general() {
         "<position kp=\"5\"/><default class=\"a\"><velocity kv=\"3\"/><default class=\"c\"><motor gear=\"2\"/></default></default>";
     assert_eq!(law(nested, "<position joint=\"h\" class=\"c\"/>"), ([5.0, 0.0, 0.0], [0.0, -5.0, 0.0]));
     assert_eq!(law(nested, "<velocity joint=\"h\" class=\"c\"/>"), ([3.0, 0.0, 0.0], [0.0, 0.0, -3.0]));
+    // Numbers of a kind that is not read are not taken.
+    let text =
+        with("<default><cylinder area=\"5\"/><general biastype=\"none\"/></default>", "<actuator><velocity joint=\"h\"/></actuator>");
+    assert_eq!(accepted(&text).world.actuators, []);
     // Gear and bounds are those of any kind.
     let text = with("<default><motor gear=\"4\" ctrlrange=\"-1 1\"/></default>", "<actuator><velocity joint=\"h\"/></actuator>");
     let found = &accepted(&text).world.actuators[0];

@@ -232,7 +232,7 @@ impl General {
         (self.dynamics, self.gain, self.bias, self.foreign) = (Dynamics::None, Gain::Fixed, Bias::None, None);
         (self.gains, self.biases) = ([0.0; 10], [0.0; 10]);
         // A number of a kind that is not read, such as the area of a cylinder
-        let foreign = base.foreign.clone().filter(|_| base.gain == Gain::Fixed);
+        let foreign = base.foreign.clone();
         match kind {
             "motor" => self.gains[0] = 1.0,
             "position" | "intvelocity" => {
@@ -249,7 +249,7 @@ impl General {
             }
             "damper" => {
                 let kv = values.number("kv", log).unwrap_or(if base.gain == Gain::Affine { -base.gains[2] } else { 0.0 });
-                (self.gains[2], self.gain, self.control_limited) = (-kv, Gain::Affine, Some(true));
+                (self.gains[2], self.gain, self.control_limited, self.foreign) = (-kv, Gain::Affine, Some(true), foreign);
                 if kv < 0.0 {
                     values.error("kv", Code::Number, format!("{kv}"), "zero or more", log);
                 }
