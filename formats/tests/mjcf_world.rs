@@ -113,6 +113,10 @@ fn the_law_comes_from_a_default_of_the_same_kind_or_of_general() {
         "<position kp=\"5\"/><default class=\"a\"><velocity kv=\"3\"/><default class=\"c\"><motor gear=\"2\"/></default></default>";
     assert_eq!(law(nested, "<position joint=\"h\" class=\"c\"/>"), ([5.0, 0.0, 0.0], [0.0, -5.0, 0.0]));
     assert_eq!(law(nested, "<velocity joint=\"h\" class=\"c\"/>"), ([3.0, 0.0, 0.0], [0.0, 0.0, -3.0]));
+    // Numbers of a kind that is not read are not taken.
+    let text =
+        with("<default><cylinder area=\"5\"/><general biastype=\"none\"/></default>", "<actuator><velocity joint=\"h\"/></actuator>");
+    assert_eq!(accepted(&text).world.actuators, []);
     // Gear and bounds are those of any kind.
     let text = with("<default><motor gear=\"4\" ctrlrange=\"-1 1\"/></default>", "<actuator><velocity joint=\"h\"/></actuator>");
     let found = &accepted(&text).world.actuators[0];
@@ -412,7 +416,7 @@ fn attached_models_and_copies_bring_their_actuators() {
         <actuator><motor name=\"r\" joint=\"r\"/><motor name=\"far\" joint=\"l_a\"/></actuator><keyframe><key name=\"own\" ctrl=\"1 2 3 4 5 6 7\"/></keyframe></mujoco>";
     let found = read_with(&File(cart), main.as_bytes(), &options()).unwrap().world;
     let drives: Vec<(&str, &str)> = found.actuators.iter().map(|own| (own.name.as_str(), own.drives[0].0.as_str())).collect();
-    // As in MuJoCo: those of the file, then of each copy and attached model, in the tree's order
+    // As in MuJoCo: those of the file, then of each copy and attached model in order of the tree
     let expected = [("far", "l_a"), ("r-0", "r-0"), ("r-1", "r-1"), ("l_m", "l_a"), ("l_n", "l_b"), ("l_t", "l_a"), ("p_n", "p_b")];
     assert_eq!(drives, expected);
     assert_eq!(found.passive.iter().map(|own| own.name.as_str()).collect::<Vec<_>>(), ["l_t"]);

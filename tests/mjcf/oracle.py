@@ -326,7 +326,7 @@ def joints(model, spec, robot, armature, differ, np):
             differ("limits", 1, 0, 1.0)
 
 
-def write(rows, worst, counts):
+def write(rows, worst, things):
     """The table for people."""
     out = ["# MJCF files of Python packages", "", "Written by `python3 tests/mjcf/oracle.py --write`; [mjcf.md](mjcf.md) says what is compared.", ""]
     out += ["| package | files | MuJoCo compiles | read here | equal |", "| --- | ---: | ---: | ---: | ---: |"]
@@ -339,7 +339,7 @@ def write(rows, worst, counts):
         out.append("| " + " | ".join([name, *map(str, counts)]) + " |")
     out.append("| " + " | ".join(["**all**", *map(str, total)]) + " |")
     out += ["", "Largest differences: " + ", ".join(f"{key} {value:.1e}" for key, value in sorted(worst.items())) + ".", ""]
-    out += ["Compared: " + ", ".join(f"{key} {value}" for key, value in sorted(counts.items())) + ".", ""]
+    out += ["Compared: " + ", ".join(f"{key} {value}" for key, value in sorted(things.items())) + ".", ""]
     out += ["Files that MuJoCo refuses are parts of others, or their meshes are not in the package.", ""]
     for name, files in rows.items():
         out += [f"## {name}", "", "| file | verdict |", "| --- | --- |"]

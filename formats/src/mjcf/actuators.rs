@@ -4,6 +4,9 @@
 //! numbers of the law (`kp`, `kv`) come from a default of the same kind or of `<general>`, of the
 //! nearest class that has one.
 
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
 use articulated_core::description::Description;
 use articulated_core::diagnostic::{Code, Diagnostics, Subject};
 
@@ -157,10 +160,9 @@ impl Default for General {
 }
 
 impl General {
-    /// The numbers of the default class of a tag, then of the tag.
-    fn of(element: &Element, settings: &Settings<'_>, log: &mut Diagnostics) -> Self {
-        let class = settings.classes.find(element, "class", log).unwrap_or(0);
-        // A mistake in a default is one error, not one for each actuator.
+    /// The defaults of a class and of the classes above, the farthest first.
+    fn defaults(class: usize, settings: &Settings<'_>, log: &mut Diagnostics) -> Vec<Self> {
+        // A mistake in a default is one error, not one for each class below.
         let mut own = log.apart();
         let mut above = vec![Self::default()];
         for tags in settings.classes.lineage(class) {
@@ -168,10 +170,15 @@ impl General {
             tags.iter().filter(|tag| is_actuator(&tag.name)).for_each(|tag| state.apply(tag, &above, &mut own));
             above.push(state);
         }
-        let mut all = above.last().cloned().unwrap_or_default();
-        all.apply(element, &above, &mut own);
         own.errors.retain(|error| !log.errors.contains(error));
         log.take(own);
+        above
+    }
+
+    /// The numbers of the default class of a tag, then of the tag.
+    fn of(element: &Element, above: &[Self], log: &mut Diagnostics) -> Self {
+        let mut all = above.last().cloned().unwrap_or_default();
+        all.apply(element, above, log);
         all
     }
 
@@ -225,7 +232,7 @@ impl General {
         (self.dynamics, self.gain, self.bias, self.foreign) = (Dynamics::None, Gain::Fixed, Bias::None, None);
         (self.gains, self.biases) = ([0.0; 10], [0.0; 10]);
         // A number of a kind that is not read, such as the area of a cylinder
-        let foreign = base.foreign.clone().filter(|_| base.gain == Gain::Fixed);
+        let foreign = base.foreign.clone();
         match kind {
             "motor" => self.gains[0] = 1.0,
             "position" | "intvelocity" => {
@@ -242,7 +249,7 @@ impl General {
             }
             "damper" => {
                 let kv = values.number("kv", log).unwrap_or(if base.gain == Gain::Affine { -base.gains[2] } else { 0.0 });
-                (self.gains[2], self.gain, self.control_limited) = (-kv, Gain::Affine, Some(true));
+                (self.gains[2], self.gain, self.control_limited, self.foreign) = (-kv, Gain::Affine, Some(true), foreign);
                 if kv < 0.0 {
                     values.error("kv", Code::Number, format!("{kv}"), "zero or more", log);
                 }
@@ -411,6 +418,8 @@ pub(crate) fn actuators(
     // Actuators with a ratio of damping instead of a coefficient
     let mut ratios: Vec<(usize, &Element)> = Vec::new();
     let mut drives_of: Vec<Drives> = Vec::new();
+    // Of each class of each document
+    let mut defaults: BTreeMap<(*const Settings<'_>, usize), Vec<General>> = BTreeMap::new();
     let mut number = 0;
     for index in 0..scope.tree.parts.len() {
         if scope.is_full() {
@@ -420,7 +429,9 @@ pub(crate) fn actuators(
         for element in part.settings.actuators.iter().copied().filter(|element| is_actuator(&element.name)) {
             let references = references(element, log);
             let Some(found) = scope.resolve(index, element, &references, log) else { continue };
-            let general = General::of(element, &part.settings, log);
+            let class = part.settings.classes.find(element, "class", log).unwrap_or(0);
+            let of_class = defaults.entry((Rc::as_ptr(&part.settings), class));
+            let general = General::of(element, of_class.or_insert_with(|| General::defaults(class, &part.settings, log)), log);
             let name = scope.full(index, element).unwrap_or_else(|| format!("actuator_{number}"));
             number += 1;
             let found = references.first().zip(found.first()).map(|((_, field, _), at)| (*field, *at));
@@ -568,7 +579,7 @@ fn damp(
     let of_tendon = |tendon: &Tendon| (tendon.armature, tendon.terms.iter().map(|(joint, factor)| (*joint, vec![*factor])).collect());
     let all: Vec<(f64, Drives)> = armatures.iter().cloned().chain(tendons.iter().map(of_tendon)).collect();
     let is_known = tendons.iter().all(|tendon| tendon.armature == 0.0 || !tendon.terms.is_empty());
-    let inertia = if is_known && log.is_ok() { Inertia::at_reference(description, scope, &all) } else { None };
+    let inertia = if is_known && log.is_ok() { Inertia::at_reference(ratios.len(), description, scope, &all) } else { None };
     for (index, element) in ratios {
         let mass = inertia.as_ref().and_then(|inertia| inertia.reflected(&drives_of[*index]));
         let actuator = &mut world.actuators[*index];

@@ -11,6 +11,8 @@ pub(crate) type Drives = Vec<(usize, Vec<f64>)>;
 
 /// More degrees of freedom are not factored.
 const MOST: usize = 1000;
+/// More products are not computed.
+const MOST_PRODUCTS: usize = 2_000_000_000;
 
 /// The mass matrix at the reference state, with armature, as L·Lᵀ.
 pub(crate) struct Inertia {
@@ -22,12 +24,12 @@ pub(crate) struct Inertia {
 }
 
 impl Inertia {
-    /// `armatures`: each with the lengths that it is on. `None` if the matrix is not positive
-    /// definite, or very large.
-    pub(crate) fn at_reference(description: &Description, scope: &Scope<'_>, armatures: &[(f64, Drives)]) -> Option<Self> {
+    /// For so many actuators. `armatures`: each with the lengths that it is on. `None` if the
+    /// matrix is not positive definite, or very large.
+    pub(crate) fn at_reference(count: usize, description: &Description, scope: &Scope<'_>, armatures: &[(f64, Drives)]) -> Option<Self> {
         let model: Model<f64> = Model::new(description, Base::Fixed).ok()?;
         let (n, mut q) = (model.nv(), vec![0.0; model.nq()]);
-        if n > MOST {
+        if n > MOST || n * n * (n + count) > MOST_PRODUCTS {
             return None;
         }
         let mut starts = Vec::with_capacity(scope.joints.len());

@@ -11,6 +11,8 @@ use crate::pose::{IDENTITY, scalar_last};
 
 /// Actuators, tendons and equations may have so many references, those of copies among them.
 const MOST: usize = 1_000_000;
+/// So many mistakes have hints.
+const HINTS: usize = 100;
 
 /// What a name is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -142,7 +144,8 @@ impl<'a> Scope<'a> {
             let unknown =
                 |(sort, _, own): &&(Sort, &'static str, &str)| !self.own.contains(&(*sort, *own)) && self.find(part, *sort, own).is_none();
             if let Some((sort, field, own)) = references.iter().find(unknown) {
-                let names = self.names.keys().filter(|(known, _)| known == sort).map(|(_, name)| name.as_str());
+                // A search for the nearest name of each of very many mistakes takes too long.
+                let names = self.names.keys().filter(|(known, _)| known == sort && log.errors.len() < HINTS).map(|(_, name)| name.as_str());
                 let hint = nearest(own, names).map(|near| format!(" (did you mean {near:?}?)")).unwrap_or_default();
                 let expected = format!("the name of a {}{hint}", sort.name());
                 element.error((&Subject::Document, field), Code::UnknownName, quote(own), expected, log);
