@@ -31,6 +31,9 @@ import zipfile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from virtual_environment import python_of  # noqa: E402
+
 REPOSITORY = HERE.parent.parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
 PLACE = TARGET / "sdf"
@@ -81,15 +84,7 @@ def parse():
 
 def environment():
     """The Python with Drake."""
-    folder = PLACE / "python"
-    python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
-    done = folder / "requirements.txt"
-    wanted = (HERE / "requirements.txt").read_text()
-    if not done.exists() or done.read_text() != wanted:
-        subprocess.run([sys.executable, "-m", "venv", "--clear", folder], check=True)
-        subprocess.run([python, "-m", "pip", "install", "--quiet", "-r", HERE / "requirements.txt"], check=True)
-        done.write_text(wanted)
-    return python
+    return python_of(PLACE / "python", HERE / "requirements.txt")
 
 
 def build():

@@ -25,6 +25,9 @@ import types
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from virtual_environment import python_of  # noqa: E402
+
 REPOSITORY = HERE.parent.parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
 PLACE = TARGET / "xacro"
@@ -70,12 +73,8 @@ def prepare():
 
 
 def environment():
-    folder = PLACE / "venv"
-    python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
-    if not python.exists():
-        subprocess.run([sys.executable, "-m", "venv", str(folder)], check=True)
-        subprocess.run([str(python), "-m", "pip", "install", "-q", "-r", str(HERE / "requirements.txt")], check=True)
-    return python
+    """The Python with PyPI's xacro."""
+    return python_of(PLACE / "venv", HERE / "requirements.txt")
 
 
 def chosen(arguments):
