@@ -136,6 +136,27 @@ fn a_step_may_be_that_of_the_file() {
 }
 
 #[test]
+fn what_a_scene_does_not_take_from_the_file_is_listed() {
+    const MODEL: &str = "<mujoco><option timestep='0.005'/><worldbody><body><joint name='j'/><geom size='0.1'/></body></worldbody>
+      <actuator><motor joint='j'/></actuator>
+      <keyframe><key name='k' qpos='1'/><key qpos='2'/></keyframe></mujoco>";
+    let unused = |text: &str| {
+        let built = articulated_scene::Opened::new(scene(text), "m.xml", MODEL.into(), Base::Fixed, vec![]).build().unwrap();
+        built.reading.unused.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    let all = unused("");
+    for part in [
+        "line 2: actuator: one actuator: used in scenes with control = { kind = \"actuators\" }",
+        "line 3: keyframe: 2 states: used in scenes with initial = { keyframe = … }",
+        "option timestep: 0.005 s: used in scenes with simulation = { step = \"file\" }",
+    ] {
+        assert!(all.iter().any(|line| line.contains(part)), "{part} in {all:#?}");
+    }
+    let text = "control = { kind = \"actuators\" }\ninitial = { keyframe = \"k\" }\nsimulation = { end = 1, integrator = \"rk4\", step = \"file\" }";
+    assert_eq!(unused(text), Vec::<String>::new());
+}
+
+#[test]
 fn equations_of_the_file_are_couplings_where_the_scene_says_so() {
     let refused = |text: &str| {
         articulated_scene::Opened::new(scene(text), "r.urdf", ROBOT.into(), Base::Fixed, vec![]).build().map(|robot| robot.model.nv())

@@ -34,6 +34,14 @@ const PLUGIN: &str = "plugins of a simulator are not read";
 const SENSOR: &str = "sensors play no part in the dynamics";
 const WORLD: &str = "of the world, models alone are read";
 const LABEL: &str = "a label that nothing refers to";
+/// Tags of forces at joints, with the names by which effects take their numbers.
+const FORCES: [(&str, &str); 4] = [
+    ("damping", "dynamics damping"),
+    ("friction", "dynamics friction"),
+    ("spring_stiffness", "joint stiffness"),
+    ("spring_reference", "joint springref"),
+];
+
 pub(crate) const DYNAMICS: &str = "kept for scenes that turn on such forces; no part of the rigid-body dynamics";
 const STOP: &str = "the stops of joints are given by the scene";
 const AUTO: &str = "densities count where inertias are computed of shapes, which is not done";
@@ -181,11 +189,11 @@ pub(crate) fn check(root: &Element, log: &mut Diagnostics) {
         };
         attributes(element, row, &subject, &mut suggester, log);
         if row.names == "dynamics" {
-            element
-                .children
-                .iter()
-                .filter(|child| has(row.tags, &child.name))
-                .for_each(|child| child.unused(&subject, None, DYNAMICS, log));
+            for (child, (_, tag)) in
+                element.children.iter().filter_map(|child| Some((child, FORCES.iter().find(|(name, _)| child.is(name))?)))
+            {
+                child.unused_part(&subject, (None, (*tag).to_owned()), DYNAMICS, log);
+            }
         }
         if row.names == "collision" {
             element.unused(&subject, None, COLLISION, log);

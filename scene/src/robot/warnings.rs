@@ -4,12 +4,13 @@ use std::collections::HashSet;
 
 use articulated_core::Plain;
 use articulated_core::description::{Collision, ContactSphere, PrincipalMoments};
-use articulated_core::diagnostic::{At, Code, Diagnostic, Place, Subject};
+use articulated_core::diagnostic::{At, Code, Diagnostic, Place, Subject, Unused};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
 use articulated_formats::Reading;
 
 use super::build::Editing;
+use crate::control::Drive;
 use crate::effects::{indices, still};
 
 /// The sun has 274 m/s².
@@ -47,6 +48,36 @@ impl Editing<'_> {
         self.warn_of_loads();
         self.warn_of_moments();
         self.leave_what_is_used(effects);
+        self.report_world();
+    }
+
+    /// Lists what the file says beside the robot and the scene does not ask for.
+    fn report_world(&mut self) {
+        let (Reading { world, unused, .. }, scene) = (&mut self.reading, self.request.scene);
+        let is_driven = scene.is_some_and(|scene| matches!(scene.control.drive, Drive::Actuators(_)));
+        let is_placed = scene.is_some_and(|scene| scene.initial.keyframe.is_some());
+        let is_stepped = scene.and_then(|scene| scene.simulation.as_ref()).is_some_and(|simulation| simulation.file_step.is_some());
+        let count = |n: usize, what: &str| if n == 1 { format!("one {what}") } else { format!("{n} {what}s") };
+        let mut list = |tag: &str, place: At, why: String| {
+            unused.push(Unused { line: place.line(), subject: Subject::Document, tag: tag.to_owned(), why });
+        };
+        let control = "used in scenes with control = { kind = \"actuators\" }";
+        for (tag, all, what) in [("actuator", &world.actuators, "actuator"), ("tendon", &world.passive, "spring or damper of tendon")] {
+            if let Some(first) = all.first().filter(|_| !is_driven) {
+                list(tag, first.place, format!("{}: {control}", count(all.len(), what)));
+            }
+        }
+        if let Some(first) = world.keyframes.first().filter(|_| !is_placed) {
+            list(
+                "keyframe",
+                first.place,
+                format!("{}: used in scenes with initial = {{ keyframe = … }}", count(world.keyframes.len(), "state")),
+            );
+        }
+        if let Some(step) = world.step.filter(|_| !is_stepped) {
+            let why = format!("{} s: used in scenes with simulation = {{ step = \"file\" }}", Plain(step));
+            list("option timestep", At::Nowhere, why);
+        }
     }
 
     /// Mass behind a shaft moves, and so does what the shaft has taken for its own.
