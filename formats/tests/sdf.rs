@@ -325,7 +325,7 @@ fn limits_and_forces_are_kept() {
     let dynamics = joint.dynamics;
     assert_eq!([dynamics.damping, dynamics.friction, dynamics.stiffness, dynamics.rest], [1.0, 2.0, 3.0, 0.5].map(Some));
     let unused: Vec<&str> = reading.unused.iter().map(|unused| unused.tag.as_str()).collect();
-    for tag in ["damping", "friction", "spring_stiffness", "spring_reference", "stiffness"] {
+    for tag in ["dynamics damping", "dynamics friction", "joint stiffness", "joint springref", "stiffness"] {
         assert!(unused.contains(&tag), "{tag} {unused:?}");
     }
 }
