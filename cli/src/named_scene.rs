@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use articulated_codegen::nearest;
 use articulated_codegen::scene::{self, Bundled, Prepared, Scene};
-use articulated_formats::Formats;
+use articulated_formats::{FORMATS, Formats, MOST_BYTES, read_file};
 use articulated_lab::session::Session;
 use articulated_scene::folder_of;
 
@@ -37,9 +37,15 @@ pub(crate) fn open(path: &Path) -> Result<(Prepared, PathBuf), Failure> {
     Ok((scene::open(path, &robots())?, path.parent().map(Path::to_owned).unwrap_or_default()))
 }
 
-/// Whether a path is a robot's file, which [`robot_scene`] makes a scene of.
+/// Whether a path is a robot's file, by its ending or its content: [`robot_scene`] makes a scene of
+/// it.
 pub(crate) fn is_robot(path: &Path) -> bool {
-    path.is_file() && path.extension().is_some_and(|ending| Formats::default().has_ending(&ending.to_string_lossy()))
+    if !path.is_file() || ends_with(path, "toml") {
+        return false;
+    }
+    let has_ending = path.extension().is_some_and(|ending| Formats::default().has_ending(&ending.to_string_lossy()));
+    let recognized = |bytes: Vec<u8>| FORMATS.iter().any(|format| format.recognizes(&bytes));
+    has_ending || read_file(path, MOST_BYTES).is_ok_and(recognized)
 }
 
 /// The scene with its robot. Warnings about the robot are printed.

@@ -394,7 +394,7 @@ end = 5.0
     assert_eq!(printed, expected);
     // Lines that are comments work as well. The servo holds the arm where kp (u − q) is its weight.
     let scene = printed.replace("\n# limit", "\nlimit").replace("\n# keyframe", "\nkeyframe");
-    let scene = scene.replace("\n# integrator", "\nintegrator").replace("\n# step", "\nstep");
+    let scene = scene.replace("\n# integrator = \"semi_implicit_euler\"", "\nintegrator = \"rk4\"").replace("\n# step", "\nstep");
     let scene = scene.replace("ctrl.\"servo\" = 0.0", "ctrl.\"servo\" = 0.5").replace("end = 5.0", "end = 20.0");
     std::fs::write(Path::new(file.name()).with_extension("toml"), scene).unwrap();
     let toml = Path::new(file.name()).with_extension("toml");
@@ -427,6 +427,9 @@ fn what_cannot_be_found_or_run_is_said() {
     for command in ["simulate", "effects"] {
         assert_eq!(run(&[command, urdf.name()]).status, 0, "{command}");
     }
+    // The content tells what it is.
+    let xacro = File::new("arm.xacro", b"<robot name='arm'><link name='base'/></robot>");
+    assert_eq!(run(&["simulate", xacro.name()]).status, 0);
     let ended = run(&["simulate", "pendulum", "--print-scene"]);
     assert!(ended.status == 1 && ended.err.contains("--print-scene: found no file of a robot"), "{}", ended.err);
     let ended = run(&["simulate", "pendulum", "-o", urdf.name()]);

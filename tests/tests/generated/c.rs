@@ -216,7 +216,7 @@ fn c_gives_what_the_generic_library_gives() {
 }
 
 /// With products and sums rounded one after the other, only sines of the two mathematical libraries
-/// may differ.
+/// may differ. Solutions for many columns are a loop beside the graph, which has no result of them.
 #[test]
 fn c_computes_what_the_graph_does() {
     for robot in ROBOTS.iter().filter(|r| !r.generated.level.is_single()) {
@@ -227,7 +227,9 @@ fn c_computes_what_the_graph_does() {
                 let expected = graph.evaluate(|argument, k| given[argument][k]);
                 let scale = expected.iter().fold(f64::MIN_POSITIVE, |max: f64, x| max.max(x.abs()));
                 let far = expected.iter().zip(&found).map(|(a, b)| (a - b).abs() / scale).fold(0.0, f64::max);
-                assert!(far <= 1e-12 && expected.len() == found.len(), "{name} of {}: {far:e}", robot.name);
+                let is_solved = name == "forward_dynamics_derivatives" && robot.generated.source.contains("_columns(out);");
+                let is_whole = if is_solved { expected.len() < found.len() } else { expected.len() == found.len() };
+                assert!(far <= 1e-12 && is_whole, "{name} of {}: {far:e}, {} of {}", robot.name, expected.len(), found.len());
             }
         }
     }
