@@ -103,8 +103,7 @@ impl<'a> RobotInWorld<'a> {
         }
     }
 
-    /// The actuators of the file on this robot. A joint that is locked, or follows another, has no
-    /// torque of its own: an actuator on it is an error.
+    /// The actuators of the file on this robot. An actuator on a locked joint is an error.
     pub(crate) fn actuators(self, controls: Signal, place: (At, &str), log: &mut Diagnostics) -> Actuators {
         let mut laws = |all: &[Actuator]| all.iter().map(|actuator| self.law(actuator, place, log)).collect();
         let (laws, passive) = (laws(&self.world.actuators), laws(&self.world.passive));
@@ -115,20 +114,34 @@ impl<'a> RobotInWorld<'a> {
         Actuators { laws, controls, bounds: self.world.joint_forces.iter().filter_map(degree).collect(), passive }
     }
 
+    /// The law of an actuator with the robot's own coordinates. A joint that follows others is
+    /// q = Σ multiplier · leader's + offset: its part of the length is one of theirs, and a constant.
     fn law(self, actuator: &Actuator, place: (At, &str), log: &mut Diagnostics) -> ActuatorLaw {
-        let mut transmission = |(joint, gear): &(String, Vec<f64>)| {
-            let found = self.model.joints().iter().find(|one| one.name == *joint && one.v.1 == gear.len());
-            if found.is_none() {
-                let found = format!("the actuator {} on joint {}, which is locked or follows another", quote(&actuator.name), quote(joint));
-                log.error(place, Code::Robot, found, "joints that move by themselves, or control of another kind");
+        let (mut drives, mut constant) = (Vec::new(), 0.0);
+        for (joint, gear) in &actuator.drives {
+            if let Some(one) = self.model.joints().iter().find(|one| one.name == *joint && one.v.1 == gear.len()) {
+                drives.push(Transmission { q: one.q.0, v: one.v.0, gear: gear.clone() });
+                continue;
             }
-            found.map(|one| Transmission { q: one.q.0, v: one.v.0, gear: gear.clone() })
-        };
+            // One that follows several is a sequence of bodies, each with a number behind its name.
+            let is_part = |name: &str| name.strip_prefix(joint.as_str()).is_some_and(|rest| rest.is_empty() || rest.starts_with(' '));
+            let parts = self.model.bodies().iter().filter(|body| is_part(&body.name));
+            let before = drives.len();
+            for (body, follow) in parts.filter_map(|body| Some((body, body.coordinates.mimic?))) {
+                constant += gear[0] * follow.offset;
+                drives.push(Transmission { q: body.coordinates.q, v: body.coordinates.v, gear: vec![gear[0] * follow.multiplier] });
+            }
+            if drives.len() == before {
+                let found = format!("the actuator {} on joint {}, which is locked", quote(&actuator.name), quote(joint));
+                log.error(place, Code::Robot, found, "joints that move, or control of another kind");
+            }
+        }
+        let from = |[at_rest, of_length, of_rate]: [f64; 3]| [at_rest + of_length * constant, of_length, of_rate];
         ActuatorLaw {
             name: actuator.name.clone(),
-            drives: actuator.drives.iter().filter_map(&mut transmission).collect(),
-            gain: actuator.gain,
-            bias: actuator.bias,
+            drives,
+            gain: from(actuator.gain),
+            bias: from(actuator.bias),
             control_range: actuator.control_range,
             force_range: actuator.force_range,
         }

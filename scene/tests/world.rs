@@ -119,8 +119,7 @@ fn actuators_that_cannot_be_are_refused() {
     other.actuators[0].drives[0].0 = "three".into();
     assert_eq!(
         told(plain, &other),
-        "s.toml:1: control.kind: found the actuator \"turn\" on joint \"three\", which is locked or follows another, expected joints that move \
-         by themselves, or control of another kind"
+        "s.toml:1: control.kind: found the actuator \"turn\" on joint \"three\", which is locked, expected joints that move, or control of another kind"
     );
     let told = Scene::read("s.toml", "control = { kind = \"actuators\", kp = 1 }").unwrap_err().to_string();
     assert!(told.contains("expected one of ctrl, keyframe, file, columns, rows, interpolation, period"), "{told}");
@@ -178,5 +177,22 @@ fn equations_of_the_file_are_couplings_where_the_scene_says_so() {
     assert_eq!((warned(&free), warned(&coupled)), (1, 0));
     let mimic = coupled.reading.description.joints[1].mimic.unwrap();
     assert_eq!((mimic.joint, mimic.multiplier, mimic.offset), (0, -2.0, 10.0_f64.to_radians()));
+    // A servo of the follower, q = −2 q₁ + 10°: its torque on the leader is −2 f.
+    let servo =
+        Actuator { drives: vec![("two".into(), vec![3.0])], gain: [0.5, 0.25, 0.0], bias: [1.0, -7.0, -0.5], ..Actuator::default() };
+    let world = World { actuators: vec![servo], ..World::default() };
+    let of = |robot: &articulated_scene::BuiltRobot, q: &[f64], v: &[f64]| {
+        let text = scene("control = { kind = \"actuators\", ctrl = [2] }");
+        let controller = text.controller(RobotInWorld { model: &robot.model, world: &world }, &mut |_| Err(String::new())).unwrap();
+        let (Controller::Actuators(actuators), mut tau) = (controller, vec![0.0; v.len()]) else { panic!("actuators") };
+        actuators.add_torques(&[2.0], q, v, &mut tau);
+        tau
+    };
+    let (q, v) = (-2.0 * 0.3 + 10.0_f64.to_radians(), -2.0 * 0.7);
+    let (apart, together) = (of(&free, &[0.3, q], &[0.7, v]), of(&coupled, &[0.3], &[0.7]));
+    assert!(
+        apart[0] == 0.0 && (together[0] + 2.0 * apart[1]).abs() < 1e-14 * apart[1].abs() && apart[1].abs() > 1.0,
+        "{apart:?} {together:?}"
+    );
     assert_eq!((free.model.gravity().z, built("gravity = [0, 0, -1]").model.gravity().z), (-3.7, -1.0));
 }
