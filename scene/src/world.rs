@@ -115,7 +115,8 @@ impl<'a> RobotInWorld<'a> {
     }
 
     /// The law of an actuator with the robot's own coordinates. A joint that follows others is
-    /// q = Σ multiplier · leader's + offset: its part of the length is one of theirs, and a constant.
+    /// q = Σ multiplier · leader's + offset: its part of the length is one of theirs, and a
+    /// constant.
     fn law(self, actuator: &Actuator, place: (At, &str), log: &mut Diagnostics) -> ActuatorLaw {
         let (mut drives, mut constant) = (Vec::new(), 0.0);
         for (joint, gear) in &actuator.drives {
