@@ -77,7 +77,7 @@ fn references<'a>(element: &'a Element, log: &mut Diagnostics) -> References<'a>
     .collect()
 }
 
-/// Σ aᵢ (qᵢ − refᵢ) = c₀ as the first coordinate by the others; else what stands against it.
+/// Solves Σ aᵢ (qᵢ − refᵢ) = c₀ for the first coordinate. The error says why that cannot be done.
 fn linear(
     element: &Element,
     found: &[usize],

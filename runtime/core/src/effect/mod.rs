@@ -304,7 +304,7 @@ trait FrameForce {
 pub(crate) enum Law<S: 'static> {
     /// Inertia on the diagonal of the mass matrix.
     Inertia(fn(&[S]) -> S),
-    /// A force on a degree of freedom; on a ball joint as `ball` says, if it says.
+    /// A force on a degree of freedom. `ball` is the law on ball joints, if it is another one.
     Force {
         force: OnFreedom<S>,
         slope: OnFreedom<Dual<S>>,

@@ -90,8 +90,8 @@ impl<S: Scalar> OnBall<'_, S> {
         (self.law.torque)(self.p, self.phi(q), self.omega(v))
     }
 
-    /// Column k of the torque's derivative along q ⊕ δ, and of that by v, for each k; the second
-    /// only if it is asked for. ∂φ/∂δ = J_r(φ)⁻¹.
+    /// Columns of the derivatives of the torque τ: ∂τ/∂δ along q ⊕ δ, N·m/rad, and with `by_v`
+    /// ∂τ/∂v, N·m·s/rad. The chain rule takes ∂φ/∂δ = J_r(φ)⁻¹.
     pub(super) fn slopes(&self, q: &[S], v: &[S], by_v: bool) -> [(Vector3<S>, Option<Vector3<S>>); 3] {
         let (phi, omega) = (self.phi(q), self.omega(v));
         let p = &duals(self.p)[..self.p.len()];
