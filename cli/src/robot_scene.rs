@@ -4,7 +4,6 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use articulated_core::description::Joint;
-use articulated_formats::world::Plane;
 use articulated_formats::{Environment, Options, Reading, included, read_file, read_with};
 use articulated_scene::folder_of;
 
@@ -31,13 +30,8 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
         }
     }
     if reading.description.links.iter().any(|link| !link.collision.is_empty()) {
-        let (plane, ground) = match world.planes.first() {
-            Some(Plane { point, normal, .. }) => {
-                let height: f64 = normal.iter().zip(point).map(|(normal, x)| normal * x).sum();
-                (format!(", normal = {normal:?}, height = {height:?}"), "a plane of the file")
-            }
-            None => (String::new(), "the ground z = 0"),
-        };
+        let (plane, ground) =
+            if world.planes.is_empty() { ("", "the ground z = 0") } else { (", plane = \"file\"", "the planes of the file") };
         let contact = format!("from = \"collision\", stiffness = 1e5, damping = 100{plane}");
         let _ = writeln!(out, "# contact = {{ \"*\" = {{ {contact} }} }}  # against {ground}");
     }

@@ -96,7 +96,9 @@ fn world(world: &World) -> String {
     let actuators = |all: &[Actuator]| {
         list(all, |own| {
             let (name, drives, [gain, bias]) = (&own.name, by_name(&own.drives), [own.gain, own.bias]);
-            let (control, force) = (or_null(own.control_range.as_ref()), or_null(own.force_range.as_ref()));
+            // An infinite bound is `inf` in Rust, and `Infinity` in JSON as Python reads it.
+            let range = |range: Option<[f64; 2]>| or_null(range.as_ref()).replace("inf", "Infinity");
+            let (control, force) = (range(own.control_range), range(own.force_range));
             format!(
                 "{{\"name\": {name:?}, \"drives\": {drives}, \"gain\": {gain:?}, \"bias\": {bias:?}, \"control_range\": {control}, \"force_range\": {force}}}"
             )

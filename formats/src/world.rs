@@ -98,6 +98,8 @@ pub struct Plane {
     pub point: [f64; 3],
     /// Its normal in the world frame, of norm one: the side on which links are.
     pub normal: [f64; 3],
+    /// Collision geometry that passes through it: a link, and the place in its list.
+    pub without: Vec<(String, usize)>,
     /// Where the file says so.
     pub place: At,
 }

@@ -178,6 +178,11 @@ fn springs_of_tendons_are_actuators_without_gain() {
     // At rest x is 0 and h is π/2.
     assert_eq!(tendon("stiffness=\"4\"")[0].bias, [-FRAC_PI_2 * 2.0, -4.0, 0.0]);
     assert_eq!(tendon("stiffness=\"0\""), []);
+    // A spring that is slack between two lengths pushes below the first and pulls above the second.
+    let found = tendon("stiffness=\"4\" damping=\"0.5\" springlength=\"0.3 0.7\"");
+    let laws: Vec<_> = found.iter().map(|law| (law.bias, law.force_range)).collect();
+    let (push, pull) = (Some([0.0, f64::INFINITY]), Some([f64::NEG_INFINITY, 0.0]));
+    assert_eq!(laws, [([0.0, 0.0, -0.5], None), ([1.2, -4.0, 0.0], push), ([2.8, -4.0, 0.0], pull)]);
     // The damping of an actuator is on what it acts on.
     let found = world("<actuator><motor name=\"m\" joint=\"x\" gear=\"3\" damping=\"0.2\"/></actuator>").passive;
     assert_eq!((&found[0].drives, found[0].bias), (&vec![drive("x", &[3.0])], [0.0, 0.0, -0.2]));
@@ -274,7 +279,6 @@ fn what_gives_no_force_is_a_warning_with_its_line() {
         )
     };
     let tendons = [
-        tendon("stiffness=\"1\" springlength=\"0 1\"", "fixed"),
         tendon("range=\"0 1\"", "fixed"),
         tendon("frictionloss=\"1\"", "fixed"),
         tendon("armature=\"1\"", "fixed"),

@@ -160,7 +160,8 @@ fn a_model_without_a_joint_to_the_world_floats_and_a_static_one_does_not_move() 
     let slide = joint("j", "prismatic", ["a", "b"], "<axis><xyz>0 0 1</xyz></axis>");
     let free = accepted(&model("1.9", &format!("<pose>0 0 7 0 0 0</pose>{links}{slide}")));
     assert_eq!(kinds(&free.description), [("a_free", JointKind::Floating), ("j", JointKind::Prismatic)]);
-    assert!(free.unused.iter().any(|unused| unused.why.contains("no initial state")));
+    let start = free.world.home.as_ref().expect("a pose to start from");
+    assert_eq!(start.q, [("a_free".to_owned(), vec![1.0, 0.0, 7.0, 0.0, 0.0, 0.0, 1.0])]);
     at(&free.description, "b", &[5.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 3.0], [5.0, 2.0, 3.0]);
     let still = accepted(&model("1.9", &format!("<static>true</static><pose>0 0 7 0 0 0</pose>{links}{slide}")));
     assert_eq!(kinds(&still.description), [("a_fixed", JointKind::Fixed), ("b_fixed", JointKind::Fixed)]);
@@ -443,9 +444,64 @@ fn a_world_has_one_model() {
     assert_eq!(reading.world.gravity, Some([0.0, 0.0, -1.6]));
     assert!(reading.unused.iter().any(|unused| unused.tag == "light"));
     at(&reading.description, "l", &[], [0.0, 0.0, 2.0]);
-    let two = error(&one(&format!("{a}{}", a.replace("\"a\"", "\"b\""))));
+    let two = error(&format!("<sdf version=\"1.9\">{a}{}</sdf>", a.replace("\"a\"", "\"b\"")));
     assert!(two.2.contains("\"a\"") && two.2.contains("\"b\"") && two.2.contains("one <model>"), "{two:?}");
     assert_eq!(error("<sdf version=\"1.9\"/>").0, Code::NoLinks);
+    assert_eq!(error(&one("")).0, Code::NoLinks);
+}
+
+#[test]
+fn the_models_of_a_world_are_one_robot() {
+    let files = Files::of(&[("robots/sun/model.sdf", "<sdf version=\"1.9\"><light name=\"sun\" type=\"point\"/></sdf>")]);
+    let arm = link("l", "") + &joint("j", "revolute", ["world", "l"], "<axis><xyz>0 0 1</xyz></axis>");
+    let world = |more: &str| {
+        let (arm, box_, ground) = (
+            format!("<model name=\"arm\"><pose>0 0 2 0 0 0</pose>{arm}</model>"),
+            format!("<model name=\"box\"><pose relative_to=\"corner\">0 0 1 0 0 0</pose>{}</model>", link("l", "")),
+            format!("<model name=\"ground\"><static>true</static>{}</model>", link("l", "")),
+        );
+        let corner = "<frame name=\"corner\"><pose>3 0 0 0 0 0</pose></frame>";
+        format!(
+            "<sdf version=\"1.9\"><world name=\"room\"><include><uri>model://sun</uri></include>{ground}{arm}{box_}{corner}{more}</world></sdf>"
+        )
+    };
+    let reading = read_with(&files, world("").as_bytes(), &options()).unwrap_or_else(|found| panic!("{found}"));
+    let robot = &reading.description;
+    let links: Vec<&str> = robot.links.iter().map(|link| link.name.as_str()).collect();
+    assert_eq!((robot.name.as_str(), links.as_slice()), ("room", &["world", "ground::l", "arm::l", "box::l"][..]));
+    let joints: Vec<_> = robot.joints.iter().map(|joint| (joint.name.as_str(), joint.kind)).collect();
+    let expected = [("ground::l_fixed", JointKind::Fixed), ("box::l_free", JointKind::Floating), ("arm::j", JointKind::Continuous)];
+    assert_eq!(joints, expected);
+    at(robot, "arm::l", &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.3], [0.0, 0.0, 2.0]);
+    assert_eq!(
+        reading.world.home.as_ref().map(|home| home.q.clone()),
+        Some(vec![("box::l_free".to_owned(), vec![3.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0])])
+    );
+    assert!(reading.unused.iter().any(|unused| unused.why.contains("no model")));
+    // A name is had once, and a joint may be between models.
+    let twice = read_with(&files, world("<model name=\"box\"/>").as_bytes(), &options()).expect_err("the name is taken");
+    assert!(twice.errors.iter().any(|error| error.code == Code::DuplicateName), "{twice}");
+    let held = world(&joint("hold", "fixed", ["arm::l", "box::l"], ""));
+    let reading = read_with(&files, held.as_bytes(), &options()).unwrap_or_else(|found| panic!("{found}"));
+    assert!(reading.world.home.is_none() && reading.description.joints.iter().all(|joint| joint.kind != JointKind::Floating));
+}
+
+#[test]
+fn planes_of_still_models_are_planes_of_the_world() {
+    let ground = |normal: &str| {
+        let shape = format!("<collision name=\"c\"><pose>0 0 0.5 0 0 0</pose><geometry><plane>{normal}</plane></geometry></collision>");
+        format!("<static>true</static><pose>0 0 1 {FRAC_PI_2} 0 0</pose><link name=\"ground\">{shape}</link>")
+    };
+    let planes = |content: &str| accepted(&model("1.9", content)).world.planes;
+    let found = planes(&ground("<normal>0 0 3</normal><size>1 1</size>"));
+    assert_eq!((found.len(), found[0].name.as_str()), (1, "ground"));
+    assert!(near(&found[0].normal, &[0.0, -1.0, 0.0]) && near(&found[0].point, &[0.0, -0.5, 1.0]), "{found:?}");
+    assert_eq!(planes(&ground(""))[0].normal, found[0].normal);
+    let wrong = accepted(&model("1.9", &ground("<normal>0 0 0</normal>")));
+    assert!(wrong.world.planes.is_empty() && wrong.warnings[0].to_string().contains("makes no contact"), "{:?}", wrong.warnings);
+    // One that moves is a shape that is not read.
+    let moves = accepted(&model("1.9", &ground("").replace("true", "false")));
+    assert!(moves.world.planes.is_empty() && moves.warnings.iter().any(|warning| warning.to_string().contains("<plane>")));
 }
 
 #[test]

@@ -35,7 +35,7 @@ fn reading(urdf: &str) -> Reading {
 fn resolve_on(urdf: &str, text: &str, base: Base) -> Result<Resolved, Diagnostics> {
     let reading = reading(urdf);
     let scene = Scene::read("s.toml", text).unwrap_or_else(|e| panic!("{e}"));
-    scene.resolve(&Edited { description: &reading.description, base, unused: &reading.unused, shafts: &[] })
+    scene.resolve(&Edited { description: &reading.description, base, unused: &reading.unused, planes: &reading.world.planes, shafts: &[] })
 }
 
 fn resolved(text: &str) -> Resolved {
@@ -205,4 +205,53 @@ fn appended_robots_bring_their_geometry_along() {
     robot.append("bare", &other, "left_", Default::default()).unwrap();
     let link = &robot.links[robot.link("left_shin").unwrap()];
     assert_eq!(link.collision.iter().flat_map(Collision::contact_spheres).count(), 2);
+}
+
+/// Two planes, through one of which a sphere passes.
+const IN_ROOM: &str = r#"<mujoco><worldbody>
+  <geom name="floor" type="plane" size="1 1 1" pos="0 0 -0.5"/>
+  <body pos="2 0 0" euler="0 -90 0"><geom name="wall" type="plane" size="1 1 1" contype="2" conaffinity="2"/></body>
+  <body name="ball"><freejoint/><geom size="0.1"/><geom size="0.2" pos="0 0 1" contype="3"/></body>
+  <body name="stick"><freejoint/><geom type="capsule" size="0.1 0.3" contype="2"/><geom size="0.1" contype="4" conaffinity="4"/></body>
+  </worldbody></mujoco>"#;
+
+#[test]
+fn planes_may_be_those_of_the_file() {
+    let against = |text: &str| -> Vec<(String, f64, Vec<f64>)> {
+        let found = resolve_on(IN_ROOM, text, Base::Fixed).unwrap_or_else(|e| panic!("{e}"));
+        // The radius, the normal and the height
+        found
+            .effects
+            .iter()
+            .map(|one| (one.on.clone(), one.parameters[0], one.parameters[5..9].iter().map(|x| x + 0.0).collect()))
+            .collect()
+    };
+    let (floor, wall) = (vec![0.0, 0.0, 1.0, -0.5], vec![-1.0, 0.0, 0.0, -2.0]);
+    let expected = |on: &str, radius: f64, plane: &Vec<f64>| (on.to_owned(), radius, plane.clone());
+    let balls = [expected("ball", 0.1, &floor), expected("ball", 0.2, &floor), expected("ball", 0.2, &wall)];
+    // A capsule is two spheres. It meets the floor by the floor's bit, the wall by its own.
+    let sticks = [&floor, &floor, &wall, &wall].map(|plane| expected("stick", 0.1, plane));
+    let all = format!("[effects.contact.'*']\nfrom = 'collision'\nplane = 'file'\n{LAW}");
+    assert_eq!(against(&all), [&balls[..], &sticks].concat());
+    // A link with numbers of its own is against the same planes, unless it has its own.
+    let own = against(&format!("[effects.contact]\nstick = {{ stiffness = 7 }}\nball = {{ height = -9 }}\n{all}"));
+    let deep = vec![0.0, 0.0, 1.0, -9.0];
+    assert_eq!(own, [&[expected("ball", 0.1, &deep), expected("ball", 0.2, &deep)][..], &sticks].concat());
+    // A point of the scene's own meets each plane.
+    let point = against(&format!("[effects.contact.ball]\nradius = 0.3\nplane = 'file'\n{LAW}"));
+    assert_eq!(point, [expected("ball", 0.3, &floor), expected("ball", 0.3, &wall)]);
+}
+
+#[test]
+fn planes_that_are_not_there_or_said_twice_are_errors() {
+    let none = refused(&format!("[effects.contact]\nfrom = 'collision'\nplane = 'file'\n{LAW}"));
+    assert_eq!(
+        none,
+        "s.toml:1: effects.contact.plane: found \"file\", and the robot's file has no plane that makes contact, expected `normal` and `height`"
+    );
+    let said = |text: &str| Scene::read("s.toml", &format!("[effects.contact]\nfrom = 'collision'\n{LAW}{text}")).unwrap_err().to_string();
+    let twice = said("plane = 'file'\nheight = 1");
+    assert!(twice.contains("found height beside plane = \"file\", expected one of both"), "{twice}");
+    assert!(said("plane = 'flor'").contains("found \"flor\", expected \"file\""));
+    assert!(said("plane = 3").contains("expected \"file\""));
 }

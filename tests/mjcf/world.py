@@ -191,7 +191,6 @@ def reduce(model, world, read, by_name):
         model.tendon_actfrclimited[:] = 0
         spatial = model.wrap_type[model.tendon_adr] != mujoco.mjtWrap.mjWRAP_JOINT
         model.tendon_stiffness[spatial] = model.tendon_damping[spatial] = 0
-        model.tendon_stiffness[model.tendon_lengthspring[:, 0] != model.tendon_lengthspring[:, 1]] = 0
     for one in range(model.nactuator):
         target = model.actuator_trnid[one, 0]
         if model.actuator_trntype[one] in (0, 1) and model.jnt_type[target] not in (SLIDE, HINGE):

@@ -203,12 +203,13 @@ def compare_files(path, ours):
     answer = subprocess.run([str(HELPER), str(ours), "0", "0", "-9.81"], input=b"", capture_output=True, timeout=120)
     if refused:
         return ("refused by both: " if answer.returncode else "refused by Drake: ") + refused, {}
-    if answer.returncode and len(instances) > 1:
-        return f"refused, {len(instances)} models: one model is read", {}
     if answer.returncode:
         return "refused: " + first_line(answer.stderr.decode(), ours), {}
     robot = json.loads(answer.stdout.partition(b"\n")[0])
-    top = plant.GetModelInstanceName(instances[0])
+    names = [plant.GetModelInstanceName(instance) for instance in instances]
+    outer = [name for name in names if not any(name.startswith(f"{other}::") for other in names)]
+    # The only model gives no prefix to names, each of several does.
+    top = outer[0] if len(outer) == 1 else ""
     off = collections.Counter()
 
     def differ(kind, found, expected, scale=None):
@@ -228,7 +229,14 @@ def compare_files(path, ours):
     if set(links) - {"world"} != set(bodies):
         return f"differs: links {sorted(set(links) ^ set(bodies))}", {}
     context = plant.CreateDefaultContext()
+    home = dict((robot["world"]["home"] or {"q": []})["q"])
     for name, body in bodies.items():
+        if f"{name}_free" in [joint[0] for joint in robot["order"]]:
+            start = plant.GetFreeBodyPose(context, body)
+            w, x, y, z = start.rotation().ToQuaternion().wxyz()
+            found = np.array(home.get(f"{name}_free", [0, 0, 0, 0, 0, 0, 1]), float)
+            sign = 1.0 if found[3:] @ [x, y, z, w] >= 0 else -1.0
+            differ("start", [*found[:3], *sign * found[3:]], [*start.translation(), x, y, z, w], max(1.0, np.abs(found).max()))
         inertia = body.CalcSpatialInertiaInBodyFrame(context)
         mass = inertia.get_mass()
         differ("mass", links[name]["mass"], mass)

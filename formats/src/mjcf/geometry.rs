@@ -42,8 +42,9 @@ pub(crate) struct Geom<'a> {
     is_shell: bool,
     fit_scale: f64,
     pub(crate) group: i64,
-    /// Whether it makes contact.
-    pub(crate) collides: bool,
+    /// `contype` and `conaffinity`: it makes contact where one of them has a bit of the other's
+    /// other.
+    bits: [i64; 2],
     pub(crate) color: Option<[f64; 4]>,
 }
 
@@ -135,7 +136,7 @@ pub(crate) fn geom<'a>(values: &Values<'a>, settings: &Rc<Settings<'a>>, frame: 
         values.error(field, Code::NegativeMass, format!("a negative {field}"), "zero or more", log);
     }
     let affinity = |name: &str, log: &mut Diagnostics| values.integer(name, log).unwrap_or(1);
-    let (type_bits, affinity_bits) = (affinity("contype", log), affinity("conaffinity", log));
+    let bits = [affinity("contype", log), affinity("conaffinity", log)];
     Some(Geom {
         element: values.element,
         settings: settings.clone(),
@@ -148,7 +149,7 @@ pub(crate) fn geom<'a>(values: &Values<'a>, settings: &Rc<Settings<'a>>, frame: 
         is_shell: values.yes("shellinertia", log).unwrap_or(false),
         fit_scale: values.number("fitscale", log).unwrap_or(1.0),
         group: values.integer("group", log).unwrap_or(0),
-        collides: type_bits != 0 || affinity_bits != 0,
+        bits,
         color: values.exactly::<4>("rgba", log),
     })
 }
@@ -214,9 +215,19 @@ impl Geom<'_> {
         Some((self.pose, shape))
     }
 
+    /// Whether it makes contact with something.
+    pub(crate) fn collides(&self) -> bool {
+        self.bits != [0; 2]
+    }
+
+    /// Whether it makes contact with another, as far as the bits of both say.
+    pub(crate) fn collides_with(&self, other: &Self) -> bool {
+        self.bits[0] & other.bits[1] != 0 || other.bits[0] & self.bits[1] != 0
+    }
+
     /// The frame of a plane for contact: its z axis is the normal.
     pub(crate) fn plane(&self) -> Option<Pose> {
-        (self.kind == Kind::Plane && self.mesh.is_none() && self.collides).then_some(self.pose)
+        (self.kind == Kind::Plane && self.mesh.is_none() && self.collides()).then_some(self.pose)
     }
 
     fn mesh_shape(&self, mesh: &Element) -> CollisionShape {

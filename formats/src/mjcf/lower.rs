@@ -16,15 +16,17 @@ use crate::reading::HELD;
 /// The link that does not move.
 const WORLD: &str = "world";
 
-/// The description of all bodies, and the names of their joints in the order of the bodies; `None`
-/// where an error leaves no sense in it.
-pub(crate) fn lower(
-    name: &str,
-    bodies: &[Body<'_>],
-    meshes: &mut Meshes<'_>,
-    options: &Options,
-    log: &mut Diagnostics,
-) -> Option<(Description, Vec<String>)> {
+/// A description, with what became of the bodies.
+pub(crate) struct Lowered {
+    pub(crate) description: Description,
+    /// Names of joints, in the order of the bodies.
+    pub(crate) joints: Vec<String>,
+    /// The link of each body.
+    pub(crate) links: Vec<usize>,
+}
+
+/// The description of all bodies; `None` where an error leaves no sense in it.
+pub(crate) fn lower(name: &str, bodies: &[Body<'_>], meshes: &mut Meshes<'_>, options: &Options, log: &mut Diagnostics) -> Option<Lowered> {
     let mut lower = Lower {
         description: Description { name: name.to_owned(), ..Description::default() },
         links: BTreeSet::from([WORLD.to_owned()]),
@@ -49,7 +51,7 @@ pub(crate) fn lower(
         lower.content(index, body);
     }
     lower.sites(bodies, log);
-    Some((lower.description, lower.names))
+    Some(Lowered { description: lower.description, joints: lower.names, links: lower.link_of })
 }
 
 /// Scales all masses so that they are the `settotalmass` of the main file.
@@ -245,7 +247,7 @@ impl Lower {
         for geom in &body.geoms {
             let Some((pose, shape)) = geom.shape() else { continue };
             let origin = pose.origin();
-            if geom.collides {
+            if geom.collides() {
                 link.collision.push(Collision { origin, shape: shape.clone() });
             }
             link.visual.push(Visual { origin, shape, material: String::new(), color: geom.color });

@@ -148,7 +148,8 @@ impl<'a> Own<'a> {
         terms
     }
 
-    /// f = −k (l − l₀) − d l̇.
+    /// f = −k (l − l₀) − d l̇. A spring between two lengths l₁ < l₂ is two: one pulls where l > l₂,
+    /// one pushes where l < l₁.
     fn force(&self, tendon: &Tendon, scope: &mut Scope<'_>, passive: &mut Vec<Actuator>, log: &mut Diagnostics) {
         let element = self.element;
         let has_force = [self.stiffness, self.damping, self.friction, self.armature] != [0.0; 4] || self.has_higher_terms;
@@ -170,21 +171,25 @@ impl<'a> Own<'a> {
             scope.warn(element, field, *lost, log);
         }
         let at_rest = tendon.terms.iter().map(|(joint, factor)| factor * scope.joints[*joint].joint.rest).sum();
-        let (mut stiffness, [lower, upper]) = (self.stiffness, self.rest.unwrap_or([at_rest; 2]));
-        if stiffness != 0.0 && lower != upper {
-            let lost = ("a spring that is slack between two lengths", "one length: the spring is left out");
-            scope.warn(element, "springlength", lost, log);
-            stiffness = 0.0;
+        let (stiffness, [lower, upper]) = (self.stiffness, self.rest.unwrap_or([at_rest; 2]));
+        let drives: Vec<_> = tendon.terms.iter().map(|(joint, factor)| (scope.joints[*joint].name.to_owned(), vec![*factor])).collect();
+        let place = scope.place(element);
+        let mut push = |bias: [f64; 3], force_range: Option<[f64; 2]>| {
+            if bias != [0.0; 3] {
+                let (name, drives) = (tendon.name.clone(), drives.clone());
+                passive.push(Actuator { name, drives, bias, force_range, place, ..Actuator::default() });
+            }
+        };
+        if stiffness == 0.0 || lower == upper {
+            push([stiffness * lower, -stiffness, -self.damping], None);
+        } else {
+            push([0.0, 0.0, -self.damping], None);
+            let (mut below, mut above) = ([0.0, f64::INFINITY], [f64::NEG_INFINITY, 0.0]);
+            if stiffness < 0.0 {
+                std::mem::swap(&mut below, &mut above);
+            }
+            push([stiffness * lower, -stiffness, 0.0], Some(below));
+            push([stiffness * upper, -stiffness, 0.0], Some(above));
         }
-        if stiffness == 0.0 && self.damping == 0.0 {
-            return;
-        }
-        passive.push(Actuator {
-            name: tendon.name.clone(),
-            drives: tendon.terms.iter().map(|(joint, factor)| (scope.joints[*joint].name.to_owned(), vec![*factor])).collect(),
-            bias: [stiffness * lower, -stiffness, -self.damping],
-            place: scope.place(element),
-            ..Actuator::default()
-        });
     }
 }

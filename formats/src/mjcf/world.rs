@@ -1,6 +1,5 @@
 //! What a document says beside its bodies, as a [`World`].
 
-use articulated_core::description::Description;
 use articulated_core::diagnostic::Diagnostics;
 
 use super::actuators::actuators;
@@ -8,7 +7,9 @@ use super::bodies::{Kind, Tree};
 use super::documents::Documents;
 use super::element::Element;
 use super::equalities::equalities;
+use super::geometry::Geom;
 use super::grammar::subject;
+use super::lower::Lowered;
 use super::scope::Scope;
 use super::settings::Simulation;
 use super::states;
@@ -16,24 +17,24 @@ use super::tendons::tendons;
 use crate::pose::{Pose, rotate};
 use crate::world::{Plane, World};
 
-/// Reads the rest of a model. `names`: those of all joints, in the order of the bodies.
-pub(crate) fn world(documents: &Documents, tree: &Tree<'_>, names: &[String], description: &Description, log: &mut Diagnostics) -> World {
+/// Reads the rest of a model.
+pub(crate) fn world(documents: &Documents, tree: &Tree<'_>, lowered: &Lowered, log: &mut Diagnostics) -> World {
     let main = documents.root(0);
     let simulation = Simulation::of(main, log);
     let has_unread_joints = documents.roots().any(has_deformable);
-    let mut scope = Scope::new(&main.file.name, tree, names, log.is_ok() && !has_unread_joints);
+    let mut scope = Scope::new(&main.file.name, tree, &lowered.joints, log.is_ok() && !has_unread_joints);
     let mut world = World {
         gravity: simulation.gravity,
         step: simulation.step,
         integrator: simulation.integrator.clone(),
-        planes: planes(&scope, log),
+        planes: planes(&scope, lowered, log),
         home: states::home(&scope),
         ..World::default()
     };
     let bounds = scope.joints.iter().filter(|known| matches!(known.joint.kind, Kind::Hinge | Kind::Slide));
     world.joint_forces = bounds.filter_map(|known| Some((known.name.to_owned(), known.joint.force_range?))).collect();
     let tendons = tendons(&mut scope, &mut world.passive, log);
-    let controls = actuators(&mut scope, &tendons, &simulation, description, &mut world, log);
+    let controls = actuators(&mut scope, &tendons, &simulation, &lowered.description, &mut world, log);
     equalities(&mut scope, &tendons, simulation.no_equality, &mut world, log);
     states::keyframes(&mut scope, &controls, has_unread_joints, &mut world, log);
     world
@@ -52,7 +53,7 @@ fn has_deformable(root: &Element) -> bool {
 }
 
 /// The planes of bodies that do not move.
-fn planes(scope: &Scope<'_>, log: &mut Diagnostics) -> Vec<Plane> {
+fn planes(scope: &Scope<'_>, lowered: &Lowered, log: &mut Diagnostics) -> Vec<Plane> {
     let bodies = &scope.tree.bodies;
     let mut all = Vec::new();
     // The pose in the world, of bodies that do not move
@@ -71,9 +72,22 @@ fn planes(scope: &Scope<'_>, log: &mut Diagnostics) -> Vec<Plane> {
                 name: geom.element.text("name").unwrap_or_default().to_owned(),
                 point: frame.position,
                 normal: rotate(frame.rotation, [0.0, 0.0, 1.0]),
+                without: without(geom, scope.tree, lowered),
                 place: scope.place(geom.element),
             });
         }
+    }
+    all
+}
+
+/// Collision geometry that a plane lets through.
+fn without(plane: &Geom<'_>, tree: &Tree<'_>, lowered: &Lowered) -> Vec<(String, usize)> {
+    let mut all = Vec::new();
+    for (body, link) in tree.bodies.iter().zip(&lowered.links) {
+        // In the order of the link's list
+        let pieces = body.geoms.iter().filter(|geom| geom.collides() && geom.shape().is_some());
+        let through = pieces.enumerate().filter(|(_, geom)| !plane.collides_with(geom));
+        all.extend(through.map(|(piece, _)| (lowered.description.links[*link].name.clone(), piece)));
     }
     all
 }

@@ -91,30 +91,40 @@ pub(crate) struct Graph<'a> {
 }
 
 impl<'a> Graph<'a> {
-    /// The graph of the one model of a document; `None` where an error leaves no sense in it.
+    /// The graph of a model, or of all models of a world; `None` where an error leaves no sense in
+    /// it.
     pub(crate) fn of(root: &'a Element, options: &Options, log: &mut Diagnostics) -> Option<Self> {
         let version = version(root, log);
-        let world = root.children.iter().find(|child| child.is(WORLD_NAME));
-        let models = models(root);
-        let [model] = models.as_slice() else {
-            let names = listed(models.iter().map(|model| format!("{} in line {}", quote(name_of(model)), model.at.line().unwrap_or(0))));
-            let (code, found) = match models.len() {
-                0 => (Code::NoLinks, "no model".to_owned()),
-                count => (Code::DuplicateTag, format!("{count} models: {names}")),
-            };
-            let last = models.last().copied().unwrap_or(root);
-            last.error((&Subject::Document, "model"), code, found, "one <model>, alone or in a <world>", log);
-            return None;
+        let worlds: Vec<&Element> = root.children.iter().filter(|child| child.is(WORLD_NAME)).collect();
+        let (alone, inside) = (models(root, log), worlds.iter().flat_map(|world| models(world, log)).collect::<Vec<_>>());
+        let all: Vec<&Element> = alone.iter().chain(&inside).copied().collect();
+        let name = match (alone.as_slice(), inside.as_slice(), worlds.as_slice()) {
+            ([_], [], _) | ([], [_], _) => None,
+            ([], [_, _, ..], [world]) => Some(world.text("name").map(str::trim).filter(|name| !name.is_empty()).unwrap_or(WORLD_NAME)),
+            _ => {
+                let names = listed(all.iter().map(|model| format!("{} in line {}", quote(name_of(model)), model.at.line().unwrap_or(0))));
+                let (code, found) = match all.len() {
+                    0 => (Code::NoLinks, "no model".to_owned()),
+                    count => (Code::DuplicateTag, format!("{count} models: {names}")),
+                };
+                let last = all.last().copied().unwrap_or(root);
+                last.error((&Subject::Document, "model"), code, found, "one <model>, or one <world> with models", log);
+                return None;
+            }
         };
         let mut build = Build { graph: Graph::empty(root, version), options, suggester: Suggester::default() };
-        build.any_model(model, WORLD, &Over::default(), log);
-        if let Some(world) = world {
+        // A model alone gives no prefix to names.
+        name.unwrap_or_default().clone_into(&mut build.graph.name);
+        for model in &all {
+            build.any_model(model, WORLD, &Over::default(), log);
+        }
+        if let Some(world) = worlds.first() {
             build.content(world, WORLD, log);
             build.graph.gravity = gravity(world, log);
         }
         let mut graph = build.graph;
         if graph.links.is_empty() && log.is_ok() {
-            model.error((&Subject::Document, "link"), Code::NoLinks, "no link", "a model with at least one link", log);
+            all[0].error((&Subject::Document, "link"), Code::NoLinks, "no link", "a model with at least one link", log);
         }
         let has_names = graph.resolve_joints(log);
         (graph.connect(log) && has_names).then_some(graph)
@@ -349,12 +359,21 @@ fn without_dust(pose: Pose, parts: &[Pose]) -> Pose {
     Pose { position, rotation }
 }
 
-/// All models of a document, with those of its worlds.
-fn models(root: &Element) -> Vec<&Element> {
-    let is_model = |element: &&Element| element.is("model") || element.is("include");
-    let own = root.children.iter();
-    let inside = own.clone().filter(|child| child.is(WORLD_NAME)).flat_map(|world| &world.children);
-    own.filter(is_model).chain(inside.filter(is_model)).collect()
+/// The models of a document or of a world. Included lights and the like are listed as unused.
+fn models<'a>(of: &'a Element, log: &mut Diagnostics) -> Vec<&'a Element> {
+    let mut all = Vec::new();
+    for child in &of.children {
+        let included = child.children.iter().find(|inner| inner.is(ROOT)).filter(|_| child.is("include"));
+        let is_model = |element: &Element| element.is("model") || element.is(WORLD_NAME) || element.is("include");
+        match included {
+            Some(root) if !root.children.is_empty() && !root.children.iter().any(is_model) => {
+                child.unused(&Subject::Document, None, "the file that it includes has no model", log);
+            }
+            _ if child.is("model") || child.is("include") => all.push(child),
+            _ => {}
+        }
+    }
+    all
 }
 
 /// The name of a model or an `<include>`, for messages.
@@ -476,7 +495,8 @@ impl<'a> Build<'a, '_> {
             return None;
         };
         let version = version(root, log);
-        let models = models(root);
+        let mut models = models(root, log);
+        root.children.iter().filter(|child| child.is(WORLD_NAME)).for_each(|world| models.extend(self::models(world, log)));
         let [model] = models.as_slice() else {
             let found = format!("a file with {} models", models.len());
             element.error((none, "uri"), Code::Unsupported, found, "a file with one model", log);
@@ -562,7 +582,7 @@ impl<'a> Build<'a, '_> {
                 }
                 "joint" => self.joint(child, scope, log),
                 "frame" => self.frame(child, scope, log),
-                // The one model of a world is read already.
+                // The models of a world are read already.
                 "model" | "include" if !is_world => {
                     let model = self.any_model(child, scope, &Over::default(), log);
                     first_model = first_model.or(model);

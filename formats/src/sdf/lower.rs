@@ -15,13 +15,15 @@ use crate::Options;
 use crate::cycles::{around, cycles};
 use crate::pose::{Pose, Vector, cross, rotate, scale};
 use crate::reading::HELD;
+use crate::world::{Document, Keyframe, Plane, World};
 
 /// So many loops are described, and so many joints of each.
 const MOST_LOOPS: usize = 100;
 const MOST_LISTED: usize = 20;
 
-/// The description of all links; `None` where an error leaves no sense in it.
-pub(crate) fn lower(graph: &Graph<'_>, options: &Options, log: &mut Diagnostics) -> Option<Description> {
+/// The description of all links, with planes and the state in which free models start; `None` where
+/// an error leaves no sense in it.
+pub(crate) fn lower(graph: &Graph<'_>, options: &Options, log: &mut Diagnostics) -> Option<Document> {
     let tree = Tree::of(graph, log)?;
     let mut lower = Lower {
         graph,
@@ -30,10 +32,12 @@ pub(crate) fn lower(graph: &Graph<'_>, options: &Options, log: &mut Diagnostics)
         joints: BTreeSet::new(),
         first: vec![None; graph.joints.len()],
         frames: Vec::new(),
+        start: Vec::new(),
+        planes: Vec::new(),
         leaders: graph.joints.iter().flat_map(|joint| &joint.axes).filter_map(|axis| graph.find(&axis.mimic?.leader)).collect(),
     };
     lower.links(options, log);
-    lower.hang_on_the_world(&tree, log);
+    lower.hang_on_the_world(&tree);
     for (index, joint) in graph.joints.iter().enumerate() {
         if let Some(Hangs { on, is_reversed, .. }) = tree.joints[index].map(|body| tree.above[body]) {
             let body = tree.joints[index].unwrap_or_default();
@@ -47,7 +51,9 @@ pub(crate) fn lower(graph: &Graph<'_>, options: &Options, log: &mut Diagnostics)
         let element = graph.nodes[WORLD].element;
         element.error((&Subject::Document, "pose"), Code::TooLarge, "very long chains of frames", "shorter ones", log);
     }
-    Some(lower.description)
+    let Lower { description, start, planes, .. } = lower;
+    let home = (!start.is_empty()).then(|| Keyframe { name: "poses".to_owned(), q: start, ..Keyframe::default() });
+    Some(Document { description, world: World { gravity: graph.gravity, home, planes, ..World::default() } })
 }
 
 /// What a body hangs on.
@@ -205,6 +211,10 @@ struct Lower<'a, 'g> {
     first: Vec<Option<[usize; 2]>>,
     /// Names of `<frame>`s, in their order.
     frames: Vec<String>,
+    /// The coordinates of free joints at the poses of the file, where they are not zero.
+    start: Vec<(String, Vec<f64>)>,
+    /// Planes of links that do not move.
+    planes: Vec<Plane>,
     /// Nodes of joints that others follow.
     leaders: BTreeSet<usize>,
 }
@@ -226,7 +236,7 @@ impl Lower<'_, '_> {
         self.description.links.push(Link { name: WORLD_NAME.to_owned(), ..Link::default() });
         for link in &self.graph.links {
             let name = free(&mut self.links, self.graph.nodes[link.node].name.clone());
-            let collision = shapes::collisions(link, self.graph, options, log);
+            let collision = shapes::collisions(link, self.graph, options, &mut self.planes, log);
             let visual = shapes::visuals(link, self.graph, options, log);
             self.description.links.push(Link { name, inertial: link.inertial, collision, visual, intermediate: false });
         }
@@ -240,21 +250,19 @@ impl Lower<'_, '_> {
     }
 
     /// Free joints, and fixed ones for the links of static models.
-    fn hang_on_the_world(&mut self, tree: &Tree, log: &mut Diagnostics) {
+    fn hang_on_the_world(&mut self, tree: &Tree) {
         for body in tree.order.iter().copied().filter(|body| *body != WORLD && tree.above[*body].joint.is_none()) {
             let name = self.description.links[body].name.clone();
             let pose = self.graph.relative(WORLD, self.node(body));
-            let element = self.graph.links[body - 1].element;
             let (kind, word, origin) = match tree.is_static[body] {
                 true => (JointKind::Fixed, "fixed", pose.origin()),
                 false => (JointKind::Floating, "free", Origin::default()),
             };
-            if kind == JointKind::Floating && pose != Pose::default() {
-                let why = "the place of a free model is its coordinates: no initial state is read";
-                let tag = element.children.iter().find(|child| child.is("pose")).unwrap_or(element);
-                tag.unused(&subject(element), None, why, log);
-            }
             let name = free(&mut self.joints, format!("{name}_{word}"));
+            if kind == JointKind::Floating && pose != Pose::default() {
+                let ([w, x, y, z], [px, py, pz]) = (pose.rotation, pose.position);
+                self.start.push((name.clone(), vec![px, py, pz, x, y, z, w]));
+            }
             self.description.joints.push(Joint { name, kind, parent: 0, child: body, origin, ..Joint::default() });
         }
     }

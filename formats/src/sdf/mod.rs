@@ -8,9 +8,12 @@
 //!
 //! * The world is the root link `world`. Joints with the parent `world` hang on it. A model without
 //!   such a joint floats: its root link has a floating joint `<link>_free` on the world, of which
-//!   the coordinates are the pose in the world. The links of a static model are fixed to the world.
+//!   the coordinates are the pose in the world. The poses of the file are where a motion starts, the
+//!   `home` state of the world. The links of a static model are fixed to the world.
 //! * Links keep their frames. A joint that is not at the origin of its child link moves an
 //!   intermediate link, to which the child is fixed.
+//! * The models of a world are one robot with the name of the world. Their links are called
+//!   `model::link`.
 //! * A universal joint with limits or forces, and a revolute2 joint, are two revolute joints in
 //!   sequence: `<joint>` and `<joint>_2`.
 //! * A link that is reached from the child of a joint hangs on that joint in reverse: the axis
@@ -62,7 +65,6 @@ impl Format for Sdf {
         let root = load::Loader::new(input.sources).root(input.bytes, &input.options.file, diagnostics)?;
         grammar::check(&root, diagnostics);
         let graph = graph::Graph::of(&root, input.options, diagnostics)?;
-        let description = lower::lower(&graph, input.options, diagnostics)?;
-        Some(world::Document { description, world: world::World { gravity: graph.gravity, ..world::World::default() } })
+        lower::lower(&graph, input.options, diagnostics)
     }
 }

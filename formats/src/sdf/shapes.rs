@@ -1,29 +1,78 @@
 //! Shapes of links, for contact and drawings.
 
 use articulated_core::description::{Collision, CollisionShape, Visual};
-use articulated_core::diagnostic::{Code, Diagnostics, Subject};
+use articulated_core::diagnostic::{At, Code, Diagnostics, Subject};
+use articulated_core::effect::unit;
 
 use super::grammar::subject;
-use super::graph::Graph;
+use super::graph::{Graph, WORLD};
 use super::links::Link;
 use super::names::relative_to;
 use super::values::{self, exactly, only};
 use crate::Options;
-use crate::pose::Pose;
+use crate::pose::{Pose, rotate};
+use crate::world::Plane;
 use crate::xml::tree::Element;
 
-/// All collision geometry of a link. What is wrong with it is a warning.
-pub(crate) fn collisions(link: &Link<'_>, graph: &Graph<'_>, options: &Options, log: &mut Diagnostics) -> Vec<Collision> {
+/// All collision geometry of a link. What is wrong with it is a warning. Planes of links that do not
+/// move are put into `planes`.
+pub(crate) fn collisions(
+    link: &Link<'_>,
+    graph: &Graph<'_>,
+    options: &Options,
+    planes: &mut Vec<Plane>,
+    log: &mut Diagnostics,
+) -> Vec<Collision> {
     let tags = link.element.children.iter().filter(|child| child.is("collision"));
     let mut all = Vec::new();
     for tag in tags {
         let mut own = log.apart();
+        if let Some(plane) = plane(tag).filter(|_| link.is_static) {
+            planes.extend(placed_plane(tag, plane, link, graph, options, &mut own));
+            log.take_as_warnings(own, "; the plane makes no contact");
+            continue;
+        }
         let (pose, shape) = placed_shape(tag, link, graph, options, &mut own);
         let why = own.errors.first().map(ToString::to_string).unwrap_or_default();
         log.take_as_warnings(own, "; the shape makes no contact");
         all.push(Collision { origin: pose.origin(), shape: shape.unwrap_or(CollisionShape::Unread { why }) });
     }
     all
+}
+
+/// The plane that is the one shape of a `<collision>`.
+fn plane(tag: &Element) -> Option<&Element> {
+    let geometry = tag.children.iter().find(|child| child.is("geometry"))?;
+    let [shape] = geometry.children.as_slice() else { return None };
+    shape.is("plane").then_some(shape)
+}
+
+fn placed_plane(
+    tag: &Element,
+    plane: &Element,
+    link: &Link<'_>,
+    graph: &Graph<'_>,
+    options: &Options,
+    log: &mut Diagnostics,
+) -> Option<Plane> {
+    let about = &subject(link.element);
+    let pose = graph.relative(WORLD, link.node).then(&pose(tag, link, graph, options, log));
+    let normal = match only(plane, "normal", about, log) {
+        Some(normal) => {
+            let given = exactly::<3>(normal, about, log)?;
+            let Some(normal) = unit(given) else {
+                normal.error((about, "normal"), Code::ZeroAxis, "a normal without direction", "three numbers that are not all 0", log);
+                return None;
+            };
+            normal
+        }
+        None => [0.0, 0.0, 1.0],
+    };
+    let name = graph.nodes[link.node].name.clone();
+    let (point, normal) = (pose.position, rotate(pose.rotation, normal));
+    // Lines are those of the main file.
+    let place = if plane.file.included { At::Nowhere } else { plane.at };
+    Some(Plane { name, point, normal, without: Vec::new(), place })
 }
 
 /// The whole appearance of a link: the dynamics need none of it, so that nothing here is a finding.
@@ -54,19 +103,21 @@ fn placed_shape(
     log: &mut Diagnostics,
 ) -> (Pose, Option<CollisionShape>) {
     let about = &subject(link.element);
-    let mut pose = Pose::default();
-    if let Some(element) = only(tag, "pose", about, log) {
-        pose = values::pose(element, options.snap_angles, about, log);
-        let frame = relative_to(element, link.scope).and_then(|reference| graph.resolve(&reference, log));
-        if let Some(frame) = frame {
-            pose = graph.relative(link.node, frame).then(&pose);
-        }
-    }
+    let pose = pose(tag, link, graph, options, log);
     let Some(geometry) = only(tag, "geometry", about, log) else {
         tag.error((about, "geometry"), Code::MissingTag, "none", format!("<geometry> inside <{}>", tag.name), log);
         return (pose, None);
     };
     (pose, shape(geometry, about, log))
+}
+
+/// The pose of a shape in its link.
+fn pose(tag: &Element, link: &Link<'_>, graph: &Graph<'_>, options: &Options, log: &mut Diagnostics) -> Pose {
+    let about = &subject(link.element);
+    let Some(element) = only(tag, "pose", about, log) else { return Pose::default() };
+    let pose = values::pose(element, options.snap_angles, about, log);
+    let frame = relative_to(element, link.scope).and_then(|reference| graph.resolve(&reference, log));
+    frame.map_or(pose, |frame| graph.relative(link.node, frame).then(&pose))
 }
 
 /// The one shape of a `<geometry>`.

@@ -45,16 +45,22 @@ pub(super) fn is_taken(row: &Effect, says: &Numbers, rest: Option<&Numbers>) -> 
 }
 
 impl<'a> Resolving<'a> {
-    /// The contact of a link's collision geometry, a sphere or point each.
+    /// The contact of a link's collision geometry, a sphere or point each, but for what passes
+    /// `without` it.
     pub(super) fn of_collision(
         &mut self,
         row: &'static Effect,
         link: &'a Link,
-        one: &EffectRequest,
-        rest: Option<&Numbers>,
+        (one, says): (&EffectRequest, &Numbers),
+        (rest, without): (Option<&Numbers>, &[(String, usize)]),
         log: &mut Diagnostics,
     ) {
-        let unread = link.collision.iter().filter_map(|piece| match &piece.shape {
+        let passes = |piece: &usize| without.iter().any(|(name, other)| *name == link.name && other == piece);
+        let pieces: Vec<&Collision> = (0..).zip(&link.collision).filter(|(k, _)| !passes(k)).map(|(_, piece)| piece).collect();
+        if pieces.is_empty() && !link.collision.is_empty() {
+            return;
+        }
+        let unread = pieces.iter().filter_map(|piece| match &piece.shape {
             CollisionShape::Unread { why } => Some(why),
             _ => None,
         });
@@ -66,8 +72,8 @@ impl<'a> Resolving<'a> {
         if log.count() > before {
             return;
         }
-        let spheres: Vec<_> = link.collision.iter().flat_map(Collision::contact_spheres).collect();
-        let meshes = link.collision.iter().filter(|piece| matches!(piece.shape, CollisionShape::Mesh { .. })).count();
+        let spheres: Vec<_> = pieces.iter().flat_map(|piece| piece.contact_spheres()).collect();
+        let meshes = pieces.iter().filter(|piece| matches!(piece.shape, CollisionShape::Mesh { .. })).count();
         match (&one.on, spheres.is_empty()) {
             (Selector::Named(name), true) => {
                 let what = if meshes > 0 { "only meshes as collision geometry, which make no contact" } else { "no collision geometry" };
@@ -78,7 +84,6 @@ impl<'a> Resolving<'a> {
             (_, false) if meshes > 0 => self.warn_of_contact(one, link, Code::PartOfContact, "a mesh beside other collision geometry"),
             _ => {}
         }
-        let Some(says) = &one.says else { return };
         let radius = row.fields.iter().position(|field| field.name == RADIUS);
         for sphere in spheres {
             let mut says = says.clone();

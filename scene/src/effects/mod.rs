@@ -13,6 +13,7 @@
 use articulated_core::diagnostic::{At, Code, Diagnostics, quote};
 mod collision;
 mod index;
+mod plane;
 mod resolve;
 mod still;
 mod urdf;
@@ -64,6 +65,8 @@ pub struct Numbers {
     pub from_urdf: bool,
     /// Points and radii are those of the link's collision geometry.
     pub from_collision: bool,
+    /// The planes are those of the robot's file.
+    pub from_file_planes: bool,
     /// The effect's frame in the link's frame.
     pub at: Option<Origin>,
     /// One for each of the effect's fields.
@@ -184,11 +187,15 @@ fn table(row: &'static Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Number
             (None, "rpy") if row.on == On::Link => {
                 numbers.at.get_or_insert_default().rotation = Rotation::RollPitchYaw(value.numbers(log).unwrap_or_default());
             }
+            (None, plane::KEY) if plane::offers(row) => numbers.from_file_planes = plane::is_of_file(&value, log),
             _ => value.unknown_key(log, keys(row)),
         }
     }
     if numbers.from_collision {
         collision::refuse_own_points(spot, log);
+    }
+    if numbers.from_file_planes {
+        plane::refuse_own_plane(spot, log);
     }
     if log.count() == before {
         check(row, &numbers, spot, log);
@@ -200,7 +207,8 @@ fn table(row: &'static Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Number
 fn keys(row: &'static Effect) -> impl Iterator<Item = &'static str> {
     let own = row.fields.iter().map(|f| f.name);
     let frame = FRAME.into_iter().filter(|_| row.on == On::Link);
-    own.chain(frame).chain(Some(FROM).filter(|_| sources(row).next().is_some()))
+    let plane = Some(plane::KEY).filter(|_| plane::offers(row));
+    own.chain(frame).chain(Some(FROM).filter(|_| sources(row).next().is_some())).chain(plane)
 }
 
 /// The source of numbers that are not given.

@@ -9,12 +9,13 @@ use articulated_core::description::{Base, Description, Joint, JointKind, Origin}
 
 use super::index::{Index, Named};
 use super::still::{moving, still};
-use super::{EffectRequest, Numbers, Selector, collision, urdf};
+use super::{EffectRequest, Numbers, Selector, collision, plane, urdf};
 use crate::report::{EffectOff, EffectOn, Number, Report, Why};
 use crate::scene::Scene;
 use crate::shaft;
 use articulated_core::effect::{Applied, Effect, EffectId, Enters, Field, On, effects};
 use articulated_core::model::FLOATING_BASE;
+use articulated_formats::world::Plane;
 
 /// A robot as the scene's edits left it.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +26,8 @@ pub struct Edited<'a> {
     pub base: Base,
     /// What the reader of the URDF could not use.
     pub unused: &'a [Unused],
+    /// Planes of the robot's file.
+    pub planes: &'a [Plane],
     /// The springs and dampings of each of the scene's shafts; `None` for a refused one.
     pub shafts: &'a [Option<Vec<Applied>>],
 }
@@ -223,14 +226,17 @@ impl<'a> Resolving<'a> {
             for one in ones {
                 let Some(says) = &one.says else { continue };
                 let rest = all.filter(|_| named).and_then(|a| a.says.as_ref());
-                if collision::is_taken(row, says, rest) {
-                    self.of_collision(row, link, one, rest, log);
-                    continue;
-                }
-                let at = says.at.or(rest.and_then(|r| r.at)).unwrap_or_default();
-                match fill((row, row.fields), &[Some(says), rest], &|_| None) {
-                    Ok(filled) => self.put_filled(row, &link.name, at, one, &filled),
-                    Err(field) => missing(row, field, one, &format!("link {:?}", link.name), log),
+                let Some(planes) = plane::of(row, one, says, rest, self.robot.planes, log) else { continue };
+                for (own, without) in &planes {
+                    if collision::is_taken(row, says, rest) {
+                        self.of_collision(row, link, (one, own), (rest, *without), log);
+                        continue;
+                    }
+                    let at = says.at.or(rest.and_then(|r| r.at)).unwrap_or_default();
+                    match fill((row, row.fields), &[Some(own), rest], &|_| None) {
+                        Ok(filled) => self.put_filled(row, &link.name, at, one, &filled),
+                        Err(field) => missing(row, field, one, &format!("link {:?}", link.name), log),
+                    }
                 }
             }
         }

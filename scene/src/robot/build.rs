@@ -138,8 +138,8 @@ impl RobotRequest<'_> {
     fn with_effects(&self, editing: &Editing<'_>, model: Model<f64>, log: &mut Diagnostics) -> (Resolved, Model<f64>, Vec<Applied>) {
         let mut own = log.apart();
         let resolved = self.scene.map_or_else(Resolved::default, |scene| {
-            let Reading { description, unused, .. } = &editing.reading;
-            let robot = Edited { description, base: self.options.base, unused, shafts: &editing.springs };
+            let Reading { description, unused, world, .. } = &editing.reading;
+            let robot = Edited { description, base: self.options.base, unused, planes: &world.planes, shafts: &editing.springs };
             let resolved = scene.resolve_into(&robot, &mut own);
             if self.checks_motion {
                 scene.check_file_step(&editing.reading.world, &mut own);

@@ -1,0 +1,74 @@
+//! Contact with the planes of the robot's file.
+
+use articulated_core::diagnostic::{Code, Diagnostics, quote};
+use articulated_core::effect::{Effect, EffectId};
+use articulated_formats::world::Plane;
+
+use super::{EffectRequest, Numbers};
+use crate::table::Spot;
+use crate::tree::Value;
+
+/// The key.
+pub(super) const KEY: &str = "plane";
+/// Its word.
+const FILE: &str = "file";
+/// The fields that a plane gives.
+const OWN: [&str; 2] = ["normal", "height"];
+
+/// Whether the effect acts against a plane.
+pub(super) fn offers(row: &Effect) -> bool {
+    row.id == EffectId::contact
+}
+
+/// Whether the planes of the file are asked for.
+pub(super) fn is_of_file(spot: &Spot<'_>, log: &mut Diagnostics) -> bool {
+    match &spot.node.value {
+        Value::Text(word) if word == FILE => return true,
+        Value::Text(word) => log.error((spot.node.at, &spot.key), Code::Word, quote(word), format!("\"{FILE}\"")),
+        _ => spot.wrong(log, format!("\"{FILE}\"")),
+    }
+    false
+}
+
+/// Refuses a plane of the scene's own beside those of the file.
+pub(super) fn refuse_own_plane(spot: &Spot<'_>, log: &mut Diagnostics) {
+    for own in OWN.into_iter().filter_map(|key| spot.get(key)) {
+        let name = own.key.rsplit('.').next().unwrap_or_default();
+        own.clash(log, format!("{name} beside plane = \"{FILE}\""), "one of both: the robot's file gives the planes");
+    }
+}
+
+/// The numbers of a request for each plane, and the collision geometry that passes through it. One
+/// with a plane of its own is alone. `None`: it is of the file, which has none, and that is an error.
+pub(super) fn of<'p>(
+    row: &Effect,
+    one: &EffectRequest,
+    says: &Numbers,
+    rest: Option<&Numbers>,
+    planes: &'p [Plane],
+    log: &mut Diagnostics,
+) -> Option<Vec<(Numbers, &'p [(String, usize)])>> {
+    let places = OWN.map(|name| row.fields.iter().position(|field| field.name == name));
+    let has_own = places.iter().flatten().any(|place| says.fields[*place].is_some());
+    if !says.from_file_planes && (has_own || !rest.is_some_and(|rest| rest.from_file_planes)) {
+        return Some(vec![(says.clone(), &[])]);
+    }
+    if planes.is_empty() {
+        let found = "\"file\", and the robot's file has no plane that makes contact";
+        // Once, whatever the number of links.
+        let is_told = log.errors.iter().any(|error| error.code == Code::Robot && error.found == found);
+        if !is_told {
+            log.error((one.place, &format!("{}.{KEY}", one.key)), Code::Robot, found, "`normal` and `height`");
+        }
+        return None;
+    }
+    let against = |plane: &'p Plane| {
+        let height = plane.normal.iter().zip(plane.point).map(|(normal, x)| normal * x).sum();
+        let mut own = says.clone();
+        for (place, numbers) in places.into_iter().zip([plane.normal.to_vec(), vec![height]]) {
+            place.into_iter().for_each(|place| own.fields[place] = Some(numbers.clone()));
+        }
+        (own, plane.without.as_slice())
+    };
+    Some(planes.iter().map(against).collect())
+}
