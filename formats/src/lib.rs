@@ -49,6 +49,7 @@ mod pose;
 mod reading;
 pub mod sdf;
 mod snap;
+mod taken;
 pub mod urdf;
 pub mod world;
 mod xacro;

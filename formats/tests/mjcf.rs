@@ -326,6 +326,25 @@ fn copies_and_depth_are_bounded() {
 }
 
 #[test]
+fn copies_are_bounded_in_number_and_in_the_length_of_their_names() {
+    let document = |world: &str| format!("<mujoco><worldbody>{world}</worldbody></mujoco>");
+    let has = |text: &str, found: &str| {
+        let errors = refused(text).errors;
+        assert!(errors.iter().any(|error| error.code == Code::TooLarge && error.found.contains(found)), "{errors:?}");
+    };
+    // A frame that attaches itself twice: 2¹⁶ copies, of bodies whose names are taken.
+    let twice = "<frame name=\"f\"><attach frame=\"f\"/><attach frame=\"f\"/><body name=\"b\"/></frame>";
+    has(&document(twice), "models in models");
+    let long = "s".repeat(100_000);
+    has(&document(&format!("<replicate count=\"390000\" sep=\"{long}\"><body name=\"b\"/></replicate>")), "very long names");
+    has(&document(&format!("<replicate count=\"100000\"><body name=\"{long}\"/></replicate>")), "very long names");
+    // A name of an actuator has no room either, where there are very many copies of it.
+    let copies = "<replicate count=\"100000\"><body><joint name=\"j\"/><inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/></body></replicate>";
+    let actuator = format!("<actuator><motor name=\"{long}\" joint=\"j\"/></actuator></mujoco>");
+    has(&document(copies).replace("</mujoco>", &actuator), "very many copies");
+}
+
+#[test]
 fn no_part_of_a_file_makes_the_reader_panic() {
     let text = include_str!("corpus/mjcf/arm.xml");
     assert!(accepted(text).warnings.len() < 3);

@@ -487,6 +487,13 @@ fn the_models_of_a_world_are_one_robot() {
 }
 
 #[test]
+fn names_of_nested_models_are_bounded_together() {
+    let links: String = (0..40_000).map(|k| format!("<link name=\"l{k}\"/>")).collect();
+    let found = error(&model("1.9", &format!("<model name=\"{}\">{links}</model>", "m".repeat(900))));
+    assert_eq!((found.0, found.2.contains("very long names")), (Code::TooLarge, true), "{found:?}");
+}
+
+#[test]
 fn planes_of_still_models_are_planes_of_the_world() {
     let ground = |normal: &str| {
         let shape = format!("<collision name=\"c\"><pose>0 0 0.5 0 0 0</pose><geometry><plane>{normal}</plane></geometry></collision>");

@@ -16,6 +16,8 @@ use crate::pose::{Pose, Symmetric, Vector, about, diagonal, multiply, rotate, un
 
 /// A model may have so many bodies, joints, geoms and sites altogether.
 const MOST_ITEMS: usize = 400_000;
+/// All names may have so many bytes together, those of copies and attached models among them.
+const MOST_LETTERS: usize = 32 << 20;
 /// Tags may be nested so deeply, those of attached models in those that attach them.
 const MOST_DEPTH: usize = 256;
 /// Attached models may attach others so many times.
@@ -156,21 +158,14 @@ struct Context<'a> {
     is_first: bool,
 }
 
-impl Context<'_> {
-    fn name(&self, element: &Element) -> Option<String> {
-        let name = element.text("name").filter(|name| !name.is_empty())?;
-        Some(format!("{}{name}{}", self.prefix, self.suffix))
-    }
-}
-
 /// All bodies of a model.
 pub(crate) fn tree<'a>(documents: &'a Documents, log: &mut Diagnostics) -> Tree<'a> {
     let settings: Vec<Rc<Settings<'a>>> = documents.roots().map(|root| Rc::new(Settings::of(root, log))).collect();
-    let mut build = Build { documents, settings, bodies: Vec::new(), parts: Vec::new(), items: 0, depth: 0 };
+    let mut build = Build { documents, settings, bodies: Vec::new(), parts: Vec::new(), items: 0, letters: 0, depth: 0 };
     let root = documents.root(0);
     let context = build.context(0);
     build.add(None, root, 0, Pose::default(), &context);
-    build.begin(&context, Extent::Whole);
+    build.begin(&context, Extent::Whole, root, log);
     for section in root.all("worldbody") {
         build.content(section, 0, &context, log);
     }
@@ -184,6 +179,8 @@ struct Build<'a> {
     bodies: Vec<Body<'a>>,
     parts: Vec<Part<'a>>,
     items: usize,
+    /// Bytes of all names.
+    letters: usize,
     depth: usize,
 }
 
@@ -195,7 +192,8 @@ impl<'a> Build<'a> {
     }
 
     /// Begins a part of the tree, and returns its index.
-    fn begin(&mut self, context: &Context<'a>, extent: Extent) -> usize {
+    fn begin(&mut self, context: &Context<'a>, extent: Extent, element: &Element, log: &mut Diagnostics) -> usize {
+        self.spell(context.prefix.len() + context.suffix.len(), element, log);
         let index = self.parts.len();
         self.parts.push(Part {
             settings: context.settings.clone(),
@@ -238,7 +236,25 @@ impl<'a> Build<'a> {
         if self.items == MOST_ITEMS {
             element.error((&Subject::Document, ""), Code::TooLarge, "very many bodies and geoms", format!("at most {MOST_ITEMS}"), log);
         }
-        self.items < MOST_ITEMS
+        self.items < MOST_ITEMS && self.letters <= MOST_LETTERS
+    }
+
+    /// Counts the bytes of a name; an error, and no more room, where there are too many.
+    fn spell(&mut self, letters: usize, element: &Element, log: &mut Diagnostics) {
+        let had_room = self.letters <= MOST_LETTERS;
+        self.letters += letters;
+        if had_room && self.letters > MOST_LETTERS {
+            let expected = format!("at most {MOST_LETTERS} bytes of names, those of all copies together");
+            element.error((&Subject::Document, "name"), Code::TooLarge, "very long names", expected, log);
+        }
+    }
+
+    /// The name of what a tag makes.
+    fn name(&mut self, element: &Element, context: &Context<'a>, log: &mut Diagnostics) -> Option<String> {
+        let name = element.text("name").filter(|name| !name.is_empty())?;
+        let full = format!("{}{name}{}", context.prefix, context.suffix);
+        self.spell(full.len(), element, log);
+        Some(full)
     }
 
     /// The tags inside a body, a frame or the world.
@@ -271,13 +287,14 @@ impl<'a> Build<'a> {
                     self.bodies[body].inertial = explicit(&values, &context.settings.compiler, log);
                 }
                 "joint" => {
-                    if let Some(joint) = joint(&values("joint"), context, log) {
+                    let name = self.name(element, context, log);
+                    if let Some(joint) = joint(name, &values("joint"), context, log) {
                         self.bodies[body].joints.push(joint);
                     }
                 }
                 "freejoint" => {
                     let free = Joint {
-                        name: context.name(element),
+                        name: self.name(element, context, log),
                         element,
                         kind: Kind::Free,
                         anchor: [0.0; 3],
@@ -301,7 +318,7 @@ impl<'a> Build<'a> {
                 }
                 "site" => {
                     let pose = site(&values("site"), context, log);
-                    let site = Site { element, name: context.name(element), pose, part: context.part };
+                    let site = Site { element, name: self.name(element, context, log), pose, part: context.part };
                     self.bodies[body].sites.push(site);
                 }
                 "body" => self.body(element, body, context, log),
@@ -333,7 +350,8 @@ impl<'a> Build<'a> {
             let expected = "gravity on all bodies: it is not compensated";
             element.warning((&subject, "gravcomp"), Code::LostDynamics, "a body whose weight is compensated", expected, log);
         }
-        let body = self.add(context.name(element), element, parent, context.frame.then(&pose), context);
+        let name = self.name(element, context, log);
+        let body = self.add(name, element, parent, context.frame.then(&pose), context);
         let context = Context { frame: Pose::default(), class, ..context.clone() };
         self.content(element, body, &context, log);
     }
@@ -360,7 +378,7 @@ impl<'a> Build<'a> {
             let suffix = format!("{separator}{copy:0digits$}{}", context.suffix);
             let mut context = Context { frame: context.frame.then(&pose), class, suffix, ..context.clone() };
             context.is_first &= copy == 0;
-            context.part = self.begin(&context, Extent::Copy);
+            context.part = self.begin(&context, Extent::Copy, element, log);
             self.content(element, body, &context, log);
             self.end(context.part);
             position = pose.then(&Pose::at(offset)).position;
@@ -402,7 +420,7 @@ impl<'a> Build<'a> {
             (None, Some(name)) => ("frame", name),
             (None, None) if text("model").is_some() => {
                 inner.class = 0;
-                inner.part = self.begin(&inner, Extent::Whole);
+                inner.part = self.begin(&inner, Extent::Whole, element, log);
                 for section in root.all("worldbody") {
                     self.content(section, body, &inner, log);
                 }
@@ -419,7 +437,7 @@ impl<'a> Build<'a> {
             return;
         };
         inner.class = class;
-        inner.part = self.begin(&inner, Extent::Attached);
+        inner.part = self.begin(&inner, Extent::Attached, element, log);
         if tag == "body" {
             self.body(source, body, &inner, log);
             self.end(inner.part);
@@ -455,7 +473,7 @@ fn site(values: &Values<'_>, context: &Context<'_>, log: &mut Diagnostics) -> Po
     context.frame.then(&pose)
 }
 
-fn joint<'a>(values: &Values<'a>, context: &Context<'a>, log: &mut Diagnostics) -> Option<Joint<'a>> {
+fn joint<'a>(name: Option<String>, values: &Values<'a>, context: &Context<'a>, log: &mut Diagnostics) -> Option<Joint<'a>> {
     use Kind::{Ball, Free, Hinge, Slide};
     let compiler = &context.settings.compiler;
     let kind = match values.has("type") {
@@ -482,7 +500,7 @@ fn joint<'a>(values: &Values<'a>, context: &Context<'a>, log: &mut Diagnostics) 
     // Mistakes in these are reported above and below.
     let mut reported = log.apart();
     Some(Joint {
-        name: context.name(values.element),
+        name,
         element: values.element,
         kind,
         anchor,

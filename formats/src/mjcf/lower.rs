@@ -1,7 +1,5 @@
 //! From bodies to a [`Description`].
 
-use std::collections::BTreeSet;
-
 use articulated_core::description::{Base, Collision, Description, Frame, Inertial, Joint, JointKind, Link, Origin, Visual};
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
@@ -12,6 +10,7 @@ use super::mesh::Meshes;
 use crate::Options;
 use crate::pose::{Pose, scale, subtract};
 use crate::reading::HELD;
+use crate::taken::Taken;
 
 /// The link that does not move.
 const WORLD: &str = "world";
@@ -29,8 +28,8 @@ pub(crate) struct Lowered {
 pub(crate) fn lower(name: &str, bodies: &[Body<'_>], meshes: &mut Meshes<'_>, options: &Options, log: &mut Diagnostics) -> Option<Lowered> {
     let mut lower = Lower {
         description: Description { name: name.to_owned(), ..Description::default() },
-        links: BTreeSet::from([WORLD.to_owned()]),
-        joints: BTreeSet::new(),
+        links: Taken::with(WORLD),
+        joints: Taken::default(),
         link_of: Vec::with_capacity(bodies.len()),
         is_fixed: Vec::with_capacity(bodies.len()),
         names: Vec::new(),
@@ -71,8 +70,8 @@ fn set_total_mass(bodies: &[Body<'_>], inertials: &mut [Option<Inertial>]) {
 struct Lower {
     description: Description,
     /// Names of links and frames, and of joints, that are taken.
-    links: BTreeSet<String>,
-    joints: BTreeSet<String>,
+    links: Taken,
+    joints: Taken,
     link_of: Vec<usize>,
     /// Whether nothing moves the body.
     is_fixed: Vec<bool>,
@@ -95,17 +94,6 @@ fn keep_dynamics(joint: &bodies::Joint<'_>, name: &str, log: &mut Diagnostics) {
         let place = (joint.element.attribute(attribute), (*tag).to_owned());
         joint.element.unused_part(&Subject::Joint(name.to_owned()), place, WHY, log);
     }
-}
-
-/// `name`, or with the first number from 2 on that is not taken. It is taken then.
-fn free(taken: &mut BTreeSet<String>, name: String) -> String {
-    if taken.insert(name.clone()) {
-        return name;
-    }
-    let number = (2..).find(|number| !taken.contains(&format!("{name}_{number}"))).unwrap_or_default();
-    let name = format!("{name}_{number}");
-    taken.insert(name.clone());
-    name
 }
 
 impl Lower {
@@ -136,7 +124,7 @@ impl Lower {
     }
 
     fn body(&mut self, index: usize, body: &Body<'_>, inertial: Option<Inertial>, options: &Options, log: &mut Diagnostics) {
-        let name = body.name.clone().unwrap_or_else(|| free(&mut self.links, format!("body_{index}")));
+        let name = body.name.clone().unwrap_or_else(|| self.links.free(format!("body_{index}")));
         let parent = self.link_of[body.parent];
         self.is_fixed.push(self.is_fixed[body.parent] && body.joints.is_empty());
         if self.is_fixed[index] && options.base == Base::Fixed && inertial.is_some_and(|inertial| inertial.mass != 0.0) {
@@ -147,7 +135,7 @@ impl Lower {
         if let Some(joint) = free_joint {
             self.free_joint(body, joint, link, log);
         } else if body.joints.is_empty() {
-            let joint = free(&mut self.joints, format!("{name}_fixed"));
+            let joint = self.joints.free(format!("{name}_fixed"));
             let child = self.add_link(link);
             self.add_joint(Joint { name: joint, kind: JointKind::Fixed, parent, child, origin: body.pose.origin(), ..Joint::default() });
         } else {
@@ -176,7 +164,7 @@ impl Lower {
             let why = "the coordinates are those of the body's frame, not of its inertia";
             joint.element.unused(&subject, joint.element.attribute("align"), why, log);
         }
-        let name = joint.name.clone().unwrap_or_else(|| free(&mut self.joints, format!("{}_free", link.name)));
+        let name = joint.name.clone().unwrap_or_else(|| self.joints.free(format!("{}_free", link.name)));
         // One beside others is an error.
         self.names.extend(body.joints.iter().map(|_| name.clone()));
         let child = self.add_link(link);
@@ -205,11 +193,11 @@ impl Lower {
             let child = match link.take_if(|_| is_last && anchor == [0.0; 3]) {
                 Some(link) => self.add_link(link),
                 None => {
-                    let name = free(&mut self.links, format!("{body_name}_{}", k + 1));
+                    let name = self.links.free(format!("{body_name}_{}", k + 1));
                     self.add_link(Link { name, intermediate: true, ..Link::default() })
                 }
             };
-            let name = joint.name.clone().unwrap_or_else(|| free(&mut self.joints, format!("{body_name}_{word}")));
+            let name = joint.name.clone().unwrap_or_else(|| self.joints.free(format!("{body_name}_{word}")));
             keep_dynamics(joint, &name, log);
             self.names.push(name.clone());
             let origin = at_reference(joint, frame).origin();
@@ -228,7 +216,7 @@ impl Lower {
             parent = child;
         }
         if let Some(link) = link {
-            let name = free(&mut self.joints, format!("{body_name}_fixed"));
+            let name = self.joints.free(format!("{body_name}_fixed"));
             let child = self.add_link(link);
             self.add_joint(Joint {
                 name,
@@ -262,12 +250,12 @@ impl Lower {
                 let name = match &site.name {
                     Some(name) if self.links.insert(name.clone()) => name.clone(),
                     Some(name) => {
-                        let own = free(&mut self.links, format!("{name}_site"));
+                        let own = self.links.free(format!("{name}_site"));
                         let why = format!("a body or site has this name: the frame is called {}", quote(&own));
                         site.element.unused(&subject(site.element), site.element.attribute("name"), &why, log);
                         own
                     }
-                    None => free(&mut self.links, format!("{}_site", self.description.links[link].name)),
+                    None => self.links.free(format!("{}_site", self.description.links[link].name)),
                 };
                 self.description.frames.push(Frame { name, link, origin: site.pose.origin() });
             }

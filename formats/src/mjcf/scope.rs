@@ -9,8 +9,11 @@ use super::bodies::{Extent, Joint, Kind, Part, Tree};
 use super::element::Element;
 use crate::pose::{IDENTITY, scalar_last};
 
-/// Actuators, tendons and equations may have so many references, those of copies among them.
-const MOST: usize = 1_000_000;
+/// Actuators, tendons and equations may have so many references, those of copies among them. A name
+/// counts by its length.
+const MOST: usize = 250_000;
+/// So many bytes of a name count as one reference.
+const LETTERS: usize = 64;
 /// So many mistakes have hints.
 const HINTS: usize = 100;
 
@@ -125,10 +128,13 @@ impl<'a> Scope<'a> {
         references: &References<'_>,
         log: &mut Diagnostics,
     ) -> Option<Vec<usize>> {
-        self.looked_up += references.len().max(1);
+        let Part { prefix, suffix, .. } = self.part(part);
+        let letters = prefix.len() + suffix.len() + element.text("name").map_or(0, str::len);
+        let cost = references.len().max(1) + letters / LETTERS;
+        self.looked_up += cost;
         if self.is_full() {
             let found = "very many copies of actuators, tendons and equations";
-            if self.looked_up - references.len().max(1) < MOST {
+            if self.looked_up - cost < MOST {
                 element.error((&Subject::Document, ""), Code::TooLarge, found, format!("at most {MOST} references"), log);
             }
             return None;

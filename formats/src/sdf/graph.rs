@@ -25,6 +25,8 @@ use crate::xml::tree::Element;
 const MOST_NODES: usize = 200_000;
 /// A name may have so many bytes, those of the models around included.
 const MOST_NAME: usize = 1024;
+/// All names together may have so many bytes.
+const MOST_LETTERS: usize = 32 << 20;
 /// So many steps from frame to frame are made altogether, so that no document takes hours.
 const MOST_STEPS: u64 = 200_000_000;
 
@@ -112,7 +114,7 @@ impl<'a> Graph<'a> {
                 return None;
             }
         };
-        let mut build = Build { graph: Graph::empty(root, version), options, suggester: Suggester::default() };
+        let mut build = Build { graph: Graph::empty(root, version), options, suggester: Suggester::default(), letters: 0 };
         // A model alone gives no prefix to names.
         name.unwrap_or_default().clone_into(&mut build.graph.name);
         for model in &all {
@@ -401,6 +403,8 @@ struct Build<'a, 'o> {
     graph: Graph<'a>,
     options: &'o Options,
     suggester: Suggester,
+    /// Bytes of all names.
+    letters: usize,
 }
 
 impl<'a> Build<'a, '_> {
@@ -413,6 +417,15 @@ impl<'a> Build<'a, '_> {
             if index == MOST_NODES {
                 element.error((&about, ""), Code::TooLarge, "very many links, joints and frames", format!("at most {MOST_NODES}"), log);
                 self.graph.nodes.push(node);
+            }
+            return None;
+        }
+        let had_room = self.letters <= MOST_LETTERS;
+        self.letters += node.name.len();
+        if self.letters > MOST_LETTERS {
+            if had_room {
+                let expected = format!("at most {MOST_LETTERS} bytes of names together");
+                element.error((&about, "name"), Code::TooLarge, "very long names", expected, log);
             }
             return None;
         }

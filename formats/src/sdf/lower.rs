@@ -15,6 +15,7 @@ use crate::Options;
 use crate::cycles::{around, cycles};
 use crate::pose::{Pose, Vector, cross, rotate, scale};
 use crate::reading::HELD;
+use crate::taken::Taken;
 use crate::world::{Document, Keyframe, Plane, World};
 
 /// So many loops are described, and so many joints of each.
@@ -28,8 +29,8 @@ pub(crate) fn lower(graph: &Graph<'_>, options: &Options, log: &mut Diagnostics)
     let mut lower = Lower {
         graph,
         description: Description { name: graph.name.clone(), ..Description::default() },
-        links: BTreeSet::from([WORLD_NAME.to_owned()]),
-        joints: BTreeSet::new(),
+        links: Taken::with(WORLD_NAME),
+        joints: Taken::default(),
         first: vec![None; graph.joints.len()],
         frames: Vec::new(),
         start: Vec::new(),
@@ -205,8 +206,8 @@ struct Lower<'a, 'g> {
     graph: &'g Graph<'a>,
     description: Description,
     /// Names of links and frames, and of joints, that are taken.
-    links: BTreeSet<String>,
-    joints: BTreeSet<String>,
+    links: Taken,
+    joints: Taken,
     /// For each joint, the index of that of its first axis and of its second.
     first: Vec<Option<[usize; 2]>>,
     /// Names of `<frame>`s, in their order.
@@ -219,30 +220,21 @@ struct Lower<'a, 'g> {
     leaders: BTreeSet<usize>,
 }
 
-/// `name`, or with the first number from 2 on that is not taken. It is taken then.
-fn free(taken: &mut BTreeSet<String>, name: String) -> String {
-    if taken.insert(name.clone()) {
-        return name;
-    }
-    let number = (2..).find(|number| !taken.contains(&format!("{name}_{number}"))).unwrap_or_default();
-    let name = format!("{name}_{number}");
-    taken.insert(name.clone());
-    name
-}
-
 impl Lower<'_, '_> {
     /// The world and all links, and the names of links and joints.
     fn links(&mut self, options: &Options, log: &mut Diagnostics) {
         self.description.links.push(Link { name: WORLD_NAME.to_owned(), ..Link::default() });
         for link in &self.graph.links {
-            let name = free(&mut self.links, self.graph.nodes[link.node].name.clone());
+            let name = self.links.free(self.graph.nodes[link.node].name.clone());
             let collision = shapes::collisions(link, self.graph, options, &mut self.planes, log);
             let visual = shapes::visuals(link, self.graph, options, log);
             self.description.links.push(Link { name, inertial: link.inertial, collision, visual, intermediate: false });
         }
         let frames = self.graph.nodes.iter().filter(|node| node.what == What::Frame);
-        self.frames = frames.map(|frame| free(&mut self.links, frame.name.clone())).collect();
-        self.joints.extend(self.graph.joints.iter().map(|joint| self.graph.nodes[joint.node].name.clone()));
+        self.frames = frames.map(|frame| self.links.free(frame.name.clone())).collect();
+        for joint in &self.graph.joints {
+            self.joints.insert(self.graph.nodes[joint.node].name.clone());
+        }
     }
 
     fn node(&self, body: usize) -> usize {
@@ -258,7 +250,7 @@ impl Lower<'_, '_> {
                 true => (JointKind::Fixed, "fixed", pose.origin()),
                 false => (JointKind::Floating, "free", Origin::default()),
             };
-            let name = free(&mut self.joints, format!("{name}_{word}"));
+            let name = self.joints.free(format!("{name}_{word}"));
             if kind == JointKind::Floating && pose != Pose::default() {
                 let ([w, x, y, z], [px, py, pz]) = (pose.rotation, pose.position);
                 self.start.push((name.clone(), vec![px, py, pz, x, y, z, w]));
@@ -294,7 +286,7 @@ impl Lower<'_, '_> {
         let mut indices = [self.description.joints.len(); 2];
         let last = motions.len();
         let dummy = |lower: &mut Self, number: usize| {
-            let name = free(&mut lower.links, format!("{link}_{number}"));
+            let name = lower.links.free(format!("{link}_{number}"));
             lower.description.links.push(Link { name, intermediate: true, ..Link::default() });
             lower.description.links.len() - 1
         };
@@ -310,7 +302,7 @@ impl Lower<'_, '_> {
         if is_beside || last == 0 {
             let (name, origin) = match last {
                 0 => (name, origin),
-                _ => (free(&mut self.joints, format!("{name}_fixed")), Origin::at(scale(anchor, -1.0))),
+                _ => (self.joints.free(format!("{name}_fixed")), Origin::at(scale(anchor, -1.0))),
             };
             self.description.joints.push(Joint { name, kind: JointKind::Fixed, parent, child: body, origin, ..Joint::default() });
         }
@@ -367,7 +359,7 @@ impl Lower<'_, '_> {
             })
             .collect();
         for motion in motions.iter_mut().skip(1) {
-            motion.name = free(&mut self.joints, format!("{name}_2"));
+            motion.name = self.joints.free(format!("{name}_2"));
         }
         if is_reversed {
             motions.reverse();
