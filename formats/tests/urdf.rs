@@ -138,7 +138,7 @@ const DRAKE: &str = "<link name='ball'/><link name='plane'/><link name='screw'/>
 <drake:joint name='p' type='planar'><drake:parent link='hook'/><drake:child link='plane'/><axis xyz='0 0 1'/></drake:joint>
 <drake:joint name='s' type='screw'><parent link='hook'/><child link='screw'/><origin xyz='1 2 3'/><axis xyz='0 0 1'/>
 <drake:screw_thread_pitch value='0.005'/></drake:joint>
-<drake:joint name='u' type='universal'><parent link='hook'/><child link='cross'/><axis xyz='0 0 1'/></drake:joint>";
+<drake:joint name='u' type='universal'><parent link='hook'/><child link='cross'/><axis xyz='0 0 1'/><dynamics damping='0.2'/></drake:joint>";
 
 #[test]
 fn joints_of_drake_are_read() {
@@ -154,7 +154,8 @@ fn joints_of_drake_are_read() {
     let links: Vec<&str> = reading.description.joints.iter().map(|j| reading.description.links[j.child].name.as_str()).collect();
     assert!(links.ends_with(&["ball", "plane", "screw", "cross"]), "{links:?}");
     let unused: Vec<String> = reading.unused.iter().map(|u| format!("{} {}", u.subject, u.tag)).collect();
-    assert!(["joint \"u\" axis", "joint \"b\" dynamics"].iter().all(|tag| unused.iter().any(|u| u == tag)), "{unused:?}");
+    assert!(["joint \"u\" axis", "joint \"b\" dynamics damping"].iter().all(|tag| unused.iter().any(|u| u == tag)), "{unused:?}");
+    assert_eq!((joint(&reading, "b").dynamics.damping, joint(&reading, "u").dynamics.damping), (Some(0.1), Some(0.2)));
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::Stdio;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use articulated_codegen::Generated;
@@ -18,7 +19,9 @@ pub struct Program {
     file: PathBuf,
     /// How long the compiler took.
     pub time: Duration,
-    _folder: tempfile::TempDir,
+    /// A variable that is set where it runs.
+    variable: Option<&'static str>,
+    _folder: Arc<tempfile::TempDir>,
 }
 
 impl Program {
@@ -45,12 +48,17 @@ impl Program {
         command.args(["--edition", "2024", "--crate-name", "program"]);
         let answer = command.arg("-o").arg(&file).arg(folder.path().join("main.rs")).output().expect("a Rust compiler");
         assert!(answer.status.success(), "refused: {}", String::from_utf8_lossy(&answer.stderr));
-        Self { file, time: start.elapsed(), _folder: folder }
+        Self::compiled(file, start.elapsed(), folder)
     }
 
     /// A program that was compiled in this folder.
     pub(crate) fn compiled(file: PathBuf, time: Duration, folder: tempfile::TempDir) -> Self {
-        Self { file, time, _folder: folder }
+        Self { file, time, variable: None, _folder: Arc::new(folder) }
+    }
+
+    /// The same program, which runs with this variable of the environment.
+    pub fn told(&self, variable: &'static str) -> Self {
+        Self { file: self.file.clone(), variable: Some(variable), _folder: self._folder.clone(), ..*self }
     }
 
     /// Results of one function for many states: each a list of arguments in the registry's order.
@@ -59,6 +67,7 @@ impl Program {
     /// If the program fails, as it would on a panic in generated code.
     pub fn run(&self, robot: &str, function: &str, states: &[Vec<&[f64]>]) -> Vec<Vec<f64>> {
         let mut child = machine::run(&self.file)
+            .envs(self.variable.map(|variable| (variable, "1")))
             .args([robot, function, &states.len().to_string()])
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -106,6 +115,13 @@ impl<T: Numbers, const N: usize> Numbers for [T; N] {
     fn add_to(&self, out: &mut Vec<f64>) {
         self.iter().for_each(|t| t.add_to(out));
     }
+}
+
+/// Whether the processor has AVX2, unless the program is told that it has not.
+#[cfg(target_arch = \"x86_64\")]
+fn has_avx2() -> bool {
+    static ANSWER: std::sync::OnceLock<bool> = std::sync::OnceLock::new();
+    *ANSWER.get_or_init(|| std::env::var_os(\"WITHOUT_AVX2\").is_none() && std::is_x86_feature_detected!(\"avx2\"))
 }
 
 /// A result, and the same written where there were other numbers.

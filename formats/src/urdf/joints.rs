@@ -154,6 +154,10 @@ fn motion(tag: &Tag<'_>, kind: JointKind, version: Version, joint: &mut DraftJoi
     }
     if has_one_coordinate(kind) {
         joint.limit = limits::limit(tag, kind, version, log);
+    }
+    // One coefficient for all rates: N·m·s/rad about each axis, as in Drake.
+    let has_dynamics = has_one_coordinate(kind) || matches!(kind, JointKind::Spherical | JointKind::Universal);
+    if has_dynamics {
         joint.dynamics = limits::dynamics(tag, log);
     }
     let useless = [
@@ -161,7 +165,7 @@ fn motion(tag: &Tag<'_>, kind: JointKind, version: Version, joint: &mut DraftJoi
         ("thread", !kind.has_pitch() || tag.is(DRAKE_JOINT)),
         (DRAKE_PITCH, !kind.has_pitch() && tag.is(DRAKE_JOINT)),
         ("limit", !has_one_coordinate(kind)),
-        ("dynamics", !has_one_coordinate(kind)),
+        ("dynamics", !has_dynamics),
     ];
     useless.iter().filter(|(_, useless)| *useless).for_each(|(name, _)| report_useless(tag, name, log));
     if kind.is_fixed()

@@ -56,6 +56,18 @@ fn so_does_code_for_any_machine_whatever_instructions_it_has() {
     }
 }
 
+/// Otherwise the test above would compare one path twice.
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn a_program_without_multiply_adds_rounds_otherwise() {
+    let robot = ROBOTS.iter().find(|robot| robot.name == "panda_like").expect("it is bundled");
+    let mut random = Random::new(19);
+    let states: Vec<State> = (0..STATES).map(|_| robot.case.state(&mut random)).collect();
+    let given: Vec<Vec<&[f64]>> = states.iter().map(|state| arguments("forward_dynamics", state)).collect();
+    let [chosen, portable] = [&CHOSEN, &PORTABLE].map(|program| program.run(&robot.name, "forward_dynamics", &given));
+    assert_eq!(chosen != portable, std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma"));
+}
+
 /// Not even with numbers that are none; the checks of the compiler are on.
 #[test]
 fn no_value_makes_generated_code_panic() {

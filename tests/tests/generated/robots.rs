@@ -117,15 +117,14 @@ pub(crate) static NATIVE: LazyLock<Program> = LazyLock::new(|| {
 
 /// Some of them as `cargo build` compiles for anybody, with every check that the compiler knows:
 /// vector instructions and multiply-adds are chosen when it runs.
-pub(crate) static CHOSEN: LazyLock<Program> =
-    LazyLock::new(|| anybodys(&ANYBODYS, "with the instructions that there are", |source| source));
-
-/// The same on a processor that has neither AVX2 nor fused multiply-add: that is what the programs
-/// are told.
-pub(crate) static PORTABLE: LazyLock<Program> = LazyLock::new(|| {
+pub(crate) static CHOSEN: LazyLock<Program> = LazyLock::new(|| {
     let asked = "::std::is_x86_feature_detected!(\"avx2\")";
-    anybodys(&ANYBODYS, "without multiply-add", |source| source.replace(asked, "false"))
+    anybodys(&ANYBODYS, "with the instructions that there are", |source| source.replace(asked, "crate::has_avx2()"))
 });
+
+/// The same on a processor that has neither AVX2 nor fused multiply-add: that is what the program is
+/// told.
+pub(crate) static PORTABLE: LazyLock<Program> = LazyLock::new(|| CHOSEN.told("WITHOUT_AVX2"));
 
 /// The same on a processor that is neither x86-64 nor Arm: its lanes are arrays.
 pub(crate) static ELSEWHERE: LazyLock<Program> = LazyLock::new(|| {
