@@ -11,6 +11,23 @@ step() {
     printf '== ok, %d s\n' $((SECONDS - start))
 }
 
+# Runs a function beside the steps that follow, until `rejoin`, which prints what it printed.
+beside() {
+    log=$(mktemp)
+    trap 'kill "$other" 2>/dev/null || true; cat "$log"; rm -f "$log"' EXIT
+    "$@" >"$log" 2>&1 &
+    other=$!
+}
+
+rejoin() {
+    local status=0
+    wait "$other" || status=$?
+    trap - EXIT
+    cat "$log"
+    rm -f "$log"
+    return $status
+}
+
 ensure() { # a component of the toolchain that a minimal installation may lack
     cargo "$1" --version >/dev/null 2>&1 || rustup component add "$2"
 }
@@ -49,23 +66,29 @@ python_package() { # of a workspace of its own, so that nothing else compiles Py
 ensure fmt rustfmt
 ensure clippy clippy
 
+# Mostly programs of one thread, which wait for downloads and other programs.
+oracles() {
+    step documentation
+    step python3 models/urdf/generate.py --check
+    step python3 tests/peers/tables.py --check
+    step python3 tests/peers/chart.py --check
+    step python3 tests/oracles/make.py --check
+    step python3 tests/oracles/external.py
+    step python3 tests/embedded/measure.py
+    step python3 tests/mjcf/oracle.py --sample
+    step python3 tests/sdf/oracle.py --sample
+    step python3 tests/xacro/oracle.py --sample
+}
+
 step cargo fmt --all --check
 step cargo clippy --quiet --workspace --all-targets -- -D warnings
 step alone
 step cargo test --workspace
 step arm
-step documentation
-step python3 models/urdf/generate.py --check
-step python3 tests/peers/tables.py --check
-step python3 tests/peers/chart.py --check
-step python3 tests/oracles/make.py --check
-step python3 tests/oracles/external.py
-step python3 tests/embedded/measure.py
+beside oracles
 step python3 tests/shipped/shipped.py --sample
-step python3 tests/mjcf/oracle.py --sample
-step python3 tests/sdf/oracle.py --sample
-step python3 tests/xacro/oracle.py --sample
 step python_package
-step readme_command
 step browser
+rejoin
+step readme_command
 printf '\nall checks passed in %d s\n' $SECONDS

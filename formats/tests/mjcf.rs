@@ -336,10 +336,11 @@ fn copies_are_bounded_in_number_and_in_the_length_of_their_names() {
     let twice = "<frame name=\"f\"><attach frame=\"f\"/><attach frame=\"f\"/><body name=\"b\"/></frame>";
     has(&document(twice), "models in models");
     let long = "s".repeat(100_000);
-    has(&document(&format!("<replicate count=\"390000\" sep=\"{long}\"><body name=\"b\"/></replicate>")), "very long names");
-    has(&document(&format!("<replicate count=\"100000\"><body name=\"{long}\"/></replicate>")), "very long names");
+    has(&document(&format!("<replicate count=\"90000\" sep=\"{long}\"><body name=\"b\"/></replicate>")), "very long names");
+    has(&document(&format!("<replicate count=\"40000\"><body name=\"{long}\"/></replicate>")), "very long names");
     // A name of an actuator has no room either, where there are very many copies of it.
-    let copies = "<replicate count=\"100000\"><body><joint name=\"j\"/><inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/></body></replicate>";
+    let copies =
+        "<replicate count=\"20000\"><body><joint name=\"j\"/><inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/></body></replicate>";
     let actuator = format!("<actuator><motor name=\"{long}\" joint=\"j\"/></actuator></mujoco>");
     has(&document(copies).replace("</mujoco>", &actuator), "very many copies");
 }

@@ -34,11 +34,11 @@ impl Session {
 
     fn creep_of_joints(&self, recording: &Recording) -> Option<Creep> {
         let creep = |at: Freedom<'_>| {
-            let speed = at.effect(EffectId::friction)?.parameters.get(1)? / at.multiplier.abs();
+            let speed = *at.effect(EffectId::friction)?.parameters.get(1)?;
             let mut creep = Creep { effect: EffectId::friction, on: self.name_of(&at), distance: 0.0, time: 0.0 };
             for k in 1..recording.len() {
                 let time = recording.t[k] - recording.t[k - 1];
-                let [a, b] = [k - 1, k].map(|k| recording.v_at(k)[at.v].abs());
+                let [a, b] = [k - 1, k].map(|k| at.own_rate(recording.v_at(k)).abs());
                 // By rates: the coordinates of a ball joint are a quaternion.
                 if a.max(b) <= SLIDING * speed {
                     creep.add(0.5 * (a + b) * time, time, speed);

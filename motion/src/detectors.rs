@@ -102,15 +102,11 @@ impl<'a> Detectors<'a> {
                 self.unavailable.push(UnavailableEvent { file: session.scene.file.clone(), what: EventClass::Limits, joint: Some(name) });
                 continue;
             }
-            // A joint that follows another the other way round is at its own upper bound where that
-            // is at the lower.
-            let mut kinds = [EventKind::LowerLimit, EventKind::UpperLimit];
-            if at.multiplier < 0.0 {
-                kinds.reverse();
-            }
+            let kinds = [EventKind::LowerLimit, EventKind::UpperLimit];
             for (kind, (lower, upper)) in kinds.into_iter().zip([(lower, f64::INFINITY), (f64::NEG_INFINITY, upper)]) {
                 if lower.is_finite() || upper.is_finite() {
-                    let event = Event::limit(name.as_str(), at.q, lower, upper).direction(Direction::Either);
+                    let terms = at.terms.iter().map(|term| (term.q, term.multiplier)).collect();
+                    let event = Event::limit_of_sum(name.as_str(), terms, at.offset, (lower, upper)).direction(Direction::Either);
                     self.push(event, kind, &name);
                 }
             }
@@ -141,7 +137,8 @@ impl<'a> Detectors<'a> {
         for at in session.freedoms() {
             let Some([_, speed, ..]) = at.effect(EffectId::friction).map(|friction| friction.parameters.as_slice()) else { continue };
             let name = session.name_of(&at);
-            let event = Event::stick_slip(name.as_str(), at.v, speed / at.multiplier.abs());
+            let terms = at.terms.iter().map(|term| (term.v, term.multiplier)).collect();
+            let event = Event::stick_slip_of_sum(name.as_str(), terms, *speed);
             self.push(event, EventKind::StickSlip, &name);
         }
     }

@@ -5,45 +5,62 @@ use articulated_core::model::Body;
 
 use crate::session::Session;
 
-/// A degree of freedom: its index in its joint, and the coordinate and rate that it moves with. Its
-/// own coordinate is multiplier · coordinate + offset.
+/// A degree of freedom: its index in its joint, and the coordinates and rates that it moves with.
+/// Its own coordinate is Σ multiplier · coordinate + offset.
 pub(crate) struct Freedom<'s> {
     /// The body that the joint carries; it has the joint's name.
     pub(crate) body: &'s Body<f64>,
     freedom: usize,
+    /// One, or several of a joint that follows several others.
+    pub(crate) terms: Vec<Term>,
+    pub(crate) offset: f64,
+}
+
+/// A coordinate that a degree of freedom moves with, and the rate of that.
+#[derive(Clone, Copy)]
+pub(crate) struct Term {
     pub(crate) q: usize,
     pub(crate) v: usize,
     pub(crate) multiplier: f64,
-    offset: f64,
 }
 
 impl Session {
     /// All degrees of freedom, mimic joints included. Those of a quaternion have no coordinates of
     /// their own, and so no bounds.
     pub(crate) fn freedoms(&self) -> impl Iterator<Item = Freedom<'_>> {
-        self.model.bodies().iter().skip(1).flat_map(|body| {
-            let (at, follow) = (&body.coordinates, body.coordinates.mimic);
-            let (multiplier, offset) = follow.map_or((1.0, 0.0), |f| (f.multiplier, f.offset));
-            let one = move |freedom| Freedom { body, freedom, q: at.q + freedom, v: at.v + freedom, multiplier, offset };
-            (0..body.joint.nv()).filter(move |_| multiplier != 0.0).map(one)
+        let bodies = self.model.bodies();
+        // Of a joint that follows several others the last body speaks for all.
+        let is_last = |k: usize| bodies.get(k + 1).is_none_or(|next| self.model.series(next).nth(1).is_none());
+        (1..bodies.len()).filter(move |k| is_last(*k)).flat_map(move |k| {
+            let body = &bodies[k];
+            let offset = self.model.series(body).filter_map(|part| part.coordinates.mimic).map(|follow| follow.offset).sum();
+            let one = move |freedom| {
+                let term = |part: &Body<f64>| {
+                    let (at, multiplier) = (&part.coordinates, part.coordinates.mimic.map_or(1.0, |follow| follow.multiplier));
+                    Term { q: at.q + freedom, v: at.v + freedom, multiplier }
+                };
+                let terms = self.model.series(body).map(term).filter(|term| term.multiplier != 0.0).collect();
+                Freedom { body, freedom, terms, offset }
+            };
+            (0..body.joint.nv()).map(one).filter(|one| !one.terms.is_empty())
         })
     }
 
     /// Name for events of a degree of freedom: its joint, with an index where that has several.
     pub(crate) fn name_of(&self, at: &Freedom<'_>) -> String {
         let several = self.model.joints().iter().find(|joint| joint.name == at.joint() && joint.v.1 > 1);
-        several.map_or_else(|| at.joint().to_owned(), |joint| format!("{}[{}]", joint.name, at.v - joint.v.0))
+        several.map_or_else(|| at.joint().to_owned(), |joint| format!("{}[{}]", joint.name, at.terms[0].v - joint.v.0))
     }
 
-    /// Bounds of the coordinate that a degree of freedom moves with: those of the effect if its
-    /// joint has it, else those of the file; rad or m.
+    /// Bounds of its own coordinate: those of the effect if its joint has it, else those of the file;
+    /// rad or m.
     pub(crate) fn bounds(&self, at: &Freedom<'_>) -> Option<(f64, f64)> {
         let limit = at.effect(EffectId::limit).filter(|limit| !limit.effect.row().is_of_rotation(at.body.joint));
         let own = match limit.map(|limit| limit.parameters.as_slice()) {
             Some([lower, upper, ..]) => Some((*lower, *upper)),
             _ => None,
         };
-        own.or_else(|| self.of_the_file(at.body)).map(|bounds| at.of_the_coordinate(bounds))
+        own.or_else(|| self.of_the_file(at.body))
     }
 
     /// Ball joints with a bound of the angle of their rotation: name, place in q, and the bound of
@@ -83,14 +100,13 @@ impl<'s> Freedom<'s> {
         self.body.effects.joint.iter().find(|e| e.effect == effect && e.freedom == self.freedom)
     }
 
-    /// Its own coordinate at coordinate `q` of the joint that it moves with.
-    pub(crate) fn own_coordinate(&self, q: f64) -> f64 {
-        self.multiplier * q + self.offset
+    /// Its own coordinate at `q` `[nq]`; `None` where a coordinate is missing.
+    pub(crate) fn own_coordinate(&self, q: &[f64]) -> Option<f64> {
+        self.terms.iter().try_fold(self.offset, |sum, term| Some(sum + term.multiplier * q.get(term.q)?))
     }
 
-    /// Converts bounds of its own coordinate to bounds of the coordinate that it moves with.
-    fn of_the_coordinate(&self, (lower, upper): (f64, f64)) -> (f64, f64) {
-        let [a, b] = [lower, upper].map(|x| (x - self.offset) / self.multiplier);
-        if self.multiplier < 0.0 { (b, a) } else { (a, b) }
+    /// Its own rate at `v` `[nv]`.
+    pub(crate) fn own_rate(&self, v: &[f64]) -> f64 {
+        self.terms.iter().map(|term| term.multiplier * v[term.v]).sum()
     }
 }

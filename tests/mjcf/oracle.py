@@ -5,6 +5,7 @@
     python3 tests/mjcf/oracle.py --sample         a few of them, as CI does
     python3 tests/mjcf/oracle.py --only robosuite packages whose name contains a word
     python3 tests/mjcf/oracle.py --file F.xml     one file
+    python3 tests/mjcf/oracle.py --generated      a dozen files, by generated code
     python3 tests/mjcf/oracle.py --write          also writes docs/mjcf-files.md
 
 For each file that MuJoCo compiles: masses, centres of mass and inertias of all bodies, armature, damping, friction, stiffness,
@@ -37,9 +38,16 @@ from virtual_environment import python_of  # noqa: E402
 REPOSITORY = HERE.parent.parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
 PLACE = TARGET / "mjcf"
+COMMAND = TARGET / "release" / ("articulated.exe" if os.name == "nt" else "articulated")
 HELPER = TARGET / "release" / "examples" / ("dynamics.exe" if os.name == "nt" else "dynamics")
 TABLE = REPOSITORY / "docs" / "mjcf-files.md"
 ENDINGS = {".xml", ".mjcf", ".stl", ".obj", ".msh", ".png", ".skn", ".bin", ".jpg", ".hf"}
+# Those that simulate.py moves, and of which code is generated.
+MODELS = {
+    "gymnasium": ["half_cheetah.xml", "hopper.xml", "walker2d_v5.xml", "ant.xml", "inverted_double_pendulum.xml", "humanoid.xml"],
+    "openarm-mujoco": ["openarm_bimanual.xml"],
+    "playground": ["cartpole.xml", "acrobot.xml", "finger.xml", "pendulum.xml", "reacher.xml"],
+}
 STATES = 3
 # MuJoCo's types of joints; 0 is free.
 BALL, SLIDE, HINGE = 1, 2, 3
@@ -55,6 +63,8 @@ def main():
     python = environment()
     if "MJCF_ORACLE" not in os.environ:
         build()
+        if arguments.generated:
+            build_command()
         words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in sys.argv]
         # MuJoCo writes a log into the folder that it runs in.
         code = subprocess.run([str(python), *words], cwd=PLACE, env={**os.environ, "MJCF_ORACLE": "1"}).returncode
@@ -64,6 +74,14 @@ def main():
         lines = [f"{name}: {value:.1e}" for name, value in sorted(numbers.items())]
         print(verdict, *lines, *(f"{name}: {value}" for name, value in sorted(counts.items())), sep="\n  ")
         sys.exit(verdict != "equal")
+    if arguments.generated:
+        good = True
+        for path in models():
+            verdict, numbers, _ = compare(path, generated=True)
+            lines = [f"{name} {value:.1e}" for name, value in sorted(numbers.items()) if name in OF_CODE]
+            print(f"{path.name}: {verdict}; {', '.join(lines)}", flush=True)
+            good &= verdict == "equal"
+        sys.exit(not good)
     own = HERE / "models"
     rows = {}
     for name, path in [("files of this folder", own), *packages(arguments)]:
@@ -93,6 +111,7 @@ def parse():
     parser.add_argument("--sample", action="store_true", help="only the packages marked so")
     parser.add_argument("--only", default="", help="only packages whose name contains this")
     parser.add_argument("--file", help="only this file")
+    parser.add_argument("--generated", action="store_true", help="a dozen files, by generated code")
     parser.add_argument("--write", action="store_true", help="write the table of files")
     return parser.parse_args()
 
@@ -105,6 +124,23 @@ def environment():
 def build():
     command = ["cargo", "build", "--quiet", "--release", "-p", "articulated-formats", "--example", "dynamics"]
     subprocess.run(command, check=True, cwd=REPOSITORY)
+
+
+def build_command():
+    subprocess.run(["cargo", "build", "--quiet", "--release", "-p", "articulated-cli"], check=True, cwd=REPOSITORY)
+
+
+def models():
+    """The paths of MODELS."""
+    wanted = argparse.Namespace(sample=False, only="")
+    found = {name.partition("==")[0]: folder for name, folder in packages(wanted) if name.partition("==")[0] in MODELS}
+    for package, names in MODELS.items():
+        for name in names:
+            paths = sorted(found[package].rglob(name))
+            if paths:
+                yield paths[0]
+            else:
+                print(f"{name:40}is not in {package}")
 
 
 def packages(arguments):
@@ -151,7 +187,7 @@ def files_of(folder):
     return rows
 
 
-def compare(path):
+def compare(path, generated=False):
     """A verdict, the largest difference of each kind of number, and how many things there are of a kind."""
     import warnings
 
@@ -188,6 +224,8 @@ def compare(path):
         return "refused: " + first.replace(str(path.parent), "…")[:300], {}, {}
     line, _, rest = answer.stdout.partition(b"\n")
     robot, numbers = json.loads(line), np.frombuffer(rest, "<f8")
+    if generated:
+        numbers = by_generated_code(path, [one[2] for one in states])
     if (robot["nq"], robot["nv"]) != (model.nq, model.nv):
         return f"differs: {robot['nq']} coordinates and {robot['nv']} freedoms, MuJoCo {model.nq} and {model.nv}", {}, {}
     names = [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, body) for body in range(model.nbody)]
@@ -234,6 +272,31 @@ def compare(path):
         if weights.sum() > 0:
             differ("centre of mass", weights @ np.array(centers) / weights.sum(), data.subtree_com[0], length)
     return "equal" if all(value <= BOUND for value in off.values()) else "differs:", dict(off), counts
+
+
+# What code computes, rather than the reader.
+OF_CODE = ("mass matrix", "bias force", "position", "orientation")
+
+
+def by_generated_code(path, states):
+    """The numbers of the helper, by code that rustc compiles."""
+    import numpy as np
+
+    names = ["mass_matrix", "inverse_dynamics", "placements"]
+    sent = json.dumps({"states": [dict(zip("qva", map(list, one))) for one in states]})
+    command = [str(COMMAND), "eval", str(path), "--function", ",".join(names), "--states", "-", "--generated", "--format", "json"]
+    answer = subprocess.run(command, input=sent.encode(), capture_output=True, timeout=600)
+    if answer.returncode:
+        raise RuntimeError(answer.stderr.decode())
+    found = {one["function"]: one["states"] for one in json.loads(answer.stdout)["functions"]}
+    return np.array([x for k in range(len(states)) for name in names for x in flat(found[name][k]["generated"])])
+
+
+def flat(value):
+    """The numbers of nested objects and lists, in their order."""
+    if isinstance(value, dict):
+        value = list(value.values())
+    return [x for part in value for x in flat(part)] if isinstance(value, list) else [value]
 
 
 def state(model, random):

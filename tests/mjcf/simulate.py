@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Simulates MJCF files with `articulated simulate` and with MuJoCo's mj_step, and prints time and error side by side.
 
-    python3 tests/mjcf/simulate.py                   the files of MODELS, from the pinned packages
+    python3 tests/mjcf/simulate.py                   the dozen files of oracle.py, from the pinned packages
     python3 tests/mjcf/simulate.py --file F.xml      one file
     python3 tests/mjcf/simulate.py --end 2           until 2 s
 
@@ -26,14 +26,8 @@ import tempfile
 import time
 from pathlib import Path
 
-from oracle import BALL, HERE, PLACE, REPOSITORY, TARGET, environment, packages
+from oracle import BALL, COMMAND, HERE, PLACE, REPOSITORY, build_command, environment, models
 
-COMMAND = TARGET / "release" / ("articulated.exe" if os.name == "nt" else "articulated")
-MODELS = {
-    "gymnasium": ["half_cheetah.xml", "hopper.xml", "walker2d_v5.xml", "ant.xml", "inverted_double_pendulum.xml", "humanoid.xml"],
-    "openarm-mujoco": ["openarm_bimanual.xml"],
-    "playground": ["cartpole.xml", "acrobot.xml", "finger.xml", "pendulum.xml", "reacher.xml"],
-}
 SAME = 1e-6
 
 
@@ -44,7 +38,7 @@ def main():
     arguments = parser.parse_args()
     python = environment()
     if "MJCF_ORACLE" not in os.environ:
-        subprocess.run(["cargo", "build", "--quiet", "--release", "-p", "articulated-cli"], check=True, cwd=REPOSITORY)
+        build_command()
         words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in sys.argv]
         sys.exit(subprocess.run([str(python), *words], cwd=PLACE, env={**os.environ, "MJCF_ORACLE": "1"}).returncode)
     print(f"{'':40}{'':6}{'':13}{'MuJoCo, its step':>24}{'dopri5, generated':>24}{'generic':>12}")
@@ -62,20 +56,6 @@ def main():
         columns = "".join(f"{error:12.1e}{1e3 * seconds:12.3f}" for error, seconds in both)
         print(f"{path.name:40}{freedoms:6}{same:13.1e}{columns}{1e3 * generic:12.3f}", flush=True)
     sys.exit(not good)
-
-
-def models():
-    class All:
-        sample, only = False, ""
-
-    found = {name.partition("==")[0]: folder for name, folder in packages(All) if name.partition("==")[0] in MODELS}
-    for package, names in MODELS.items():
-        for name in names:
-            paths = sorted(found[package].rglob(name))
-            if paths:
-                yield paths[0]
-            else:
-                print(f"{name:40}is not in {package}")
 
 
 def measure(path, end):

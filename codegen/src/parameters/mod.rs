@@ -179,8 +179,10 @@ impl<'a> Robot<'a> {
     /// Its numbers, if it is on.
     fn on_joint(&self, row: &Effect, name: &str) -> Result<Option<&[f64]>, String> {
         let names = || self.model.bodies().iter().skip(1).map(|body| &body.name);
-        let body = self.bodies.get(name).ok_or_else(|| format!("there is no joint {name:?} that moves{}", meant(name, names())))?;
-        Ok(self.model.bodies()[*body].effects.joint.iter().find(|on| on.effect == row.id).map(|on| on.parameters.as_slice()))
+        self.bodies.get(name).ok_or_else(|| format!("there is no joint {name:?} that moves{}", meant(name, names())))?;
+        // A joint may have several bodies.
+        let mut on = self.model.bodies().iter().filter(|body| body.name == name).flat_map(|body| &body.effects.joint);
+        Ok(on.find(|on| on.effect == row.id).map(|on| on.parameters.as_slice()))
     }
 
     /// Its numbers, if it is on.

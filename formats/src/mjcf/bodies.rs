@@ -15,7 +15,7 @@ use super::values::Values;
 use crate::pose::{Pose, Symmetric, Vector, about, diagonal, multiply, rotate, unit};
 
 /// A model may have so many bodies, joints, geoms and sites altogether.
-const MOST_ITEMS: usize = 400_000;
+const MOST_ITEMS: usize = 100_000;
 /// All names may have so many bytes together, those of copies and attached models among them.
 const MOST_LETTERS: usize = 32 << 20;
 /// Tags may be nested so deeply, those of attached models in those that attach them.

@@ -313,3 +313,42 @@ fn an_error_on_the_way_leaves_what_was_up_to_there() {
     assert_eq!((outcome.ending, outcome.recording.len()), (Ending::ByError, 31));
     assert!(outcome.error.unwrap().to_string().starts_with("30 steps were made") && (outcome.reached - 0.3).abs() < 1e-12);
 }
+
+/// y = 0.5 slide − 2 side + 0.25 has bounds and friction of its own.
+#[test]
+fn a_joint_that_follows_several_has_events_of_its_own() {
+    let more = "<link name='b'/><link name='c'/>
+        <joint name='side' type='prismatic'><parent link='rail'/><child link='c'/><axis xyz='0 1 0'/><limit lower='-9' upper='9' effort='1' velocity='1'/></joint>
+        <joint name='y' type='prismatic'><parent link='rail'/><child link='b'/><axis xyz='1 0 0'/><limit lower='-1' upper='0.75' effort='1' velocity='1'/>
+        <dynamics damping='1' friction='0'/><mimic joint='slide' multiplier='0.5' offset='0.25'/><mimic joint='side' multiplier='-2'/></joint></robot>";
+    let urdf = CART.replace("</robot>", more).replace(
+        "<link name='c'/>",
+        "<link name='c'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>",
+    );
+    let scene = |effects: &str| {
+        format!(
+            "gravity = [0, 0, 0]\n initial = {{ q = {{ side = 0.1 }}, v = {{ slide = 1.0, side = -0.5 }} }}\n\
+             simulation = {{ end = 0.7, rtol = 1e-10, atol = 1e-12, events = ['limits'] }}\n{effects}"
+        )
+    };
+    // y = 0.05 + 1.5 t: at 0.75 after 7/15 s.
+    let outcome = moved(&session(&scene(""), &urdf));
+    let found = outcome.occurrences.iter().find(|one| one.what.contains("y reaches")).expect("a bound is reached");
+    assert_eq!(found.about, is(EventKind::UpperLimit, "y", true));
+    assert!((found.t - 7.0 / 15.0).abs() < 1e-9, "{found:?}");
+    // A damper on it takes from both: 2 v̇₁ = −0.5 f, 1 v̇₂ = 2 f with f = 1 · (0.5 v₁ − 2 v₂).
+    let outcome = moved(&session(&scene("effects = { damping = 'file' }"), &urdf));
+    let rate = 0.125 + 4.0;
+    // The rate of y is 1.5 e⁻ʳᵗ, r = 0.125 + 4; here integrated twice.
+    let end = 0.7;
+    let decay = 1.5 * (end - (1.0 - f64::exp(-rate * end)) / rate) / rate;
+    let last = outcome.recording.q_at(outcome.recording.len() - 1).to_vec();
+    for (found, expected) in last.iter().zip([end - 0.25 * decay, 0.1 - 0.5 * end + 2.0 * decay]) {
+        assert!((found - expected).abs() < 1e-8, "{last:?}, expected {expected}");
+    }
+    // At the start it may be beyond its own bounds.
+    let start = session(&scene(""), &urdf);
+    let beyond: Vec<(String, f64)> = start.beyond(&[0.2, -0.5]).into_iter().map(|one| (one.joint, one.found)).collect();
+    assert_eq!((beyond[0].0.as_str(), (beyond[0].1 - 1.35).abs() < 1e-15, beyond.len()), ("y", true, 1), "{beyond:?}");
+    assert!(start.beyond(&[0.2, 0.1]).is_empty());
+}

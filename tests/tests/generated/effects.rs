@@ -45,8 +45,11 @@ fn subject(name: &str, urdf: &str, base: Base, effects: Vec<Applied>) -> Robot {
     with(name.into(), urdf, base, false, options, |f| FUNCTIONS.contains(&f))
 }
 
-/// An arm with everything, four legs alike on the ground and in water, and a tree of every kind of
-/// joint.
+/// A wrist between two motors: pitch is 0.5 m1 − 0.7 m2 + 0.2.
+const DIFFERENTIAL: &str = include_str!("../../robots/differential.urdf");
+
+/// An arm with everything, four legs alike on the ground and in water, a tree of every kind of
+/// joint, and a joint that follows two.
 fn robots() -> Vec<Robot> {
     let everything = |seed: u64, urdf: &str, base: Base| {
         let case = articulated_tests::case::Case::new("", read(urdf), base);
@@ -65,11 +68,15 @@ fn robots() -> Vec<Robot> {
         all_of(EffectId::buoyancy, &links, &[1e-3, 1000.0]),
     ]
     .concat();
+    let on_pitch = |(effect, parameters): (EffectId, &[f64])| all_of(effect, &["pitch"], parameters);
+    let forces = [EffectId::damping, EffectId::friction, EffectId::spring, EffectId::limit];
+    let on_pitch = ON_JOINTS.into_iter().filter(|(effect, _)| forces.contains(effect)).flat_map(on_pitch).collect();
     let tree = urdf_text(&random_tree(111, Flavour { massless: false, links: 5, ..Flavour::WRITTEN }));
     vec![
         subject("arm", ARM, Base::Fixed, everything(3, ARM, Base::Fixed)),
         subject("walker", WALKER, Base::Floating, alike),
         subject("tree", &tree, Base::Floating, everything(5, &tree, Base::Floating)),
+        subject("differential", DIFFERENTIAL, Base::Fixed, on_pitch),
     ]
 }
 

@@ -10,7 +10,8 @@ use articulated_tests::urdf_text;
 use crate::equals_generic::compare;
 use crate::robots::{Robot, with};
 
-const ROBOTS: u64 = 32;
+/// How many are compiled, and by how many a longer test goes on.
+const ROBOTS: [std::ops::Range<u64>; 2] = [0..12, 12..32];
 
 /// One of each way in which code is made: lanes alone, matrices in lanes, pieces, frames, and what
 /// all limbs add to.
@@ -19,15 +20,26 @@ const FUNCTIONS: [&str; 5] =
 
 #[test]
 fn limbs_of_every_kind_are_those_of_the_generic_library() {
+    compare_limbs(ROBOTS[0].clone());
+}
+
+#[test]
+#[ignore = "a minute of rustc"]
+fn so_are_further_limbs() {
+    compare_limbs(ROBOTS[1].clone());
+}
+
+fn compare_limbs(seeds: std::ops::Range<u64>) {
     let robot = |seed| {
         let urdf = urdf_text(&random_limbs(seed));
         with(format!("limbs_{seed}"), &urdf, Base::Floating, false, Options::default(), |name| FUNCTIONS.contains(&name))
     };
-    let robots: Vec<Robot> = (0..ROBOTS).map(robot).collect();
+    let robots: Vec<Robot> = seeds.map(robot).collect();
     let modules: Vec<(&str, &Generated)> = robots.iter().map(|r| (r.name.as_str(), &r.generated)).collect();
     let program = Program::build(&modules, &["-C", "target-cpu=native"]);
     let lanes = |robot: &&Robot| robot.generated.ledger.functions.iter().any(|f| f.lanes > 1);
-    println!("{} of {ROBOTS} robots have something in lanes; compiled in {:.1?}", robots.iter().filter(lanes).count(), program.time);
+    let with_lanes = robots.iter().filter(lanes).count();
+    println!("{with_lanes} of {} robots have something in lanes; compiled in {:.1?}", robots.len(), program.time);
     for robot in &robots {
         println!("{}: {:.1} units of roundoff", robot.name, compare(&program, robot));
     }

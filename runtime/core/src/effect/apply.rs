@@ -38,7 +38,7 @@ pub enum Fault {
     Twice,
     /// A motor drives a joint that others follow, not one that follows.
     Follows,
-    /// The joint follows several others.
+    /// A rotor on a joint that follows several others: its inertia would be between those.
     FollowsSeveral,
     /// The link is fixed to the base: nothing feels it.
     Still,
@@ -84,7 +84,7 @@ impl fmt::Display for EffectError {
             }
             Fault::Twice => write!(f, "given twice: expected one for a joint"),
             Fault::FollowsSeveral => {
-                f.write_str("the joint follows several others: expected the joints that it follows, or a joint that moves by itself")
+                f.write_str("the joint follows several others, and its rotor would be an inertia between them: expected rotors on the joints that it follows")
             }
             Fault::Follows => write!(f, "the joint follows another: expected the joint that it follows, which is what a motor drives"),
             Fault::Still => write!(f, "the link is fixed to the base, nothing would feel it: expected a link that moves"),
@@ -176,7 +176,7 @@ impl Model<f64> {
             if body.effects.joint.iter().any(|e| e.effect == one.effect) {
                 return Err(Fault::Twice);
             }
-            if bodies.len() > 1 && body.coordinates.mimic.is_some() {
+            if bodies.len() > 1 && body.coordinates.mimic.is_some() && one.effect.row().enters == Enters::Inertia {
                 return Err(Fault::FollowsSeveral);
             }
             if !one.effect.row().acts_on(body.joint) {
@@ -190,7 +190,10 @@ impl Model<f64> {
     }
 
     fn put_on_joint(&mut self, bodies: &[usize], one: &Applied) {
-        for &i in bodies {
+        let follows = |i: &&usize| self.bodies[**i].coordinates.mimic.is_some();
+        // One law for the sum of the coordinates of a joint that follows several.
+        let last = bodies.last().filter(follows).map(core::slice::from_ref);
+        for &i in last.unwrap_or(bodies) {
             let body = &mut self.bodies[i];
             let parameters = with_unit_vectors(one.effect.row(), one.parameters.clone());
             let on = |freedom| JointEffect { effect: one.effect, freedom, parameters: parameters.clone() };

@@ -253,17 +253,24 @@ impl<'a> Builder<'a> {
         let terms: Option<Vec<Mimic>> = core::iter::once(self.leads[index]).chain(others(joints, &self.leads, joint)).collect();
         let terms = terms.ok_or_else(|| ModelError::BadMimic { joint: joint.name.clone() })?;
         let (mut parent, mut x) = seat;
+        // What locked leaders add to the coordinate.
+        let mut still = 0.0;
         for lead in &terms {
             let leader = &joints[lead.joint];
             if let Some(at) = &leader.locked {
                 let [at] = at.as_slice() else {
                     return Err(ModelError::BadLock { joint: leader.name.clone(), kind: leader.kind, found: at.len() });
                 };
-                x = stage.locked(x, &[lead.multiplier * at + lead.offset], joint);
+                still += lead.multiplier * at + lead.offset;
             }
         }
+        let mut moving: Vec<Mimic> = terms.into_iter().filter(|lead| joints[lead.joint].locked.is_none()).collect();
+        match moving.first_mut() {
+            Some(first) => first.offset += still,
+            None => x = stage.locked(x, &[still], joint),
+        }
         let mut at = x.compose(&turned(stage.turn));
-        for lead in terms.into_iter().filter(|lead| joints[lead.joint].locked.is_none()) {
+        for lead in moving {
             let coordinates = Coordinates { pitch: per_radian(joint), ..AT_ZERO };
             parent = self.push_body(joint.name.clone(), parent, at, stage.joint, coordinates);
             // The next one is on the same axis.

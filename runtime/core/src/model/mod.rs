@@ -199,6 +199,16 @@ impl<S: Scalar> Model<S> {
         self.bodies.iter().any(|b| b.coordinates.mimic.is_some())
     }
 
+    /// The bodies of a joint that follows several others, from its last body towards the base: its
+    /// coordinate is the sum of theirs. Of any other joint the body alone.
+    pub fn series<'a>(&'a self, body: &'a Body<S>) -> impl Iterator<Item = &'a Body<S>> + use<'a, S> {
+        let follows = |body: &Body<S>| body.coordinates.mimic.is_some();
+        core::iter::successors(Some(body), move |body| {
+            let before = self.bodies.get(body.parent).filter(|before| follows(body) && follows(before));
+            before.filter(|before| before.name == body.name)
+        })
+    }
+
     /// The configuration of zeros, with quaternions that turn nothing, `[nq]` rad|m|quaternion:
     /// what a generated module has as `NEUTRAL`.
     pub fn neutral(&self) -> Vec<S> {

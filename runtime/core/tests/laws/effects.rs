@@ -24,14 +24,14 @@ fn not_a_motor(effect: EffectId) -> bool {
 }
 
 /// One function of the table.
-fn call<S: Scalar>(model: &Model<S>, name: &str, arguments: &[&[S]]) -> Vec<S> {
+pub(crate) fn call<S: Scalar>(model: &Model<S>, name: &str, arguments: &[&[S]]) -> Vec<S> {
     let function = dynamics::function::<S>(name).expect("in the table");
     let mut out = vec![S::zero(); function.len(model.shape())];
     function.call(model, &mut Workspace::new(model), arguments, &mut out).expect("lengths as the table says");
     out
 }
 
-fn assert_near(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
+pub(crate) fn assert_near(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
     let scale = expected.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
     for (k, (a, b)) in found.iter().zip(expected).enumerate() {
         assert!((a - b).abs() <= tolerance * scale, "{what}: element {k}: {a}, expected {b}");
@@ -109,7 +109,7 @@ fn effect_forces_are_what_inverse_dynamics_needs_less() {
 }
 
 /// Columns of a function's derivative by duals: of each argument in its tangent space.
-fn by_duals(model: &Model<f64>, name: &str, state: [&[f64]; 3]) -> Vec<f64> {
+pub(crate) fn by_duals(model: &Model<f64>, name: &str, state: [&[f64]; 3]) -> Vec<f64> {
     let (moving, n): (Model<Dual<f64>>, usize) = (model.cast(), model.nv());
     let mut out = vec![0.0; 3 * n * n];
     for block in 0..3 {

@@ -1,10 +1,13 @@
 //! Joints that follow others: q_full = G·q + c, so v_full = G·v and τ = Gᵀ·τ_full.
 
-use articulated_core::description::{Base, Coupling, Description};
+use articulated_core::description::{Base, Coupling, Description, Origin};
+use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::JointInfo;
 use articulated_test_support::case::{Case, State, for_each_tree, inverse_dynamics, placements, read};
 use articulated_test_support::measure::{distance, scale, torque_scale};
 use articulated_test_support::random_tree::Flavour;
+
+use crate::effects::{assert_near, by_duals, call};
 
 /// Errors allowed, in units of u times the magnitude of the terms.
 const FEW: f64 = 16.0;
@@ -82,58 +85,137 @@ fn a_follower_that_turns_back_keeps_the_tip_level() {
     assert!((placed[24] - 1.0).abs() < 1e-15 && placed[26].abs() < 1e-15);
 }
 
+/// A tree, and the same where its last joint of one coordinate follows three others.
+struct Coupled<'a> {
+    free: &'a Case,
+    reduced: Case,
+    follower: String,
+    terms: Vec<(JointInfo, f64)>,
+}
+
+/// The offset of the follower.
+const OFFSET: f64 = 0.3;
+
+fn info(case: &Case, name: &str) -> JointInfo {
+    case.model.joints().iter().find(|j| j.name == name).unwrap().clone()
+}
+
+impl<'a> Coupled<'a> {
+    fn of(free: &'a Case) -> Option<Self> {
+        let joints = &free.description.joints;
+        let single: Vec<usize> = (0..joints.len()).filter(|&j| joints[j].kind.sizes() == (1, 1)).collect();
+        let [.., a, b, c, follower] = single[..] else { return None };
+        let (terms, follower) = ([(a, 0.5), (b, -1.25), (c, 2.0)], joints[follower].name.clone());
+        let mut tree = free.description.clone();
+        let leaders = terms.iter().map(|(j, coefficient)| (joints[*j].name.clone(), *coefficient)).collect();
+        tree.couple(&Coupling { joint: follower.clone(), leaders, offset: OFFSET }).unwrap();
+        let reduced = Case::new("", tree, free.base);
+        assert_eq!(reduced.model.nv() + 1, free.model.nv());
+        let terms = terms.map(|(j, coefficient)| (info(&reduced, &joints[j].name), coefficient)).to_vec();
+        Some(Self { free, reduced, follower, terms })
+    }
+
+    /// Numbers of all joints of the free tree, of which the follower has Σ cᵢ xᵢ + `offset`.
+    fn spread(&self, x: &[f64], of: fn(&JointInfo) -> (usize, usize), offset: f64) -> Vec<f64> {
+        let mut all = Vec::new();
+        for own in self.free.model.joints() {
+            if own.name == self.follower {
+                all.push(self.terms.iter().map(|(leader, coefficient)| coefficient * x[of(leader).0]).sum::<f64>() + offset);
+            } else {
+                let (first, count) = of(&info(&self.reduced, &own.name));
+                all.extend(&x[first..first + count]);
+            }
+        }
+        all
+    }
+
+    fn state(&self, state: &State) -> [Vec<f64>; 3] {
+        [self.spread(&state.q, |j| j.q, OFFSET), self.spread(&state.v, |j| j.v, 0.0), self.spread(&state.a, |j| j.v, 0.0)]
+    }
+
+    /// Gᵀ τ: the torques of equal power.
+    fn gathered(&self, full: &[f64]) -> Vec<f64> {
+        let mut torques = vec![0.0; self.reduced.model.nv()];
+        for own in self.free.model.joints() {
+            if own.name == self.follower {
+                self.terms.iter().for_each(|(leader, coefficient)| torques[leader.v.0] += coefficient * full[own.v.0]);
+            } else {
+                let at = info(&self.reduced, &own.name);
+                (0..own.v.1).for_each(|k| torques[at.v.0 + k] += full[own.v.0 + k]);
+            }
+        }
+        torques
+    }
+}
+
 /// q = Σ cᵢ qᵢ + o: each leader has its part of the torque, and nothing else moves otherwise.
 #[test]
 fn torque_on_each_of_several_leaders_is_that_of_equal_power() {
     let mut met = std::cell::Cell::new(0);
     for_each_tree(60, Flavour { mimic: false, locked: false, ..Flavour::ANY }, |free, random| {
-        let joints = &free.description.joints;
-        let single: Vec<usize> = (0..joints.len()).filter(|&j| joints[j].kind.sizes() == (1, 1)).collect();
-        let [.., a, b, c, follower] = single[..] else { return };
+        let Some(coupled) = Coupled::of(free) else { return };
         met.set(met.get() + 1);
-        let terms = [(a, 0.5), (b, -1.25), (c, 2.0)];
-        let mut tree = free.description.clone();
-        let leaders = terms.iter().map(|(j, coefficient)| (joints[*j].name.clone(), *coefficient)).collect();
-        tree.couple(&Coupling { joint: joints[follower].name.clone(), leaders, offset: 0.3 }).unwrap();
-        let reduced = Case::new("", tree, free.base);
-        assert_eq!(reduced.model.nv() + 1, free.model.nv());
+        let reduced = &coupled.reduced;
         let state = reduced.state(random);
-        let info = |case: &Case, name: &str| case.model.joints().iter().find(|j| j.name == name).unwrap().clone();
-        let led = |x: &[f64], of: fn(&JointInfo) -> usize| -> f64 {
-            terms.iter().map(|(j, coefficient)| coefficient * x[of(&info(&reduced, &joints[*j].name))]).sum()
-        };
-        let (mut q, mut v, mut acceleration) = (vec![], vec![], vec![]);
-        for own in free.model.joints() {
-            if own.name == joints[follower].name {
-                q.push(led(&state.q, |j| j.q.0) + 0.3);
-                v.push(led(&state.v, |j| j.v.0));
-                acceleration.push(led(&state.a, |j| j.v.0));
-                continue;
-            }
-            let at = info(&reduced, &own.name);
-            q.extend(&state.q[at.q.0..][..at.q.1]);
-            v.extend(&state.v[at.v.0..][..at.v.1]);
-            acceleration.extend(&state.a[at.v.0..][..at.v.1]);
-        }
-        let full = inverse_dynamics(&free.model, &q, &v, &acceleration);
-        let mut expected = vec![0.0; reduced.model.nv()];
-        for own in free.model.joints() {
-            if own.name == joints[follower].name {
-                for (j, coefficient) in terms {
-                    expected[info(&reduced, &joints[j].name).v.0] += coefficient * full[own.v.0];
-                }
-            } else {
-                let at = info(&reduced, &own.name);
-                (0..own.v.1).for_each(|k| expected[at.v.0 + k] += full[own.v.0 + k]);
-            }
-        }
-        let far = distance(&reduced.inverse_dynamics(&state), &expected, &torque_scale(&reduced, &state));
+        let [q, v, a] = coupled.state(&state);
+        let expected = coupled.gathered(&inverse_dynamics(&free.model, &q, &v, &a));
+        let far = distance(&reduced.inverse_dynamics(&state), &expected, &torque_scale(reduced, &state));
         assert!(far <= FEW, "torques: {far} units of roundoff");
-        let far = distance(&placements(&reduced.model, &state.q), &placements(&free.model, &q), &scale(&reduced, "placements", &state));
+        let far = distance(&placements(&reduced.model, &state.q), &placements(&free.model, &q), &scale(reduced, "placements", &state));
         assert!(far <= FEW, "placements: {far} units of roundoff");
-        crate::reference::textbook_holds(&reduced, random);
+        crate::reference::textbook_holds(reduced, random);
     });
     assert!(*met.get_mut() > 15, "only {} trees", met.get());
+}
+
+/// Dampers, friction, springs and stops on the follower are those on its own coordinate, Σ cᵢ qᵢ + o.
+#[test]
+fn effects_on_a_joint_that_follows_several_act_on_each_leader() {
+    let mut met = std::cell::Cell::new(0);
+    for_each_tree(60, Flavour { mimic: false, locked: false, ..Flavour::REGULAR }, |free, random| {
+        let Some(coupled) = Coupled::of(free) else { return };
+        met.set(met.get() + 1);
+        let on = |effect, parameters: &[f64]| Applied {
+            effect,
+            on: coupled.follower.clone(),
+            at: Origin::default(),
+            parameters: parameters.to_vec(),
+        };
+        let effects = [
+            on(EffectId::damping, &[0.7]),
+            on(EffectId::friction, &[0.4, 0.3]),
+            on(EffectId::spring, &[1.9, 0.4]),
+            on(EffectId::limit, &[-0.3, 0.2, 3.0, 0.5]),
+        ];
+        let with = |case: &Case| case.model.clone().with_effects(&effects).unwrap();
+        let (full, model) = (with(free), with(&coupled.reduced));
+        let state = coupled.reduced.state(random);
+        let [q, v, a] = coupled.state(&state);
+        let forces = call(&model, "effect_forces", &[&state.q, &state.v]);
+        assert_near(&forces, &coupled.gathered(&call(&full, "effect_forces", &[&q, &v])), 1e-13, "forces");
+        assert!(forces.iter().filter(|force| **force != 0.0).count() >= 3);
+        for (name, arguments) in [("potential_energy", vec![&state.q]), ("dissipation", vec![&state.q, &state.v])] {
+            let [given, expected]: [Vec<&[f64]>; 2] =
+                [arguments.iter().map(|x| x.as_slice()).collect(), [&q, &v].iter().take(arguments.len()).map(|x| x.as_slice()).collect()];
+            assert_near(&call(&model, name, &given), &call(&full, name, &expected), 1e-13, name);
+        }
+        let given = [state.q.as_slice(), &state.v, &state.a];
+        let torques = call(&model, "inverse_dynamics", &given);
+        assert_near(&torques, &coupled.gathered(&call(&full, "inverse_dynamics", &[&q, &v, &a])), 1e-12, "torques");
+        let found = call(&model, "inverse_dynamics_derivatives", &given);
+        assert_near(&found, &by_duals(&model, "inverse_dynamics", given), 1e-11, "derivatives of torques");
+        let found = call(&model, "forward_dynamics", &[given[0], given[1], &torques]);
+        assert_near(&found, &state.a, 1e-8, "accelerations");
+        let given = [given[0], given[1], torques.as_slice()];
+        let found = call(&model, "forward_dynamics_derivatives", &given);
+        assert_near(&found, &by_duals(&model, "forward_dynamics", given), 1e-7, "derivatives of accelerations");
+        // Between its leaders a rotor would be an inertia, and a motor drives what others follow.
+        for effect in [on(EffectId::armature, &[0.1, 2.0]), on(EffectId::motor, &[1.0, 1.0, 1.0, 0.8, 0.1])] {
+            let message = coupled.reduced.model.clone().with_effects(&[effect]).unwrap_err().to_string();
+            assert!(message.contains("follows"), "{message}");
+        }
+    });
+    assert!(*met.get_mut() > 10, "only {} trees", met.get());
 }
 
 /// A differential drive, by hand: M = 1e-4 + 0.05²·0.01 on the diagonal, −0.05²·0.01 beside it.
@@ -155,12 +237,15 @@ fn the_mass_matrix_of_a_differential_drive_couples_its_motors() {
     let coupling = Coupling { joint: "pitch".into(), leaders, offset: 0.0 };
     tree.couple(&coupling).unwrap();
     check(&tree);
-    // A locked leader is a constant.
+    // A locked leader is a constant, of which a spring on the follower feels its part.
     tree.lock("m2", &[0.5]).unwrap();
     let case = Case::new("differential", tree.clone(), Base::Fixed);
     let placed = placements(&case.model, &[1.0]);
-    let angle = (0.05_f64 * 1.0 - 0.05 * 0.5).sin();
-    assert!(placed.iter().any(|x| (x - angle).abs() < 1e-15), "{placed:?}");
+    let angle: f64 = 0.05 * 1.0 - 0.05 * 0.5;
+    assert!(placed.iter().any(|x| (x - angle.sin()).abs() < 1e-15), "{placed:?}");
+    let spring = Applied { effect: EffectId::spring, on: "pitch".into(), at: Origin::default(), parameters: vec![8.0, 0.0] };
+    let force = call(&case.model.with_effects(&[spring]).unwrap(), "effect_forces", &[&[1.0], &[0.0]]);
+    assert!((force[0] + 0.05 * 8.0 * angle).abs() < 1e-16, "{force:?}");
     for (change, what) in [
         (Coupling { joint: "pich".into(), ..coupling.clone() }, "pitch"),
         (coupling.clone(), "follows another already"),

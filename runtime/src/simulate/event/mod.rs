@@ -134,8 +134,15 @@ impl<'a> Event<'a> {
     /// Coordinate i of q leaves the limits: g = (q − lower)(upper − q)/(upper − lower), falling;
     /// with one bound infinite the distance from the other.
     pub fn limit(name: impl Into<String>, i: usize, lower: f64, upper: f64) -> Self {
+        Self::limit_of_sum(name, vec![(i, 1.0)], 0.0, (lower, upper))
+    }
+
+    /// As [`Event::limit`], of a joint that follows others: x = Σ multiplier · q + offset. `terms`:
+    /// the indices in q, and the multipliers.
+    pub fn limit_of_sum(name: impl Into<String>, terms: Vec<(usize, f64)>, offset: f64, (lower, upper): (f64, f64)) -> Self {
+        let last = terms.iter().map(|(i, _)| *i).max();
         let g = move |_: f64, q: &[f64], _: &[f64]| {
-            let x = number(q, i);
+            let x = sum(q, &terms) + offset;
             match (lower.is_finite(), upper.is_finite()) {
                 // Halves: what lies between the two may be more than a number can say.
                 (true, true) => (x - lower) * (((upper - x) / 2.0) / (upper / 2.0 - lower / 2.0)),
@@ -145,7 +152,7 @@ impl<'a> Event<'a> {
         };
         // Not a number is no bound.
         let inverted = if lower < upper { None } else { Some((lower, upper)) };
-        Self { about: Some(About::Coordinate(i)), inverted, ..Self::new(name, g).falling() }
+        Self { about: last.map(About::Coordinate), inverted, ..Self::new(name, g).falling() }
     }
 
     /// The rotation of the unit quaternion (x, y, z, w) at coordinate i of q is by the angle
@@ -159,7 +166,14 @@ impl<'a> Event<'a> {
     /// times the speed at which the friction law is smoothed. Below that the joint creeps under its
     /// load.
     pub fn stick_slip(name: impl Into<String>, i: usize, speed: f64) -> Self {
-        Self { about: Some(About::Rate(i)), ..Self::new(name, move |_, _, v: &[f64]| number(v, i).abs() - SLIDING * speed) }
+        Self::stick_slip_of_sum(name, vec![(i, 1.0)], speed)
+    }
+
+    /// As [`Event::stick_slip`], of a joint that follows others: its rate is Σ multiplier · v.
+    /// `terms`: the indices in v, and the multipliers.
+    pub fn stick_slip_of_sum(name: impl Into<String>, terms: Vec<(usize, f64)>, speed: f64) -> Self {
+        let last = terms.iter().map(|(i, _)| *i).max();
+        Self { about: last.map(About::Rate), ..Self::new(name, move |_, _, v: &[f64]| sum(v, &terms).abs() - SLIDING * speed) }
     }
 
     /// Errors for a robot of this shape: an index out of range, or bounds that exclude every value.
@@ -231,6 +245,11 @@ fn wrong_place<R: Dynamics<f64>>(robot: &R, at: &ContactPoint) -> impl Iterator<
 /// Number i, which is there ([`Event::wrong`]).
 fn number(x: &[f64], i: usize) -> f64 {
     x.get(i).copied().unwrap_or(f64::NAN)
+}
+
+/// Σ multiplier · x.
+fn sum(x: &[f64], terms: &[(usize, f64)]) -> f64 {
+    terms.iter().map(|(i, multiplier)| multiplier * number(x, *i)).sum()
 }
 
 /// Where points of a frame are.

@@ -14,22 +14,37 @@ use crate::spatial::screw::{Quaternion, right_jacobian_inverse};
 
 /// One effect on one degree of freedom: what it is, at which place in v, its own coordinate and
 /// rate, and its own rate over that of the coordinate that it moves with.
-pub(super) struct Acting<'a, S> {
+pub(super) struct Acting<'a, S: 'static> {
     pub(super) effect: &'a JointEffect<S>,
     pub(super) at: usize,
     pub(super) ratio: Option<S>,
     body: &'a Body<S>,
+    model: &'a Model<S>,
 }
 
-impl<S: Scalar> Acting<'_, S> {
+/// A place in v, and the rate of an effect over the rate there.
+pub(super) type Term<S> = (usize, Option<S>);
+
+impl<'a, S: Scalar> Acting<'a, S> {
     /// Its own coordinate; of no meaning where the joint has none for each degree of freedom.
     pub(super) fn coordinate(&self, q: &[S]) -> S {
         let at = &self.body.coordinates;
         match self.body.joint.quaternion() {
             Some(_) => S::zero(),
-            None if at.mimic.is_some() => at.coordinate(q),
+            None if at.mimic.is_some() => self.before().fold(at.coordinate(q), |sum, body| sum + body.coordinates.coordinate(q)),
             None => q[at.q + self.effect.freedom],
         }
+    }
+
+    /// The other bodies of a joint that follows several: q = Σ (multiplier · leader + offset).
+    fn before(&self) -> impl Iterator<Item = &'a Body<S>> + use<'a, S> {
+        self.model.series(self.body).skip(1)
+    }
+
+    /// The coordinates that it moves with: one, or several.
+    pub(super) fn terms(&self) -> impl Iterator<Item = Term<S>> + use<'a, S> {
+        let others = self.before().map(|body| (body.coordinates.v, body.coordinates.rate_of_one()));
+        core::iter::once((self.at, self.ratio)).chain(others)
     }
 
     /// Its law of the rotation, if it acts on a ball joint and has one.
@@ -45,7 +60,7 @@ impl<S: Scalar> Acting<'_, S> {
 
     /// Its own rate, or acceleration.
     pub(super) fn rate(&self, v: &[S]) -> S {
-        scaled(v[self.at], self.ratio)
+        self.terms().skip(1).fold(scaled(v[self.at], self.ratio), |sum, (at, ratio)| sum + scaled(v[at], ratio))
     }
 
     /// Whether it is a motor: of a joint that follows another there is none.
@@ -59,7 +74,7 @@ impl<S: Scalar> Acting<'_, S> {
     }
 }
 
-fn scaled<S: Scalar>(x: S, ratio: Option<S>) -> S {
+pub(super) fn scaled<S: Scalar>(x: S, ratio: Option<S>) -> S {
     ratio.map_or(x, |r| x * r)
 }
 
@@ -130,7 +145,7 @@ pub(super) fn all<S: Scalar>(model: &Model<S>) -> impl Iterator<Item = Acting<'_
     model.outward().flat_map(move |i| {
         let body = &model.bodies[i];
         let (at, ratio) = of(body);
-        body.effects.joint.iter().map(move |effect| Acting { effect, at: at + effect.freedom, ratio, body })
+        body.effects.joint.iter().map(move |effect| Acting { effect, at: at + effect.freedom, ratio, body, model })
     })
 }
 
@@ -142,7 +157,8 @@ fn for_each_force<S: Scalar>(model: &Model<S>, q: &[S], v: &[S], mut visit: impl
             let torque = ball.torque(q, v);
             (0..3).for_each(|k| visit(one.at + k, torque[k]));
         } else if let Law::Force { force, .. } = one.effect.effect.law::<S>() {
-            visit(one.at, one.torque(force(&one.effect.parameters, one.coordinate(q), one.rate(v))));
+            let own = force(&one.effect.parameters, one.coordinate(q), one.rate(v));
+            one.terms().for_each(|(at, ratio)| visit(at, scaled(own, ratio)));
         }
     }
 }

@@ -5,7 +5,8 @@
 //! Russell & Wensing, *IEEE Robot. Autom. Lett.* 7, 2022): ∂V/∂q_k = ψ̇_k, ∂V̇/∂q_k = ψ̈_k − V ×
 //! ψ̇_k, ∂V/∂v_k = S_k, ∂V̇/∂v_k = ψ̇_k + Ṡ_k − V × S_k.
 
-use super::{duals, joints, on_body, station_in_base};
+use super::joints::{self, scaled};
+use super::{duals, on_body, station_in_base};
 use crate::Scalar;
 use crate::algorithm::Workspace;
 use crate::algorithm::common::on_the_way;
@@ -33,18 +34,24 @@ pub(in crate::algorithm) fn on_joints<S: Scalar>(
             }
             continue;
         }
-        let (diagonal, p) = (one.at * model.nv + one.at, &one.effect.parameters);
-        // Twice: the rate of the coordinate, and the torque on it.
-        let twice = |x: S| one.torque(one.torque(x));
+        let p = &one.effect.parameters;
         match (one.effect.effect.law::<S>(), &mut others) {
             (Law::Force { slope, .. }, others) => {
                 let (p, q, v) = (&duals(p)[..p.len()], one.coordinate(q), one.rate(v));
-                by_q[diagonal] -= twice(slope(p, Dual::variable(q), Dual::constant(v)).slope);
-                if let Some((by_v, _)) = others {
-                    by_v[diagonal] -= twice(slope(p, Dual::constant(q), Dual::variable(v)).slope);
+                let own_by_q = slope(p, Dual::variable(q), Dual::constant(v)).slope;
+                let own_by_v = others.is_some().then(|| slope(p, Dual::constant(q), Dual::variable(v)).slope);
+                // Of each coordinate by each: the torque on the one, the rate of the other.
+                for (row, torque) in one.terms() {
+                    for (column, rate) in one.terms() {
+                        let at = row * model.nv + column;
+                        by_q[at] -= scaled(scaled(own_by_q, torque), rate);
+                        if let (Some((by_v, _)), Some(own)) = (&mut *others, own_by_v) {
+                            by_v[at] -= scaled(scaled(own, torque), rate);
+                        }
+                    }
                 }
             }
-            (Law::Inertia(inertia), Some((_, by_a))) => by_a[diagonal] += twice(inertia(p)),
+            (Law::Inertia(inertia), Some((_, by_a))) => by_a[one.at * model.nv + one.at] += one.torque(one.torque(inertia(p))),
             _ => {}
         }
     }
