@@ -52,8 +52,8 @@ impl Session {
         several.map_or_else(|| at.joint().to_owned(), |joint| format!("{}[{}]", joint.name, at.terms[0].v - joint.v.0))
     }
 
-    /// Bounds of its own coordinate: those of the effect if its joint has it, else those of the file;
-    /// rad or m.
+    /// Bounds of its own coordinate: those of the effect if its joint has it, else those of the
+    /// file; rad or m.
     pub(crate) fn bounds(&self, at: &Freedom<'_>) -> Option<(f64, f64)> {
         let limit = at.effect(EffectId::limit).filter(|limit| !limit.effect.row().is_of_rotation(at.body.joint));
         let own = match limit.map(|limit| limit.parameters.as_slice()) {

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use articulated_core::control::{ActuatorLaw, Actuators, Signal, Transmission};
+use articulated_core::control::{ActuatorLaw, Actuators, Follower, Signal, Transmission};
 use articulated_core::diagnostic::{At, Code, Diagnostics, quote};
 use articulated_core::model::Model;
 use articulated_core::suggest::nearest;
@@ -105,32 +105,54 @@ impl<'a> RobotInWorld<'a> {
 
     /// The actuators of the file on this robot. An actuator on a locked joint is an error.
     pub(crate) fn actuators(self, controls: Signal, place: (At, &str), log: &mut Diagnostics) -> Actuators {
-        let mut laws = |all: &[Actuator]| all.iter().map(|actuator| self.law(actuator, place, log)).collect();
-        let (laws, passive) = (laws(&self.world.actuators), laws(&self.world.passive));
+        let mut followers = Vec::new();
+        let mut laws = |all: &[Actuator], mut followers: Option<&mut Vec<(String, Follower)>>| {
+            let law = |(k, actuator)| self.law(actuator, followers.as_deref_mut().map(|all| (k, all)), place, log);
+            all.iter().enumerate().map(law).collect()
+        };
+        let (laws, passive) = (laws(&self.world.actuators, Some(&mut followers)), laws(&self.world.passive, None));
+        let range = |name: &str| self.world.joint_forces.iter().find(|(joint, _)| joint == name).map(|(_, range)| *range);
+        let followers = followers.into_iter().map(|(name, follower)| Follower { range: range(&name), ..follower }).collect();
         let degree = |(name, range): &(String, [f64; 2])| {
             let joint = self.model.joints().iter().find(|joint| joint.name == *name && joint.v.1 == 1)?;
             Some((joint.v.0, *range))
         };
-        Actuators { laws, controls, bounds: self.world.joint_forces.iter().filter_map(degree).collect(), passive }
+        Actuators { laws, controls, bounds: self.world.joint_forces.iter().filter_map(degree).collect(), followers, passive }
     }
 
     /// The law of an actuator with the robot's own coordinates. A joint that follows others is
     /// q = Σ multiplier · leader's + offset: its part of the length is one of theirs, and a
-    /// constant.
-    fn law(self, actuator: &Actuator, place: (At, &str), log: &mut Diagnostics) -> ActuatorLaw {
+    /// constant. `followers`: where the law's torques on such joints are put, by its number.
+    fn law(
+        self,
+        actuator: &Actuator,
+        mut followers: Option<(usize, &mut Vec<(String, Follower)>)>,
+        place: (At, &str),
+        log: &mut Diagnostics,
+    ) -> ActuatorLaw {
         let (mut drives, mut constant) = (Vec::new(), 0.0);
         for (joint, gear) in &actuator.drives {
             if let Some(one) = self.model.joints().iter().find(|one| one.name == *joint && one.v.1 == gear.len()) {
-                drives.push(Transmission { q: one.q.0, v: one.v.0, gear: gear.clone() });
+                drives.push(Transmission { q: one.q.0, v: one.v.0, gear: gear.clone(), has_no_torque: false });
                 continue;
             }
             // One that follows several is a sequence of bodies, each with a number behind its name.
             let is_part = |name: &str| name.strip_prefix(joint.as_str()).is_some_and(|rest| rest.is_empty() || rest.starts_with(' '));
             let parts = self.model.bodies().iter().filter(|body| is_part(&body.name));
-            let before = drives.len();
+            let (before, mut leaders) = (drives.len(), Vec::new());
             for (body, follow) in parts.filter_map(|body| Some((body, body.coordinates.mimic?))) {
                 constant += gear[0] * follow.offset;
-                drives.push(Transmission { q: body.coordinates.q, v: body.coordinates.v, gear: vec![gear[0] * follow.multiplier] });
+                let (at, gear) = (&body.coordinates, vec![gear[0] * follow.multiplier]);
+                drives.push(Transmission { q: at.q, v: at.v, gear, has_no_torque: followers.is_some() });
+                leaders.push((at.v, follow.multiplier));
+            }
+            if let Some((law, all)) = followers.as_mut().filter(|_| !leaders.is_empty()) {
+                let known = all.iter().position(|(name, _)| name == joint);
+                let index = known.unwrap_or_else(|| {
+                    all.push((joint.clone(), Follower { leaders, ..Follower::default() }));
+                    all.len() - 1
+                });
+                all[index].1.laws.push((*law, gear[0]));
             }
             if drives.len() == before {
                 let found = format!("the actuator {} on joint {}, which is locked", quote(&actuator.name), quote(joint));

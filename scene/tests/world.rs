@@ -194,5 +194,18 @@ fn equations_of_the_file_are_couplings_where_the_scene_says_so() {
         apart[0] == 0.0 && (together[0] + 2.0 * apart[1]).abs() < 1e-14 * apart[1].abs() && apart[1].abs() > 1.0,
         "{apart:?} {together:?}"
     );
+    // The bounds of the joints count for each by itself: those of the follower before the
+    // transmission.
+    let bounded = World { joint_forces: vec![("one".into(), [-0.1, 0.1]), ("two".into(), [-2.0, 0.75])], ..world.clone() };
+    let of = |robot: &articulated_scene::BuiltRobot, world: &World| {
+        let text = scene("control = { kind = \"actuators\", ctrl = [2] }");
+        let controller = text.controller(RobotInWorld { model: &robot.model, world }, &mut |_| Err(String::new())).unwrap();
+        let (Controller::Actuators(actuators), mut tau) = (controller, vec![0.0]) else { panic!("actuators") };
+        actuators.add_torques(&[2.0], &[0.3], &[0.7], &mut tau);
+        tau[0]
+    };
+    let [plain, clamped] = [&world, &bounded].map(|world| of(&coupled, world));
+    assert_eq!((plain, clamped), (together[0], -2.0 * (plain / -2.0).clamp(-2.0, 0.75)));
+    assert!(plain != clamped);
     assert_eq!((free.model.gravity().z, built("gravity = [0, 0, -1]").model.gravity().z), (-3.7, -1.0));
 }

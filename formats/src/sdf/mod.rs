@@ -8,8 +8,8 @@
 //!
 //! * The world is the root link `world`. Joints with the parent `world` hang on it. A model without
 //!   such a joint floats: its root link has a floating joint `<link>_free` on the world, of which
-//!   the coordinates are the pose in the world. The poses of the file are where a motion starts, the
-//!   `home` state of the world. The links of a static model are fixed to the world.
+//!   the coordinates are the pose in the world. The poses of the file are where a motion starts,
+//!   the `home` state of the world. The links of a static model are fixed to the world.
 //! * Links keep their frames. A joint that is not at the origin of its child link moves an
 //!   intermediate link, to which the child is fixed.
 //! * The models of a world are one robot with the name of the world. Their links are called

@@ -14,8 +14,8 @@ use crate::pose::{Pose, rotate};
 use crate::world::Plane;
 use crate::xml::tree::Element;
 
-/// All collision geometry of a link. What is wrong with it is a warning. Planes of links that do not
-/// move are put into `planes`.
+/// All collision geometry of a link. What is wrong with it is a warning. Planes of links that do
+/// not move are put into `planes`.
 pub(crate) fn collisions(
     link: &Link<'_>,
     graph: &Graph<'_>,

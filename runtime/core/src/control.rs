@@ -41,6 +41,8 @@ pub struct Actuators {
     /// Bounds of their torque together on a degree of freedom: (number of the degree of freedom,
     /// [lower, upper]), N·m or N.
     pub bounds: Vec<(usize, [f64; 2])>,
+    /// Joints that follow others, on which actuators act.
+    pub followers: Vec<Follower>,
     /// Springs and dampers of tendons: they have no control, and no bound applies to them.
     pub passive: Vec<ActuatorLaw>,
 }
@@ -85,6 +87,18 @@ pub struct ActuatorLaw {
     pub force_range: Option<[f64; 2]>,
 }
 
+/// A joint that follows others, q = Σ multiplier · leader + offset, with actuators on it: its
+/// torque acts on each leader, times the multiplier, whatever bounds those have.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Follower {
+    /// The actuators on it: the place in [`Actuators::laws`], and the gear.
+    pub laws: Vec<(usize, f64)>,
+    /// Bounds of their torque together, N·m or N.
+    pub range: Option<[f64; 2]>,
+    /// The leaders: the degree of freedom, and the multiplier.
+    pub leaders: Vec<(usize, f64)>,
+}
+
 /// How an actuator drives a joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Transmission {
@@ -94,6 +108,8 @@ pub struct Transmission {
     pub v: usize,
     /// d(length)/d(coordinate), a number for each degree of freedom: one, or three of a ball joint.
     pub gear: Vec<f64>,
+    /// The part of the length alone: the torque is that of a [`Follower`].
+    pub has_no_torque: bool,
 }
 
 impl Transmission {
@@ -136,7 +152,7 @@ impl ActuatorLaw {
     /// τ += gear · f.
     fn add_torque(&self, control: f64, q: &[f64], v: &[f64], tau: &mut [f64]) {
         let force = self.force(control, q, v);
-        for drive in &self.drives {
+        for drive in self.drives.iter().filter(|drive| !drive.has_no_torque) {
             tau.iter_mut().skip(drive.v).zip(&drive.gear).for_each(|(tau, gear)| *tau += gear * force);
         }
     }
@@ -151,11 +167,19 @@ impl Actuators {
     /// Adds their torques to `tau` `[nv]`, N·m or N, which is zero on entry. Actuators without a
     /// control have u = 0.
     pub fn add_torques(&self, controls: &[f64], q: &[f64], v: &[f64], tau: &mut [f64]) {
-        let controls = controls.iter().copied().chain(core::iter::repeat(0.0));
-        self.laws.iter().zip(controls).for_each(|(law, control)| law.add_torque(control, q, v, tau));
+        let control = |k: usize| controls.get(k).copied().unwrap_or(0.0);
+        self.laws.iter().enumerate().for_each(|(k, law)| law.add_torque(control(k), q, v, tau));
         for (k, range) in &self.bounds {
             if let Some(tau) = tau.get_mut(*k) {
                 *tau = clamp(*tau, Some(*range));
+            }
+        }
+        for follower in &self.followers {
+            let laws = follower.laws.iter().filter_map(|(k, gear)| Some((self.laws.get(*k)?, *k, gear)));
+            let torque = laws.map(|(law, k, gear)| gear * law.force(control(k), q, v)).sum();
+            let torque = clamp(torque, follower.range);
+            for (k, multiplier) in &follower.leaders {
+                tau.iter_mut().skip(*k).take(1).for_each(|tau| *tau += multiplier * torque);
             }
         }
         self.passive.iter().for_each(|law| law.add_torque(0.0, q, v, tau));
@@ -309,7 +333,7 @@ mod tests {
 
     #[test]
     fn an_actuator_follows_its_affine_law_within_its_bounds() {
-        let drive = |k, gear: f64| Transmission { q: k, v: k, gear: vec![gear] };
+        let drive = |k, gear: f64| Transmission { q: k, v: k, gear: vec![gear], ..Transmission::default() };
         let servo = ActuatorLaw {
             name: "servo".into(),
             drives: vec![drive(0, 2.0), drive(1, -1.0)],
@@ -331,6 +355,13 @@ mod tests {
         all.add_torques(&[2.0], &q, &v, &mut tau);
         // The bound is of the servo alone: −5.75 becomes −1.
         assert_eq!(tau, [2.0 * 5.75, -1.0 - 1.0]);
+        // A joint that follows the first, x = 3 q₀, has the servo too: its torque is bounded by
+        // itself.
+        all.laws[0].drives[0].has_no_torque = true;
+        all.followers = vec![Follower { laws: vec![(0, 2.0)], range: Some([-4.0, 7.0]), leaders: vec![(0, 3.0)] }];
+        let mut tau = [0.0; 2];
+        all.add_torques(&[2.0], &q, &v, &mut tau);
+        assert_eq!(tau, [3.0 * 7.0, -1.0 - 1.0]);
         assert!(all.depend_on_state());
         (all.laws[0].gain, all.laws[0].bias) = ([1.0, 0.0, 0.0], [0.0; 3]);
         assert!(all.depend_on_state());
@@ -341,7 +372,7 @@ mod tests {
     #[test]
     fn an_actuator_of_a_ball_joint_pulls_along_the_rotation_vector() {
         let axis = [0.6, 0.0, 0.8];
-        let drive = Transmission { q: 1, v: 1, gear: vec![1.0, 2.0, 3.0] };
+        let drive = Transmission { q: 1, v: 1, gear: vec![1.0, 2.0, 3.0], ..Transmission::default() };
         let law = ActuatorLaw { drives: vec![drive], bias: [0.0, 1.0, 0.0], ..ActuatorLaw::default() };
         for angle in [0.0, 1e-9, 0.3, 2.5, -2.5] {
             for sign in [1.0, -1.0] {

@@ -39,7 +39,8 @@ pub(super) fn refuse_own_plane(spot: &Spot<'_>, log: &mut Diagnostics) {
 }
 
 /// The numbers of a request for each plane, and the collision geometry that passes through it. One
-/// with a plane of its own is alone. `None`: it is of the file, which has none, and that is an error.
+/// with a plane of its own is alone. `None`: it is of the file, which has none, and that is an
+/// error.
 pub(super) fn of<'p>(
     row: &Effect,
     one: &EffectRequest,

@@ -168,7 +168,8 @@ fn torque_on_each_of_several_leaders_is_that_of_equal_power() {
     assert!(*met.get_mut() > 15, "only {} trees", met.get());
 }
 
-/// Dampers, friction, springs and stops on the follower are those on its own coordinate, Σ cᵢ qᵢ + o.
+/// Dampers, friction, springs and stops on the follower are those on its own coordinate, Σ cᵢ qᵢ +
+/// o.
 #[test]
 fn effects_on_a_joint_that_follows_several_act_on_each_leader() {
     let mut met = std::cell::Cell::new(0);

@@ -171,7 +171,7 @@ impl<R: Dynamics<f64>> Control for Drive<'_, R> {
 
 /// Numbers of actuators that are not finite or do not fit a robot of `nq` coordinates.
 fn wrong_actuators(actuators: &Actuators, nq: usize, nv: usize) -> Vec<StateError> {
-    let Actuators { laws, controls, bounds, passive } = actuators;
+    let Actuators { laws, controls, bounds, followers, passive } = actuators;
     let mut wrong: Vec<StateError> = match controls {
         Signal::Still(u) => StateError::of("control.ctrl", u, laws.len(), |_| None).collect(),
         Signal::Moving(series) => StateError::of_table("control.rows", series, laws.len()).collect(),
@@ -185,7 +185,18 @@ fn wrong_actuators(actuators: &Actuators, nq: usize, nv: usize) -> Vec<StateErro
     for law in laws.iter().chain(passive) {
         law.control_range.into_iter().chain(law.force_range).for_each(|bounds| range(&law.name, bounds));
     }
-    bounds.iter().for_each(|(_, bounds)| range("bounds of torques", *bounds));
+    let of_followers = followers.iter().filter_map(|follower| follower.range);
+    bounds.iter().map(|(_, bounds)| *bounds).chain(of_followers).for_each(|bounds| range("bounds of torques", bounds));
+    for follower in followers {
+        let [laws_of, leaders] = [&follower.laws, &follower.leaders];
+        for (vector, all, length) in [("actuators", laws_of, laws.len()), ("v", leaders, nv)] {
+            let beyond = all.iter().map(|(k, _)| *k).filter(|k| *k >= length);
+            let event = || "a joint that follows others".to_owned();
+            wrong.extend(beyond.map(|index| StateError::Beyond { event: event(), vector, index, length }));
+            let factors: Vec<f64> = all.iter().map(|(_, factor)| *factor).collect();
+            wrong.extend(StateError::of("gear of an actuator", &factors, factors.len(), |_| None));
+        }
+    }
     for law in laws.iter().chain(passive) {
         wrong.extend(StateError::of("gain of an actuator", &law.gain, 3, |_| None));
         wrong.extend(StateError::of("bias of an actuator", &law.bias, 3, |_| None));
