@@ -191,7 +191,7 @@ fn dynamics_that_are_not_read_are_warnings() {
     let texts = [
         option("density=\"1000\""),
         body("gravcomp=\"1\""),
-        joint("springdamper=\"1 1\""),
+        joint("type=\"free\" springdamper=\"1 1\""),
         joint("stiffness=\"1 2\""),
         joint("type=\"free\" armature=\"1\""),
         joint("type=\"free\" stiffness=\"1\""),

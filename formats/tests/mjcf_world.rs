@@ -188,6 +188,33 @@ fn springs_of_tendons_are_actuators_without_gain() {
     assert_eq!((&found[0].drives, found[0].bias), (&vec![drive("x", &[3.0])], [0.0, 0.0, -0.2]));
 }
 
+/// k = m/(T ζ)² and d = 2 m/T, with the mass m = 1/(M⁻¹)ᵢᵢ of the joint where the file starts.
+#[test]
+fn a_springdamper_is_a_spring_and_a_damper() {
+    let rod = |joint: &str, inside: &str| {
+        format!("<body pos=\"0 0 1\"><joint {joint}/><inertial pos=\"0 0 0.5\" mass=\"2\" diaginertia=\"0.3 0.3 0.1\"/>{inside}</body>")
+    };
+    let joints = |world: &str| accepted(&format!("<mujoco><worldbody>{world}</worldbody></mujoco>")).description.joints;
+    // About x: 0.3 + 2 · 0.5² + armature.
+    let hinge = "axis=\"1 0 0\" armature=\"0.2\" springref=\"90\" stiffness=\"7\" springdamper=\"0.1 0.5\"";
+    let found = joints(&rod(hinge, ""))[0].dynamics;
+    assert!((found.stiffness.unwrap() - 400.0).abs() < 1e-12 && (found.damping.unwrap() - 20.0).abs() < 1e-13, "{found:?}");
+    assert_eq!((found.rest, found.armature), (Some(FRAC_PI_2), Some(0.2)));
+    // Of a ball the mean of the diagonal of M⁻¹, over all three axes.
+    let found = joints(&rod("type=\"ball\" springdamper=\"0.1 0.5\"", ""))[0].dynamics;
+    let mass = 3.0 / (2.0 / 0.8 + 1.0 / 0.1);
+    assert!((found.stiffness.unwrap() - 400.0 * mass).abs() < 1e-11 && (found.damping.unwrap() - 20.0 * mass).abs() < 1e-12, "{found:?}");
+    assert_eq!(found.rest, None);
+    // Two hinges of one axis: M⁻¹ is that of a double pendulum, hanging straight.
+    let inner = rod("axis=\"1 0 0\" springdamper=\"0.1 0.5\"", "");
+    let found = joints(&rod("axis=\"1 0 0\"", &inner));
+    let ([a, b, c], own) = ([0.8 + 0.3 + 2.0 * 1.5 * 1.5, 0.3 + 2.0 * 1.5 * 0.5, 0.8_f64], found[1].dynamics.damping.unwrap());
+    assert!((own - 20.0 * (a * c - b * b) / a).abs() < 1e-12, "{own}");
+    assert_eq!(found[0].dynamics.damping, None);
+    // Both numbers have to be above zero.
+    assert_eq!(joints(&rod("stiffness=\"7\" springdamper=\"0.1 0\"", ""))[0].dynamics.stiffness, Some(7.0));
+}
+
 #[test]
 fn equations_of_joints_are_couplings() {
     let coupling = |tags: &str| {

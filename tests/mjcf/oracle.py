@@ -246,7 +246,7 @@ def compare(path, generated=False):
     counts = collections.Counter()
     world.compare(model, states, robot, differ, lambda kind, number: counts.update({kind: number}))
     masses(model, robot, fused, differ, mujoco, np)
-    joints(model, spec, robot, armature, differ, np)
+    joints(model, robot, armature, differ, np)
     mujoco.mj_setConst(model, data)
     at, frames, nv = 0, robot["frames"], model.nv
 
@@ -362,7 +362,7 @@ def masses(model, robot, fused, differ, mujoco, np):
     model.body_sameframe[:] = 0
 
 
-def joints(model, spec, robot, armature, differ, np):
+def joints(model, robot, armature, differ, np):
     """Compares what joints with one coordinate and ball joints have."""
     for joint, found in zip(range(model.njnt), robot["joints"]):
         kind = int(model.jnt_type[joint])
@@ -371,11 +371,10 @@ def joints(model, spec, robot, armature, differ, np):
         dof, at = model.jnt_dofadr[joint], model.jnt_qposadr[joint]
         differ("armature", found["armature"] or 0, armature[dof])
         differ("friction", found["friction"] or 0, model.dof_frictionloss[dof])
-        if not np.any(spec.joints[joint].springdamper):
-            differ("damping", found["damping"] or 0, model.dof_damping[dof])
-            differ("stiffness", found["stiffness"] or 0, model.jnt_stiffness[joint])
-            if model.jnt_stiffness[joint] and kind != BALL:
-                differ("rest", found["rest"] or 0, model.qpos_spring[at], 1.0)
+        differ("damping", found["damping"] or 0, model.dof_damping[dof])
+        differ("stiffness", found["stiffness"] or 0, model.jnt_stiffness[joint])
+        if model.jnt_stiffness[joint] and kind != BALL:
+            differ("rest", found["rest"] or 0, model.qpos_spring[at], 1.0)
         if model.jnt_limited[joint] and kind == BALL:
             differ("limits", found["upper"], model.jnt_range[joint, 1], 1.0)
         elif model.jnt_limited[joint]:

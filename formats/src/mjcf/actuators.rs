@@ -404,7 +404,8 @@ struct Target {
     is_ball: bool,
 }
 
-/// Reads all actuators; returns the controls of all of the file.
+/// Reads all actuators; returns the controls of all of the file, and the armatures of actuators and
+/// tendons with the lengths that they are on.
 pub(crate) fn actuators(
     scope: &mut Scope<'_>,
     tendons: &[Tendon],
@@ -412,9 +413,10 @@ pub(crate) fn actuators(
     description: &Description,
     world: &mut World,
     log: &mut Diagnostics,
-) -> Vec<Control> {
+) -> (Vec<Control>, Vec<(f64, Drives)>) {
     let mut controls = Vec::new();
-    let mut armatures: Vec<(f64, Drives)> = Vec::new();
+    let of_tendon = |tendon: &Tendon| (tendon.armature, tendon.terms.iter().map(|(joint, factor)| (*joint, vec![*factor])).collect());
+    let mut armatures: Vec<(f64, Drives)> = tendons.iter().map(of_tendon).collect();
     // Actuators with a ratio of damping instead of a coefficient
     let mut ratios: Vec<(usize, &Element)> = Vec::new();
     let mut drives_of: Vec<Drives> = Vec::new();
@@ -477,9 +479,9 @@ pub(crate) fn actuators(
             controls.extend((0..general.controls()).map(|_| Control { part: index, actuator: read }));
         }
     }
-    let lost = damp(&ratios, (&armatures, &drives_of), scope, tendons, description, world, log);
+    let lost = damp(&ratios, (&armatures, &drives_of), scope, description, world, log);
     forget(&lost, &mut controls, world);
-    controls
+    (controls, armatures)
 }
 
 const LOST: &str = "a force that is affine in control, length and rate: this actuator gives no force";
@@ -567,7 +569,6 @@ fn damp(
     ratios: &[(usize, &Element)],
     (armatures, drives_of): (&[(f64, Drives)], &[Drives]),
     scope: &mut Scope<'_>,
-    tendons: &[Tendon],
     description: &Description,
     world: &mut World,
     log: &mut Diagnostics,
@@ -576,10 +577,7 @@ fn damp(
     if ratios.is_empty() {
         return lost;
     }
-    let of_tendon = |tendon: &Tendon| (tendon.armature, tendon.terms.iter().map(|(joint, factor)| (*joint, vec![*factor])).collect());
-    let all: Vec<(f64, Drives)> = armatures.iter().cloned().chain(tendons.iter().map(of_tendon)).collect();
-    let is_known = tendons.iter().all(|tendon| tendon.armature == 0.0 || !tendon.terms.is_empty());
-    let inertia = if is_known && log.is_ok() { Inertia::at_reference(ratios.len(), description, scope, &all) } else { None };
+    let inertia = if log.is_ok() { Inertia::at_reference(ratios.len(), description, scope, armatures) } else { None };
     for (index, element) in ratios {
         let mass = inertia.as_ref().and_then(|inertia| inertia.reflected(&drives_of[*index]));
         let actuator = &mut world.actuators[*index];

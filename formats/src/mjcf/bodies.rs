@@ -69,6 +69,9 @@ pub(crate) struct Joint<'a> {
     pub(crate) dynamics: JointDynamics,
     /// The coordinate at which tendons are measured for `springlength="-1"`, rad or m.
     pub(crate) rest: f64,
+    /// `springdamper`: time constant, s, and ratio of damping, which give stiffness and damping
+    /// where both are above zero.
+    pub(crate) spring_damper: [f64; 2],
     pub(crate) armature: f64,
     /// The part of the tree that it is in.
     pub(crate) part: usize,
@@ -306,6 +309,7 @@ impl<'a> Build<'a> {
                         force_range: None,
                         dynamics: JointDynamics::default(),
                         rest: 0.0,
+                        spring_damper: [0.0; 2],
                         armature: 0.0,
                         part: context.part,
                     };
@@ -511,6 +515,7 @@ fn joint<'a>(name: Option<String>, values: &Values<'a>, context: &Context<'a>, l
         limit,
         force_range,
         rest: angle(values.number("springref", &mut reported).unwrap_or(0.0)),
+        spring_damper: values.exactly("springdamper", log).unwrap_or_default(),
         armature: values.number("armature", &mut reported).unwrap_or(0.0),
         dynamics: dynamics(values, kind, &angle, log),
         part: context.part,
@@ -586,10 +591,6 @@ fn dynamics(values: &Values<'_>, kind: Kind, angle: &dyn Fn(f64) -> f64, log: &m
     });
     let [friction, armature] = ["frictionloss", "armature"].map(|name| values.number(name, log));
     let rest = values.number("springref", log).map(angle);
-    if values.has("springdamper") {
-        let expected = "`stiffness` and `damping`: those that MuJoCo computes from a time constant are not";
-        values.element.warning((&values.subject, "springdamper"), Code::LostDynamics, "a spring", expected, log);
-    }
     if kind != Kind::Free {
         // A ball joint is slack where its coordinate is the identity.
         let rest = rest.filter(|_| stiffness.is_some() && kind != Kind::Ball);

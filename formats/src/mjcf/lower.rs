@@ -79,9 +79,10 @@ struct Lower {
     names: Vec<String>,
 }
 
+pub(crate) const KEPT: &str = "kept for scenes that turn on such forces; no part of the rigid-body dynamics";
+
 /// Reports the numbers of a joint that only effects use, under the names by which those take them.
 fn keep_dynamics(joint: &bodies::Joint<'_>, name: &str, log: &mut Diagnostics) {
-    const WHY: &str = "kept for scenes that turn on such forces; no part of the rigid-body dynamics";
     let own = joint.dynamics;
     let numbers = [
         ("dynamics damping", "damping", own.damping),
@@ -92,7 +93,7 @@ fn keep_dynamics(joint: &bodies::Joint<'_>, name: &str, log: &mut Diagnostics) {
     ];
     for (tag, attribute, _) in numbers.iter().filter(|(_, _, number)| number.is_some()) {
         let place = (joint.element.attribute(attribute), (*tag).to_owned());
-        joint.element.unused_part(&Subject::Joint(name.to_owned()), place, WHY, log);
+        joint.element.unused_part(&Subject::Joint(name.to_owned()), place, KEPT, log);
     }
 }
 

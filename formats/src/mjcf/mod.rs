@@ -77,8 +77,8 @@ impl Format for Mjcf {
         let name = documents.root(0).text("model").filter(|name| !name.trim().is_empty()).unwrap_or("robot");
         let tree = bodies::tree(&documents, diagnostics);
         let mut meshes = mesh::Meshes::new(input.sources);
-        let lowered = lower::lower(name, &tree.bodies, &mut meshes, input.options, diagnostics)?;
-        let world = world::world(&documents, &tree, &lowered, diagnostics);
+        let mut lowered = lower::lower(name, &tree.bodies, &mut meshes, input.options, diagnostics)?;
+        let world = world::world(&documents, &tree, &mut lowered, diagnostics);
         Some(Document { description: lowered.description, world })
     }
 }

@@ -1,10 +1,13 @@
-//! The mass that an actuator feels at the reference state.
+//! The mass that an actuator or a spring feels at the reference state.
 
 use articulated_core::algorithm::{Workspace, function};
 use articulated_core::description::{Base, Description};
+use articulated_core::diagnostic::{Code, Diagnostics, Subject};
 use articulated_core::model::Model;
 
-use super::scope::{Scope, freedoms, reference};
+use super::bodies::Kind;
+use super::lower::KEPT;
+use super::scope::{Known, Scope, freedoms, reference};
 
 /// Joints by their indices, with lengths for a unit of each rate.
 pub(crate) type Drives = Vec<(usize, Vec<f64>)>;
@@ -25,8 +28,11 @@ pub(crate) struct Inertia {
 
 impl Inertia {
     /// For so many actuators. `armatures`: each with the lengths that it is on. `None` if the
-    /// matrix is not positive definite, or very large.
+    /// matrix is not positive definite or very large, or where an armature is on an unknown length.
     pub(crate) fn at_reference(count: usize, description: &Description, scope: &Scope<'_>, armatures: &[(f64, Drives)]) -> Option<Self> {
+        if armatures.iter().any(|(armature, drives)| *armature != 0.0 && drives.is_empty()) {
+            return None;
+        }
         let model: Model<f64> = Model::new(description, Base::Fixed).ok()?;
         let (n, mut q) = (model.nv(), vec![0.0; model.nq()]);
         if n > MOST || n * n * (n + count) > MOST_PRODUCTS {
@@ -66,6 +72,42 @@ impl Inertia {
         }
         let inverse: f64 = x.iter().map(|y| y * y).sum();
         (inverse > 0.0 && inverse.is_finite()).then(|| 1.0 / inverse)
+    }
+}
+
+/// Gives joints the stiffness and the damping of `springdamper`: with the mass m of the joint at the
+/// reference state, the time constant T and the ratio ζ, k = m/(T ζ)² and d = 2 m/T.
+pub(crate) fn spring_dampers(scope: &mut Scope<'_>, description: &mut Description, armatures: &[(f64, Drives)], log: &mut Diagnostics) {
+    let has_one = |(_, known): &(usize, &Known<'_>)| known.joint.spring_damper.iter().all(|x| *x > 0.0);
+    let all: Vec<usize> = scope.joints.iter().enumerate().filter(has_one).map(|(index, _)| index).collect();
+    if all.is_empty() {
+        return;
+    }
+    let inertia = if log.is_ok() { Inertia::at_reference(3 * all.len(), description, scope, armatures) } else { None };
+    for index in all {
+        let Known { joint, name, .. } = scope.joints[index];
+        let count = freedoms(joint.kind);
+        let along = |k: usize| (0..count).map(|i| f64::from(u8::from(i == k))).collect();
+        // 1/m is the mean of the diagonal of M⁻¹
+        let mass = inertia.as_ref().filter(|_| joint.kind != Kind::Free).and_then(|inertia| {
+            let inverse: Option<f64> = (0..count).map(|k| Some(1.0 / inertia.reflected(&vec![(index, along(k))])?)).sum();
+            Some(count as f64 / inverse?)
+        });
+        let about = Subject::Joint(name.to_owned());
+        let (Some(mass), Some(own)) = (mass, description.joint(name)) else {
+            let expected = "a hinge, slide or ball of a robot whose mass matrix is regular: else it is not used";
+            joint.element.warning((&about, "springdamper"), Code::LostDynamics, "a springdamper", expected, log);
+            continue;
+        };
+        let [time, ratio] = joint.spring_damper;
+        let dynamics = &mut description.joints[own].dynamics;
+        (dynamics.stiffness, dynamics.damping) = (Some(mass / (time * ratio).powi(2)), Some(2.0 * mass / time));
+        if joint.kind != Kind::Ball {
+            dynamics.rest = Some(joint.rest);
+        }
+        for tag in ["joint stiffness", "dynamics damping"] {
+            joint.element.unused_part(&about, (joint.element.attribute("springdamper"), tag.to_owned()), KEPT, log);
+        }
     }
 }
 

@@ -10,6 +10,7 @@ use super::equalities::equalities;
 use super::geometry::Geom;
 use super::grammar::subject;
 use super::lower::Lowered;
+use super::reflected::spring_dampers;
 use super::scope::Scope;
 use super::settings::Simulation;
 use super::states;
@@ -18,11 +19,12 @@ use crate::pose::{Pose, rotate};
 use crate::world::{Plane, World};
 
 /// Reads the rest of a model.
-pub(crate) fn world(documents: &Documents, tree: &Tree<'_>, lowered: &Lowered, log: &mut Diagnostics) -> World {
+pub(crate) fn world(documents: &Documents, tree: &Tree<'_>, lowered: &mut Lowered, log: &mut Diagnostics) -> World {
     let main = documents.root(0);
     let simulation = Simulation::of(main, log);
     let has_unread_joints = documents.roots().any(has_deformable);
-    let mut scope = Scope::new(&main.file.name, tree, &lowered.joints, log.is_ok() && !has_unread_joints);
+    let names = lowered.joints.clone();
+    let mut scope = Scope::new(&main.file.name, tree, &names, log.is_ok() && !has_unread_joints);
     let mut world = World {
         gravity: simulation.gravity,
         step: simulation.step,
@@ -34,7 +36,8 @@ pub(crate) fn world(documents: &Documents, tree: &Tree<'_>, lowered: &Lowered, l
     let bounds = scope.joints.iter().filter(|known| matches!(known.joint.kind, Kind::Hinge | Kind::Slide));
     world.joint_forces = bounds.filter_map(|known| Some((known.name.to_owned(), known.joint.force_range?))).collect();
     let tendons = tendons(&mut scope, &mut world.passive, log);
-    let controls = actuators(&mut scope, &tendons, &simulation, &lowered.description, &mut world, log);
+    let (controls, armatures) = actuators(&mut scope, &tendons, &simulation, &lowered.description, &mut world, log);
+    spring_dampers(&mut scope, &mut lowered.description, &armatures, log);
     equalities(&mut scope, &tendons, simulation.no_equality, &mut world, log);
     states::keyframes(&mut scope, &controls, has_unread_joints, &mut world, log);
     world

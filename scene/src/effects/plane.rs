@@ -38,6 +38,9 @@ pub(super) fn refuse_own_plane(spot: &Spot<'_>, log: &mut Diagnostics) {
     }
 }
 
+/// The numbers of a request against a plane, and the collision geometry that passes through that.
+pub(super) type Against<'p> = (Numbers, &'p [(String, usize)]);
+
 /// The numbers of a request for each plane, and the collision geometry that passes through it. One
 /// with a plane of its own is alone. `None`: it is of the file, which has none, and that is an
 /// error.
@@ -48,7 +51,7 @@ pub(super) fn of<'p>(
     rest: Option<&Numbers>,
     planes: &'p [Plane],
     log: &mut Diagnostics,
-) -> Option<Vec<(Numbers, &'p [(String, usize)])>> {
+) -> Option<Vec<Against<'p>>> {
     let places = OWN.map(|name| row.fields.iter().position(|field| field.name == name));
     let has_own = places.iter().flatten().any(|place| says.fields[*place].is_some());
     if !says.from_file_planes && (has_own || !rest.is_some_and(|rest| rest.from_file_planes)) {
