@@ -1,19 +1,20 @@
 #!/bin/sh
-# Runs a target, or all, with libFuzzer on a stable compiler: fuzz/stable.sh <target|all> [seconds]
+# Runs a target, or all, with libFuzzer on a stable compiler: fuzz/stable.sh <target|all> [seconds | --inputs NUMBER]
 set -eu
 cd "$(dirname "$0")"
 target=${1:?a target: urdf, xacro, mjcf, mjcf_grammar, sdf, scene, dynamics, macro_input or all}
-seconds=${2:-60}
+if [ "${2:-}" = --inputs ]; then end="-runs=${3:?a number of inputs}"; else end="-max_total_time=${2:-60}"; fi
 if [ "$target" = all ]; then
-    for one in urdf xacro mjcf mjcf_grammar sdf scene dynamics macro_input; do ./stable.sh "$one" "$seconds"; done
+    shift
+    for one in urdf xacro mjcf mjcf_grammar sdf scene dynamics macro_input; do ./stable.sh "$one" "$@"; done
     exit
 fi
 case $target in
-    urdf) seeds="../models/urdf ../tests/ui/urdf" limits="-timeout=10 -rss_limit_mb=1024" ;;
-    xacro) seeds="../tests/xacro/models" limits="-timeout=10 -rss_limit_mb=1024" ;;
-    mjcf) seeds="../formats/tests/corpus/mjcf" limits="-timeout=10 -rss_limit_mb=1024" ;;
-    mjcf_grammar) seeds="" limits="-timeout=10 -rss_limit_mb=1024" ;;
-    sdf) seeds="../tests/sdf/models" limits="-timeout=10 -rss_limit_mb=1024" ;;
+    urdf) seeds="../models/urdf ../tests/ui/urdf" limits="-timeout=10 -rss_limit_mb=512" ;;
+    xacro) seeds="../tests/xacro/models" limits="-timeout=10 -rss_limit_mb=512" ;;
+    mjcf) seeds="../formats/tests/corpus/mjcf" limits="-timeout=10 -rss_limit_mb=512" ;;
+    mjcf_grammar) seeds="" limits="-timeout=10 -rss_limit_mb=512" ;;
+    sdf) seeds="../tests/sdf/models" limits="-timeout=10 -rss_limit_mb=512" ;;
     scene) seeds="../models/scenes ../tests/ui/scenes" limits="-timeout=10 -rss_limit_mb=1024" ;;
     dynamics) seeds="../models/urdf" limits="-timeout=20 -rss_limit_mb=2048" ;;
     macro_input) seeds="seeds/macro_input" limits="-timeout=20 -rss_limit_mb=2048" ;;
@@ -26,4 +27,4 @@ RUSTFLAGS="-Cpasses=sancov-module $pass-level=4 $pass-inline-8bit-counters $pass
     cargo build --release --target "$host" --bin "$target"
 mkdir -p "corpus/$target" "artifacts/$target"
 # shellcheck disable=SC2086
-exec "${CARGO_TARGET_DIR:-target}/$host/release/$target" "corpus/$target" $seeds $limits -max_total_time="$seconds" -artifact_prefix="artifacts/$target/"
+exec "${CARGO_TARGET_DIR:-target}/$host/release/$target" "corpus/$target" $seeds $limits "$end" -artifact_prefix="artifacts/$target/"

@@ -4,6 +4,8 @@
 //! SI units and in the conventions of the library: quaternions (x, y, z, w), rates of a floating
 //! joint as the twist [ω; v] in axes of its link.
 
+use std::collections::BTreeMap;
+
 use articulated_core::description::{Coupling, Description};
 use articulated_core::diagnostic::At;
 
@@ -45,6 +47,9 @@ pub struct World {
     pub couplings: Vec<(Coupling, At)>,
     /// Planes that do not move, against which links collide.
     pub planes: Vec<Plane>,
+    /// For links with collision geometry, what each piece makes contact with, in the order of their
+    /// lists. A link that is not here makes contact with everything.
+    pub contact_masks: BTreeMap<String, Vec<ContactMask>>,
     /// Equations of the file that close loops, or are not linear: nothing applies them.
     pub loops: Vec<Loop>,
 }
@@ -98,10 +103,26 @@ pub struct Plane {
     pub point: [f64; 3],
     /// Its normal in the world frame, of norm one: the side on which links are.
     pub normal: [f64; 3],
-    /// Collision geometry that passes through it: a link, and the place in its list.
-    pub without: Vec<(String, usize)>,
+    /// What makes contact with it; `None`: everything.
+    pub mask: Option<ContactMask>,
     /// Where the file says so.
     pub place: At,
+}
+
+/// Bits that say which collision geometry makes contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ContactMask {
+    /// The kinds that it is of, a bit each.
+    pub kinds: i64,
+    /// The kinds that it makes contact with.
+    pub affinity: i64,
+}
+
+impl ContactMask {
+    /// Whether two make contact: one of them has an affinity to a kind of the other.
+    pub fn meets(self, other: Self) -> bool {
+        self.kinds & other.affinity != 0 || other.kinds & self.affinity != 0
+    }
 }
 
 /// An equation of the file that is not part of the tree.

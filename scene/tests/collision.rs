@@ -35,7 +35,7 @@ fn reading(urdf: &str) -> Reading {
 fn resolve_on(urdf: &str, text: &str, base: Base) -> Result<Resolved, Diagnostics> {
     let reading = reading(urdf);
     let scene = Scene::read("s.toml", text).unwrap_or_else(|e| panic!("{e}"));
-    scene.resolve(&Edited { description: &reading.description, base, unused: &reading.unused, planes: &reading.world.planes, shafts: &[] })
+    scene.resolve(&Edited { description: &reading.description, base, unused: &reading.unused, world: &reading.world, shafts: &[] })
 }
 
 fn resolved(text: &str) -> Resolved {
@@ -254,4 +254,7 @@ fn planes_that_are_not_there_or_said_twice_are_errors() {
     assert!(twice.contains("found height beside plane = \"file\", expected one of both"), "{twice}");
     assert!(said("plane = 'flor'").contains("found \"flor\", expected \"file\""));
     assert!(said("plane = 3").contains("expected \"file\""));
+    let many = IN_ROOM.replace("<worldbody>", &format!("<worldbody>{}", "<geom type=\"plane\" size=\"1 1 1\"/>".repeat(100)));
+    let many = resolve_on(&many, &format!("[effects.contact]\nfrom = 'collision'\nplane = 'file'\n{LAW}"), Base::Fixed).unwrap_err();
+    assert!(many.errors.len() == 1 && many.to_string().contains("has 102 planes, expected at most 100"), "{many}");
 }

@@ -6,6 +6,7 @@ use articulated_core::effect::EffectId;
 use articulated_core::integrator::IntegratorId;
 use articulated_core::model::{FLOATING_BASE, Model};
 use articulated_core::spatial::{from_quaternion, from_rpy};
+use articulated_formats::world::World;
 use articulated_scene::{Controller, Edited, Output, Scene, Settings, Stiffness};
 
 /// Two hinges, the second of which has limits, damping and an effort; a ball; a slide that follows
@@ -64,7 +65,7 @@ fn gains_are_those_of_their_joints() {
 /// Of each effect: on what, and its numbers.
 fn on(text: &str) -> Vec<(EffectId, String, Vec<f64>)> {
     let description = robot();
-    let edited = Edited { description: &description, base: Base::Fixed, unused: &[], planes: &[], shafts: &[] };
+    let edited = Edited { description: &description, base: Base::Fixed, unused: &[], world: &World::default(), shafts: &[] };
     let resolved = scene(text).resolve(&edited).unwrap_or_else(|e| panic!("{e:?}"));
     resolved.effects.into_iter().map(|a| (a.effect, a.on, a.parameters)).collect()
 }
@@ -87,7 +88,7 @@ fn what_is_asked_of_ten_thousand_joints_and_links_is_soon_resolved() {
         why: String::new(),
     };
     let unused: Vec<Unused> = (0..count).map(unused).collect();
-    let robot = Edited { description: &description, base: Base::Fixed, unused: &unused, planes: &[], shafts: &[] };
+    let robot = Edited { description: &description, base: Base::Fixed, unused: &unused, world: &World::default(), shafts: &[] };
     let each = |what: &str, number: &str| (1..count).map(|k| format!("{what}_{k} = {number}\n")).collect::<String>();
     let text = format!(
         "[effects.damping]\n\"*\" = \"urdf\"\n[effects.friction]\n{}[effects.drag]\n{}",
@@ -123,7 +124,7 @@ fn what_is_asked_of_all_is_had_by_those_that_can() {
     // for where nobody said.
     assert_eq!(on("[effects.damping]\n\"*\" = 1\ntwo = \"off\"").iter().map(|d| d.1.as_str()).collect::<Vec<_>>(), ["one", "three"]);
     let description = robot();
-    let edited = Edited { description: &description, base: Base::Fixed, unused: &[], planes: &[], shafts: &[] };
+    let edited = Edited { description: &description, base: Base::Fixed, unused: &[], world: &World::default(), shafts: &[] };
     let wrong = scene("[effects.motor]\ntwo = { gear = 2 }").resolve(&edited).unwrap_err().errors;
     assert!(wrong.len() == 1 && wrong[0].to_string().contains("no torque for joint \"two\""), "{wrong:?}");
     // Nothing pulls at a link without mass that was not named, nor at one that stands still.
@@ -146,7 +147,7 @@ fn a_quaternion_that_is_nearly_of_norm_one_is_made_so() {
 fn what_is_asked_of_all_says_where_too() {
     let text = "[effects.drag]\n\"*\" = { coefficient = 1, xyz = [0, 0, 0.1] }\na = { coefficient = 2 }\nb = { coefficient = 3, xyz = [0.5, 0, 0] }";
     let description = robot();
-    let edited = Edited { description: &description, base: Base::Fixed, unused: &[], planes: &[], shafts: &[] };
+    let edited = Edited { description: &description, base: Base::Fixed, unused: &[], world: &World::default(), shafts: &[] };
     let resolved = scene(text).resolve(&edited).unwrap_or_else(|e| panic!("{e:?}"));
     let places: Vec<(&str, f64, [f64; 3])> = resolved.effects.iter().map(|a| (a.on.as_str(), a.parameters[0], a.at.xyz)).collect();
     assert_eq!(places, [("a", 2.0, [0.0, 0.0, 0.1]), ("b", 3.0, [0.5, 0.0, 0.0]), ("c", 1.0, [0.0, 0.0, 0.1])]);

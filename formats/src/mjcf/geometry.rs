@@ -11,6 +11,7 @@ use super::mesh::{self, Meshes};
 use super::settings::Settings;
 use super::values::Values;
 use crate::pose::{Pose, Symmetric, TINY, Vector, add, diagonal, norm, of_z_axis, rotate, scale, subtract};
+use crate::world::ContactMask;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
@@ -42,9 +43,8 @@ pub(crate) struct Geom<'a> {
     is_shell: bool,
     fit_scale: f64,
     pub(crate) group: i64,
-    /// `contype` and `conaffinity`: it makes contact where one of them has a bit of the other's
-    /// other.
-    bits: [i64; 2],
+    /// `contype` and `conaffinity`.
+    pub(crate) mask: ContactMask,
     pub(crate) color: Option<[f64; 4]>,
 }
 
@@ -136,7 +136,7 @@ pub(crate) fn geom<'a>(values: &Values<'a>, settings: &Rc<Settings<'a>>, frame: 
         values.error(field, Code::NegativeMass, format!("a negative {field}"), "zero or more", log);
     }
     let affinity = |name: &str, log: &mut Diagnostics| values.integer(name, log).unwrap_or(1);
-    let bits = [affinity("contype", log), affinity("conaffinity", log)];
+    let mask = ContactMask { kinds: affinity("contype", log), affinity: affinity("conaffinity", log) };
     Some(Geom {
         element: values.element,
         settings: settings.clone(),
@@ -149,7 +149,7 @@ pub(crate) fn geom<'a>(values: &Values<'a>, settings: &Rc<Settings<'a>>, frame: 
         is_shell: values.yes("shellinertia", log).unwrap_or(false),
         fit_scale: values.number("fitscale", log).unwrap_or(1.0),
         group: values.integer("group", log).unwrap_or(0),
-        bits,
+        mask,
         color: values.exactly::<4>("rgba", log),
     })
 }
@@ -217,12 +217,7 @@ impl Geom<'_> {
 
     /// Whether it makes contact with something.
     pub(crate) fn collides(&self) -> bool {
-        self.bits != [0; 2]
-    }
-
-    /// Whether it makes contact with another, as far as the bits of both say.
-    pub(crate) fn collides_with(&self, other: &Self) -> bool {
-        self.bits[0] & other.bits[1] != 0 || other.bits[0] & self.bits[1] != 0
+        self.mask != ContactMask::default()
     }
 
     /// The frame of a plane for contact: its z axis is the normal.

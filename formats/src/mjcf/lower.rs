@@ -1,5 +1,7 @@
 //! From bodies to a [`Description`].
 
+use std::collections::BTreeMap;
+
 use articulated_core::description::{Base, Collision, Description, Frame, Inertial, Joint, JointKind, Link, Origin, Visual};
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
@@ -11,6 +13,7 @@ use crate::Options;
 use crate::pose::{Pose, scale, subtract};
 use crate::reading::HELD;
 use crate::taken::Taken;
+use crate::world::ContactMask;
 
 /// The link that does not move.
 const WORLD: &str = "world";
@@ -20,8 +23,8 @@ pub(crate) struct Lowered {
     pub(crate) description: Description,
     /// Names of joints, in the order of the bodies.
     pub(crate) joints: Vec<String>,
-    /// The link of each body.
-    pub(crate) links: Vec<usize>,
+    /// For each link, what its collision geometry makes contact with.
+    pub(crate) masks: BTreeMap<String, Vec<ContactMask>>,
 }
 
 /// The description of all bodies; `None` where an error leaves no sense in it.
@@ -33,6 +36,7 @@ pub(crate) fn lower(name: &str, bodies: &[Body<'_>], meshes: &mut Meshes<'_>, op
         link_of: Vec::with_capacity(bodies.len()),
         is_fixed: Vec::with_capacity(bodies.len()),
         names: Vec::new(),
+        masks: BTreeMap::new(),
     };
     lower.reserve(bodies, log);
     let mut inertials: Vec<Option<Inertial>> = Vec::with_capacity(bodies.len());
@@ -50,7 +54,7 @@ pub(crate) fn lower(name: &str, bodies: &[Body<'_>], meshes: &mut Meshes<'_>, op
         lower.content(index, body);
     }
     lower.sites(bodies, log);
-    Some(Lowered { description: lower.description, joints: lower.names, links: lower.link_of })
+    Some(Lowered { description: lower.description, joints: lower.names, masks: lower.masks })
 }
 
 /// Scales all masses so that they are the `settotalmass` of the main file.
@@ -77,6 +81,7 @@ struct Lower {
     is_fixed: Vec<bool>,
     /// Names of joints of the file, or made for them.
     names: Vec<String>,
+    masks: BTreeMap<String, Vec<ContactMask>>,
 }
 
 pub(crate) const KEPT: &str = "kept for scenes that turn on such forces; no part of the rigid-body dynamics";
@@ -238,6 +243,7 @@ impl Lower {
             let origin = pose.origin();
             if geom.collides() {
                 link.collision.push(Collision { origin, shape: shape.clone() });
+                self.masks.entry(link.name.clone()).or_default().push(geom.mask);
             }
             link.visual.push(Visual { origin, shape, material: String::new(), color: geom.color });
         }

@@ -7,7 +7,6 @@ use super::bodies::{Kind, Tree};
 use super::documents::Documents;
 use super::element::Element;
 use super::equalities::equalities;
-use super::geometry::Geom;
 use super::grammar::subject;
 use super::lower::Lowered;
 use super::reflected::spring_dampers;
@@ -29,7 +28,7 @@ pub(crate) fn world(documents: &Documents, tree: &Tree<'_>, lowered: &mut Lowere
         gravity: simulation.gravity,
         step: simulation.step,
         integrator: simulation.integrator.clone(),
-        planes: planes(&scope, lowered, log),
+        planes: planes(&scope, log),
         home: states::home(&scope),
         ..World::default()
     };
@@ -37,7 +36,10 @@ pub(crate) fn world(documents: &Documents, tree: &Tree<'_>, lowered: &mut Lowere
     world.joint_forces = bounds.filter_map(|known| Some((known.name.to_owned(), known.joint.force_range?))).collect();
     let tendons = tendons(&mut scope, &mut world.passive, log);
     let (controls, armatures) = actuators(&mut scope, &tendons, &simulation, &lowered.description, &mut world, log);
-    spring_dampers(&mut scope, &mut lowered.description, &armatures, log);
+    if !world.planes.is_empty() {
+        world.contact_masks = std::mem::take(&mut lowered.masks);
+    }
+    spring_dampers(&scope, &mut lowered.description, &armatures, log);
     equalities(&mut scope, &tendons, simulation.no_equality, &mut world, log);
     states::keyframes(&mut scope, &controls, has_unread_joints, &mut world, log);
     world
@@ -56,7 +58,7 @@ fn has_deformable(root: &Element) -> bool {
 }
 
 /// The planes of bodies that do not move.
-fn planes(scope: &Scope<'_>, lowered: &Lowered, log: &mut Diagnostics) -> Vec<Plane> {
+fn planes(scope: &Scope<'_>, log: &mut Diagnostics) -> Vec<Plane> {
     let bodies = &scope.tree.bodies;
     let mut all = Vec::new();
     // The pose in the world, of bodies that do not move
@@ -75,22 +77,10 @@ fn planes(scope: &Scope<'_>, lowered: &Lowered, log: &mut Diagnostics) -> Vec<Pl
                 name: geom.element.text("name").unwrap_or_default().to_owned(),
                 point: frame.position,
                 normal: rotate(frame.rotation, [0.0, 0.0, 1.0]),
-                without: without(geom, scope.tree, lowered),
+                mask: Some(geom.mask),
                 place: scope.place(geom.element),
             });
         }
-    }
-    all
-}
-
-/// Collision geometry that a plane lets through.
-fn without(plane: &Geom<'_>, tree: &Tree<'_>, lowered: &Lowered) -> Vec<(String, usize)> {
-    let mut all = Vec::new();
-    for (body, link) in tree.bodies.iter().zip(&lowered.links) {
-        // In the order of the link's list
-        let pieces = body.geoms.iter().filter(|geom| geom.collides() && geom.shape().is_some());
-        let through = pieces.enumerate().filter(|(_, geom)| !plane.collides_with(geom));
-        all.extend(through.map(|(piece, _)| (lowered.description.links[*link].name.clone(), piece)));
     }
     all
 }

@@ -72,7 +72,7 @@ fn placed_plane(
     let (point, normal) = (pose.position, rotate(pose.rotation, normal));
     // Lines are those of the main file.
     let place = if plane.file.included { At::Nowhere } else { plane.at };
-    Some(Plane { name, point, normal, without: Vec::new(), place })
+    Some(Plane { name, point, normal, mask: None, place })
 }
 
 /// The whole appearance of a link: the dynamics need none of it, so that nothing here is a finding.

@@ -3,6 +3,7 @@
 use articulated_core::description::{Collision, CollisionShape, Link, Origin};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Subject};
 use articulated_core::effect::{Effect, EffectId};
+use articulated_formats::world::ContactMask;
 
 use super::resolve::{Resolving, fill, missing};
 use super::{EffectRequest, FRAME, Numbers, Selector};
@@ -45,18 +46,21 @@ pub(super) fn is_taken(row: &Effect, says: &Numbers, rest: Option<&Numbers>) -> 
 }
 
 impl<'a> Resolving<'a> {
-    /// The contact of a link's collision geometry, a sphere or point each, but for what passes
-    /// `without` it.
+    /// The contact of a link's collision geometry, a sphere or point each, with what has this mask.
     pub(super) fn of_collision(
         &mut self,
         row: &'static Effect,
         link: &'a Link,
         (one, says): (&EffectRequest, &Numbers),
-        (rest, without): (Option<&Numbers>, &[(String, usize)]),
+        (rest, mask): (Option<&Numbers>, Option<ContactMask>),
         log: &mut Diagnostics,
     ) {
-        let passes = |piece: &usize| without.iter().any(|(name, other)| *name == link.name && other == piece);
-        let pieces: Vec<&Collision> = (0..).zip(&link.collision).filter(|(k, _)| !passes(k)).map(|(_, piece)| piece).collect();
+        let masks = self.robot.world.contact_masks.get(&link.name);
+        let meets = |k: usize| match (mask, masks.and_then(|masks| masks.get(k))) {
+            (Some(mask), Some(own)) => mask.meets(*own),
+            _ => true,
+        };
+        let pieces: Vec<&Collision> = link.collision.iter().enumerate().filter(|(k, _)| meets(*k)).map(|(_, piece)| piece).collect();
         if pieces.is_empty() && !link.collision.is_empty() {
             return;
         }

@@ -2,7 +2,7 @@
 
 use articulated_core::diagnostic::{Code, Diagnostics, quote};
 use articulated_core::effect::{Effect, EffectId};
-use articulated_formats::world::Plane;
+use articulated_formats::world::{ContactMask, Plane};
 
 use super::{EffectRequest, Numbers};
 use crate::table::Spot;
@@ -14,6 +14,8 @@ pub(super) const KEY: &str = "plane";
 const FILE: &str = "file";
 /// The fields that a plane gives.
 const OWN: [&str; 2] = ["normal", "height"];
+/// A file may have so many planes for contact: each link meets each of them.
+const MOST: usize = 100;
 
 /// Whether the effect acts against a plane.
 pub(super) fn offers(row: &Effect) -> bool {
@@ -38,41 +40,43 @@ pub(super) fn refuse_own_plane(spot: &Spot<'_>, log: &mut Diagnostics) {
     }
 }
 
-/// The numbers of a request against a plane, and the collision geometry that passes through that.
-pub(super) type Against<'p> = (Numbers, &'p [(String, usize)]);
+/// The numbers of a request against a plane, and what makes contact with that.
+pub(super) type Against = (Numbers, Option<ContactMask>);
 
-/// The numbers of a request for each plane, and the collision geometry that passes through it. One
-/// with a plane of its own is alone. `None`: it is of the file, which has none, and that is an
-/// error.
-pub(super) fn of<'p>(
+/// The numbers of a request for each plane. One with a plane of its own is alone. `None`: it is of
+/// the file, which has none or very many, and that is an error.
+pub(super) fn of(
     row: &Effect,
     one: &EffectRequest,
     says: &Numbers,
     rest: Option<&Numbers>,
-    planes: &'p [Plane],
+    planes: &[Plane],
     log: &mut Diagnostics,
-) -> Option<Vec<Against<'p>>> {
+) -> Option<Vec<Against>> {
     let places = OWN.map(|name| row.fields.iter().position(|field| field.name == name));
     let has_own = places.iter().flatten().any(|place| says.fields[*place].is_some());
     if !says.from_file_planes && (has_own || !rest.is_some_and(|rest| rest.from_file_planes)) {
-        return Some(vec![(says.clone(), &[])]);
+        return Some(vec![(says.clone(), None)]);
     }
-    if planes.is_empty() {
-        let found = "\"file\", and the robot's file has no plane that makes contact";
+    if planes.is_empty() || planes.len() > MOST {
+        let (found, expected) = match planes.len() {
+            0 => ("\"file\", and the robot's file has no plane that makes contact".to_owned(), "`normal` and `height`".to_owned()),
+            count => (format!("\"file\", and the robot's file has {count} planes"), format!("at most {MOST}, or `normal` and `height`")),
+        };
         // Once, whatever the number of links.
-        let is_told = log.errors.iter().any(|error| error.code == Code::Robot && error.found == found);
-        if !is_told {
-            log.error((one.place, &format!("{}.{KEY}", one.key)), Code::Robot, found, "`normal` and `height`");
+        let is_reported = log.errors.iter().any(|error| error.code == Code::Robot && error.found == found);
+        if !is_reported {
+            log.error((one.place, &format!("{}.{KEY}", one.key)), Code::Robot, found, expected);
         }
         return None;
     }
-    let against = |plane: &'p Plane| {
+    let against = |plane: &Plane| {
         let height = plane.normal.iter().zip(plane.point).map(|(normal, x)| normal * x).sum();
         let mut own = says.clone();
         for (place, numbers) in places.into_iter().zip([plane.normal.to_vec(), vec![height]]) {
             place.into_iter().for_each(|place| own.fields[place] = Some(numbers.clone()));
         }
-        (own, plane.without.as_slice())
+        (own, plane.mask)
     };
     Some(planes.iter().map(against).collect())
 }

@@ -15,7 +15,7 @@ use crate::scene::Scene;
 use crate::shaft;
 use articulated_core::effect::{Applied, Effect, EffectId, Enters, Field, On, effects};
 use articulated_core::model::FLOATING_BASE;
-use articulated_formats::world::Plane;
+use articulated_formats::world::World;
 
 /// A robot as the scene's edits left it.
 #[derive(Clone, Copy, Debug)]
@@ -26,8 +26,8 @@ pub struct Edited<'a> {
     pub base: Base,
     /// What the reader of the URDF could not use.
     pub unused: &'a [Unused],
-    /// Planes of the robot's file.
-    pub planes: &'a [Plane],
+    /// What the robot's file says beside the robot: its planes.
+    pub world: &'a World,
     /// The springs and dampings of each of the scene's shafts; `None` for a refused one.
     pub shafts: &'a [Option<Vec<Applied>>],
 }
@@ -226,10 +226,10 @@ impl<'a> Resolving<'a> {
             for one in ones {
                 let Some(says) = &one.says else { continue };
                 let rest = all.filter(|_| named).and_then(|a| a.says.as_ref());
-                let Some(planes) = plane::of(row, one, says, rest, self.robot.planes, log) else { continue };
-                for (own, without) in &planes {
+                let Some(planes) = plane::of(row, one, says, rest, &self.robot.world.planes, log) else { continue };
+                for (own, mask) in &planes {
                     if collision::is_taken(row, says, rest) {
-                        self.of_collision(row, link, (one, own), (rest, *without), log);
+                        self.of_collision(row, link, (one, own), (rest, *mask), log);
                         continue;
                     }
                     let at = says.at.or(rest.and_then(|r| r.at)).unwrap_or_default();

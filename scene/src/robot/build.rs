@@ -139,7 +139,7 @@ impl RobotRequest<'_> {
         let mut own = log.apart();
         let resolved = self.scene.map_or_else(Resolved::default, |scene| {
             let Reading { description, unused, world, .. } = &editing.reading;
-            let robot = Edited { description, base: self.options.base, unused, planes: &world.planes, shafts: &editing.springs };
+            let robot = Edited { description, base: self.options.base, unused, world, shafts: &editing.springs };
             let resolved = scene.resolve_into(&robot, &mut own);
             if self.checks_motion {
                 scene.check_file_step(&editing.reading.world, &mut own);
