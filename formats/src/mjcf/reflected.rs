@@ -75,8 +75,8 @@ impl Inertia {
     }
 }
 
-/// Gives joints the stiffness and the damping of `springdamper`: with the mass m of the joint at the
-/// reference state, the time constant T and the ratio ζ, k = m/(T ζ)² and d = 2 m/T.
+/// Gives joints the stiffness and the damping of `springdamper`: k = m/(T ζ)² and d = 2 m/T, with
+/// the mass m of the joint at the reference state, the time constant T and the ratio ζ.
 pub(crate) fn spring_dampers(scope: &Scope<'_>, description: &mut Description, armatures: &[(f64, Drives)], log: &mut Diagnostics) {
     let has_one = |(_, known): &(usize, &Known<'_>)| known.joint.spring_damper.iter().all(|x| *x > 0.0);
     let all: Vec<usize> = scope.joints.iter().enumerate().filter(has_one).map(|(index, _)| index).collect();
