@@ -32,7 +32,7 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     if reading.description.links.iter().any(|link| !link.collision.is_empty()) {
         let (plane, ground) =
             if world.planes.is_empty() { ("", "the ground z = 0") } else { (", plane = \"file\"", "the planes of the file") };
-        let contact = format!("from = \"collision\", stiffness = 1e5, damping = 100{plane}");
+        let contact = format!("from = \"collision\"{plane}, stiffness = 1e5, damping = 1, friction = 0.8");
         let _ = writeln!(out, "# contact = {{ \"*\" = {{ {contact} }} }}  # against {ground}");
     }
     let keyframes: Vec<String> = world.keyframes.iter().map(|keyframe| quoted(&keyframe.name)).collect();

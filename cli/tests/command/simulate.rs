@@ -355,6 +355,7 @@ fn a_file_of_a_robot_moves_smoothly() {
     const MODEL: &[u8] = br#"<mujoco model="pendulum">
   <option gravity="0 0 -3.7" timestep="0.01"/>
   <worldbody>
+    <geom name="floor" type="plane" size="1 1 1" pos="0 0 -2"/>
     <body name="arm">
       <joint name="hinge" axis="0 1 0" damping="0.1" armature="0.01" range="-90 90" frictionloss="0.1"/>
       <geom type="capsule" fromto="0 0 0 0.5 0 0" size="0.03" mass="1"/>
@@ -377,7 +378,7 @@ damping = "file"
 armature = "file"
 # friction = "file"  # dry friction
 # limit = { from = "file", stiffness = 1e4, damping = 10 }  # limits
-# contact = { "*" = { from = "collision", stiffness = 1e5, damping = 100 } }  # against the ground z = 0
+# contact = { "*" = { from = "collision", plane = "file", stiffness = 1e5, damping = 1, friction = 0.8 } }  # against the planes of the file
 
 [initial]
 # keyframe = "bent"
@@ -393,7 +394,7 @@ end = 5.0
 "#;
     assert_eq!(printed, expected);
     // Lines that are comments work as well. The servo holds the arm where kp (u − q) is its weight.
-    let scene = printed.replace("\n# limit", "\nlimit").replace("\n# keyframe", "\nkeyframe");
+    let scene = printed.replace("\n# limit", "\nlimit").replace("\n# contact", "\ncontact").replace("\n# keyframe", "\nkeyframe");
     let scene = scene.replace("\n# integrator = \"semi_implicit_euler\"", "\nintegrator = \"rk4\"").replace("\n# step", "\nstep");
     let scene = scene.replace("ctrl.\"servo\" = 0.0", "ctrl.\"servo\" = 0.5").replace("end = 5.0", "end = 20.0");
     std::fs::write(Path::new(file.name()).with_extension("toml"), scene).unwrap();
