@@ -1,5 +1,6 @@
 #!/bin/sh
-# Runs a target, or all, with libFuzzer on a stable compiler: fuzz/stable.sh <target|all> [seconds | --inputs NUMBER]
+# Runs a target, or all, with libFuzzer on a stable compiler:
+# fuzz/stable.sh <target|all> [seconds | --inputs NUMBER]
 set -eu
 cd "$(dirname "$0")"
 target=${1:?a target: urdf, xacro, mjcf, mjcf_grammar, sdf, scene, dynamics, macro_input or all}

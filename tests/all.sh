@@ -66,7 +66,7 @@ python_package() { # of a workspace of its own, so that nothing else compiles Py
 ensure fmt rustfmt
 ensure clippy clippy
 
-# Mostly programs of one thread, which wait for downloads and other programs.
+# These are mostly programs of one thread, which wait for downloads and for other programs.
 oracles() {
     step documentation
     step python3 models/urdf/generate.py --check

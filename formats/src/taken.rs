@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 #[derive(Debug, Default)]
 pub(crate) struct Taken {
     names: BTreeSet<String>,
-    /// For names that were asked for and taken, the first number that may be free. Names are only
-    /// added, so those below stay taken.
+    /// For each name that [`Taken::free`] has numbered, the next number to try. No name is ever
+    /// removed, so all smaller numbers are taken.
     numbers: BTreeMap<String, usize>,
 }
 

@@ -29,7 +29,7 @@ impl Session {
     /// their own, and so no bounds.
     pub(crate) fn freedoms(&self) -> impl Iterator<Item = Freedom<'_>> {
         let bodies = self.model.bodies();
-        // Of a joint that follows several others the last body speaks for all.
+        // A joint that follows several others has several bodies: only the last one counts here.
         let is_last = |k: usize| bodies.get(k + 1).is_none_or(|next| self.model.series(next).nth(1).is_none());
         (1..bodies.len()).filter(move |k| is_last(*k)).flat_map(move |k| {
             let body = &bodies[k];

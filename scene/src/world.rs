@@ -122,7 +122,7 @@ impl<'a> RobotInWorld<'a> {
 
     /// The law of an actuator with the robot's own coordinates. A joint that follows others is
     /// q = Σ multiplier · leader's + offset: its part of the length is one of theirs, and a
-    /// constant. `followers`: where the law's torques on such joints are put, by its number.
+    /// constant. `followers`: the number of the law, and where to put its torques on such joints.
     fn law(
         self,
         actuator: &Actuator,
@@ -136,9 +136,8 @@ impl<'a> RobotInWorld<'a> {
                 drives.push(Transmission { q: one.q.0, v: one.v.0, gear: gear.clone(), has_no_torque: false });
                 continue;
             }
-            // One that follows several is a sequence of bodies, each with a number behind its name.
-            let is_part = |name: &str| name.strip_prefix(joint.as_str()).is_some_and(|rest| rest.is_empty() || rest.starts_with(' '));
-            let parts = self.model.bodies().iter().filter(|body| is_part(&body.name));
+            // One that follows several is a sequence of bodies with its name.
+            let parts = self.model.bodies().iter().filter(|body| body.name == *joint);
             let (before, mut leaders) = (drives.len(), Vec::new());
             for (body, follow) in parts.filter_map(|body| Some((body, body.coordinates.mimic?))) {
                 constant += gear[0] * follow.offset;

@@ -209,3 +209,32 @@ fn equations_of_the_file_are_couplings_where_the_scene_says_so() {
     assert!(plain != clamped);
     assert_eq!((free.model.gravity().z, built("gravity = [0, 0, -1]").model.gravity().z), (-3.7, -1.0));
 }
+
+/// q = 0.5 m1 − 0.7 m2 + 0.2: an actuator on it drives both motors, within the bounds of the joint.
+#[test]
+fn an_actuator_on_a_joint_that_follows_several_drives_each() {
+    const WRIST: &str = "<robot name='w'><link name='base'/><link name='a'/><link name='b'/>
+      <joint name='m1' type='continuous'><parent link='base'/><child link='a'/><axis xyz='0 0 1'/></joint>
+      <joint name='m2' type='continuous'><parent link='base'/><child link='b'/><axis xyz='0 0 1'/></joint>
+      <joint name='pitch' type='continuous'><parent link='base'/><child link='hand'/><axis xyz='0 1 0'/>
+        <mimic joint='m1' multiplier='0.5' offset='0.2'/><mimic joint='m2' multiplier='-0.7'/></joint>
+      <link name='hand'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link></robot>";
+    let robot = articulated_scene::Opened::new(scene(""), "w.urdf", WRIST.into(), Base::Fixed, vec![]).build().unwrap();
+    let servo =
+        Actuator { drives: vec![("pitch".into(), vec![3.0])], gain: [2.0, 0.0, 0.0], bias: [0.0, -2.0, 0.0], ..Actuator::default() };
+    let torque = |range: Option<[f64; 2]>| {
+        let joint_forces = range.map(|range| ("pitch".into(), range)).into_iter().collect();
+        let world = World { actuators: vec![servo.clone()], joint_forces, ..World::default() };
+        let text = scene("control = { kind = \"actuators\", ctrl = [1] }");
+        let controller = text.controller(RobotInWorld { model: &robot.model, world: &world }, &mut |_| Err(String::new())).unwrap();
+        let (Controller::Actuators(actuators), mut tau) = (controller, vec![0.0; 2]) else { panic!("actuators") };
+        actuators.add_torques(&[1.0], &[0.3, -0.4], &[0.0; 2], &mut tau);
+        tau
+    };
+    let expected: f64 = 3.0 * 2.0 * (1.0 - 3.0 * (0.5 * 0.3 + 0.7 * 0.4 + 0.2));
+    for (range, on_pitch) in [(None, expected), (Some([-1.5, 1.5]), expected.clamp(-1.5, 1.5))] {
+        let found = torque(range);
+        assert!((found[0] - 0.5 * on_pitch).abs() < 1e-14 && (found[1] + 0.7 * on_pitch).abs() < 1e-14, "{found:?} {on_pitch}");
+    }
+    assert!(expected < -1.5);
+}

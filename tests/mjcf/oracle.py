@@ -187,6 +187,13 @@ def files_of(folder):
     return rows
 
 
+def without_folders(message, path):
+    """A message without the places of files on this machine."""
+    for folder in (path.parent, PLACE, REPOSITORY):
+        message = message.replace(str(folder), "…")
+    return message
+
+
 def compare(path, generated=False):
     """A verdict, the largest difference of each kind of number, and how many things there are of a kind."""
     import warnings
@@ -205,7 +212,7 @@ def compare(path, generated=False):
             body.simple = 0  # so that inertias may be set
         model = spec.compile()
     except (ValueError, mujoco.FatalError) as error:
-        return "refused by MuJoCo: " + str(error).splitlines()[0][:120].replace(str(path.parent), "…"), {}, {}
+        return "refused by MuJoCo: " + without_folders(str(error).splitlines()[0], path)[:120], {}, {}
     data = mujoco.MjData(model)
     armature = model.dof_armature.copy()
     model.dof_armature[:] = 0
@@ -221,7 +228,7 @@ def compare(path, generated=False):
     answer = subprocess.run(command, input=sent, capture_output=True, timeout=120)
     if answer.returncode:
         first = answer.stderr.decode().splitlines()[0]
-        return "refused: " + first.replace(str(path.parent), "…")[:300], {}, {}
+        return "refused: " + without_folders(first, path)[:300], {}, {}
     line, _, rest = answer.stdout.partition(b"\n")
     robot, numbers = json.loads(line), np.frombuffer(rest, "<f8")
     if generated:

@@ -57,7 +57,7 @@ impl Program {
     }
 
     /// The same program, which runs with this variable of the environment.
-    pub fn told(&self, variable: &'static str) -> Self {
+    pub fn with_variable(&self, variable: &'static str) -> Self {
         Self { file: self.file.clone(), variable: Some(variable), _folder: self._folder.clone(), ..*self }
     }
 
@@ -117,7 +117,7 @@ impl<T: Numbers, const N: usize> Numbers for [T; N] {
     }
 }
 
-/// Whether the processor has AVX2, unless the program is told that it has not.
+/// Whether the processor has AVX2. The variable WITHOUT_AVX2 turns it off.
 #[cfg(target_arch = \"x86_64\")]
 fn has_avx2() -> bool {
     static ANSWER: std::sync::OnceLock<bool> = std::sync::OnceLock::new();

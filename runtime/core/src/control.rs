@@ -87,8 +87,8 @@ pub struct ActuatorLaw {
     pub force_range: Option<[f64; 2]>,
 }
 
-/// A joint that follows others, q = Σ multiplier · leader + offset, with actuators on it: its
-/// torque acts on each leader, times the multiplier, whatever bounds those have.
+/// A joint with actuators that follows others: q = Σ multiplier · leader + offset. Each leader gets
+/// the torque of these actuators, times the multiplier. The bounds of the leaders do not limit it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Follower {
     /// The actuators on it: the place in [`Actuators::laws`], and the gear.
@@ -108,7 +108,7 @@ pub struct Transmission {
     pub v: usize,
     /// d(length)/d(coordinate), a number for each degree of freedom: one, or three of a ball joint.
     pub gear: Vec<f64>,
-    /// The part of the length alone: the torque is that of a [`Follower`].
+    /// Whether it gives no torque, only a part of the length: a [`Follower`] has the torque.
     pub has_no_torque: bool,
 }
 

@@ -46,7 +46,8 @@ pub(super) fn is_taken(row: &Effect, says: &Numbers, rest: Option<&Numbers>) -> 
 }
 
 impl<'a> Resolving<'a> {
-    /// The contact of a link's collision geometry, a sphere or point each, with what has this mask.
+    /// Adds a contact for each sphere or point of a link's collision geometry. With a mask, only
+    /// pieces that make contact with that mask count.
     pub(super) fn of_collision(
         &mut self,
         row: &'static Effect,

@@ -8,9 +8,9 @@ use super::{EffectRequest, Numbers};
 use crate::table::Spot;
 use crate::tree::Value;
 
-/// The key.
+/// The key `plane` of a contact.
 pub(super) const KEY: &str = "plane";
-/// Its word.
+/// Its only value.
 const FILE: &str = "file";
 /// The fields that a plane gives.
 const OWN: [&str; 2] = ["normal", "height"];
@@ -22,7 +22,7 @@ pub(super) fn offers(row: &Effect) -> bool {
     row.id == EffectId::contact
 }
 
-/// Whether the planes of the file are asked for.
+/// Whether the value of the key is the word for the planes of the file.
 pub(super) fn is_of_file(spot: &Spot<'_>, log: &mut Diagnostics) -> bool {
     match &spot.node.value {
         Value::Text(word) if word == FILE => return true,
@@ -32,7 +32,7 @@ pub(super) fn is_of_file(spot: &Spot<'_>, log: &mut Diagnostics) -> bool {
     false
 }
 
-/// Refuses a plane of the scene's own beside those of the file.
+/// Reports `normal` or `height` beside `plane = "file"`.
 pub(super) fn refuse_own_plane(spot: &Spot<'_>, log: &mut Diagnostics) {
     for own in OWN.into_iter().filter_map(|key| spot.get(key)) {
         let name = own.key.rsplit('.').next().unwrap_or_default();

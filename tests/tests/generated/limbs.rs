@@ -24,7 +24,7 @@ fn limbs_of_every_kind_are_those_of_the_generic_library() {
 }
 
 #[test]
-#[ignore = "a minute of rustc"]
+#[ignore = "more robots of the kinds above; rustc takes a minute: cargo test … -- --ignored"]
 fn so_are_further_limbs() {
     compare_limbs(ROBOTS[1].clone());
 }

@@ -122,9 +122,9 @@ pub(crate) static CHOSEN: LazyLock<Program> = LazyLock::new(|| {
     anybodys(&ANYBODYS, "with the instructions that there are", |source| source.replace(asked, "crate::has_avx2()"))
 });
 
-/// The same on a processor that has neither AVX2 nor fused multiply-add: that is what the program
-/// is told.
-pub(crate) static PORTABLE: LazyLock<Program> = LazyLock::new(|| CHOSEN.told("WITHOUT_AVX2"));
+/// The same program as on a processor without AVX2 and fused multiply-add: a variable of the
+/// environment turns them off.
+pub(crate) static PORTABLE: LazyLock<Program> = LazyLock::new(|| CHOSEN.with_variable("WITHOUT_AVX2"));
 
 /// The same on a processor that is neither x86-64 nor Arm: its lanes are arrays.
 pub(crate) static ELSEWHERE: LazyLock<Program> = LazyLock::new(|| {
