@@ -5,13 +5,14 @@
 //! Standard output: one line of JSON, which describes the robot, then for each state, as
 //! little-endian doubles: the mass matrix by rows, inverse dynamics at (q, v, a), and for each
 //! frame the rotation by rows and the position. If the file is refused, its errors go to standard
-//! error, and the status is 1.
+//! error, and the status is 1; so it is where inverse dynamics is not its regressor times the
+//! inertial parameters of the links.
 
 use std::fmt::Write as _;
 use std::io::{Read, Write};
 use std::process::ExitCode;
 
-use articulated_core::algorithm::{Workspace, function};
+use articulated_core::algorithm::{Workspace, function, inverse_dynamics, torque_regressor};
 use articulated_core::description::{Base, Description};
 use articulated_core::model::Model;
 use articulated_formats::world::{Actuator, Keyframe, World};
@@ -59,6 +60,24 @@ fn run(file: &str, gravity: &[f64]) -> Result<(), String> {
             row.call(&model, &mut workspace, arguments, &mut result).map_err(|error| error.to_string())?;
             let bytes: Vec<u8> = result.iter().flat_map(|x| x.to_le_bytes()).collect();
             out.write_all(&bytes).map_err(fail)?;
+        }
+        check_regressor(&model, &mut workspace, [q, v, a])?;
+    }
+    Ok(())
+}
+
+/// τ = Y π to twelve digits of the terms.
+fn check_regressor(model: &Model<f64>, workspace: &mut Workspace<f64>, [q, v, a]: [&[f64]; 3]) -> Result<(), String> {
+    let parameters = model.inertial_parameters().concat();
+    let (mut torques, mut rows) = (vec![0.0; model.nv()], vec![0.0; model.nv() * parameters.len()]);
+    inverse_dynamics(model, workspace, q, v, a, &mut torques);
+    torque_regressor(model, workspace, q, v, a, &mut rows);
+    for (k, expected) in torques.iter().enumerate() {
+        let terms = rows[k * parameters.len()..].iter().zip(&parameters).map(|(y, p)| y * p);
+        let (found, size) = terms.fold((0.0, 0.0), |(sum, size): (f64, f64), term| (sum + term, size + term.abs()));
+        if (found - expected).abs() > 1e-12 * size.max(f64::MIN_POSITIVE) {
+            let joint = model.joint_of(k);
+            return Err(format!("torque_regressor: joint {joint:?}: found {found}, expected {expected} as inverse_dynamics has it"));
         }
     }
     Ok(())

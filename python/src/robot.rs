@@ -7,9 +7,8 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use articulated::algorithm::{Function, Needs, functions};
-use articulated::description::{Coupling, Description, Limit, Origin, Payload};
+use articulated::description::{Coupling, Limit, Origin, Payload};
 use articulated::formats::{Environment, Included};
-use articulated::model::FLOATING_BASE;
 use articulated::spatial::Reference;
 use articulated::{Base, Model};
 use articulated_codegen::{Appended, COptions, Real, Request, Target, generate};
@@ -80,11 +79,8 @@ fn reference_of(name: &str) -> PyResult<Reference> {
 }
 
 /// Names of the moving links, in the order of [`Model::links`].
-fn links(description: &Description, model: &Model<f64>) -> Vec<String> {
-    let link = |index: Option<usize>| index.and_then(|i| description.links.get(i)).map(|link| link.name.clone());
-    let child = |name: &str| link(description.joints.iter().find(|joint| joint.name == name).map(|joint| joint.child));
-    let name = |body: &str| if body == FLOATING_BASE { link(description.root()) } else { child(body) };
-    model.links().map(|i| model.bodies()[i].name.as_str()).map(|body| name(body).unwrap_or_else(|| body.to_owned())).collect()
+fn links(model: &Model<f64>) -> Vec<String> {
+    model.links().filter_map(|i| model.bodies()[i].link.as_ref()).map(|link| link.name.clone()).collect()
 }
 
 /// The files that a document of a file includes, read with these arguments and packages; none, with
@@ -304,7 +300,7 @@ impl Robot {
         options.coupling = coupling.1.into_iter().map(follower).collect();
         let built = py.detach(|| request.build_robot()).map_err(|findings| errors::refused(py, &findings))?;
         let mut model = built.model;
-        let about = links(&built.reading.description, &model);
+        let about = links(&model);
         if let Some(frames) = frames {
             model = framed(py, model, &frames)?;
             request.set_frames(&frames);

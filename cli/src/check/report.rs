@@ -68,7 +68,7 @@ pub(super) struct Totals {
     pub(super) moving_mass: f64,
 }
 
-/// A link, which is also a frame.
+/// A link of the file, which is also a frame.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct LinkRow {
     pub(super) link: String,
@@ -86,6 +86,7 @@ pub(super) struct LinkRow {
 pub(super) struct JointRow {
     pub(super) joint: String,
     pub(super) kind: &'static str,
+    /// Links, or the intermediate links between several joints on a body.
     pub(super) parent: Option<String>,
     pub(super) child: Option<String>,
     /// First index and number in q, and in v.
@@ -147,17 +148,19 @@ impl Report {
     /// Fills in what the robot is made of, and warns of joints without an inertia of their own.
     pub(super) fn describe(&mut self, description: &Description, model: &Model<f64>) {
         self.robot = Some(description.name.clone());
-        self.links = description.links.iter().enumerate().map(|(k, link)| link_row(k, link, model)).collect();
-        self.joints = joint_rows(description, model);
+        let bodies = model.bodies_of_links(description);
+        let links = description.links.iter().zip(&bodies).filter(|(link, _)| !link.intermediate);
+        self.links = links.map(|(link, body)| link_row(link, *body, model)).collect();
+        self.joints = joint_rows(description, model, &bodies);
         self.totals = Totals {
-            links: description.links.len(),
+            links: self.links.len(),
             joints: description.joints.len(),
             coordinates: model.nq(),
             degrees_of_freedom: model.nv(),
             mass: self.links.iter().fold(0.0, |sum, l| sum + l.mass),
             moving_mass: model.moving_mass(),
         };
-        self.base_parameters = Base::of(model).map(|base| Base { merged_joints: merged(description, model), ..base });
+        self.base_parameters = Base::of(model).map(|base| Base { merged_joints: merged(description, &bodies), ..base });
         self.warn_of_massless_joints(model);
     }
 
@@ -183,8 +186,7 @@ impl Report {
     }
 }
 
-fn link_row(k: usize, link: &Link, model: &Model<f64>) -> LinkRow {
-    let body = model.frames()[k].body;
+fn link_row(link: &Link, body: usize, model: &Model<f64>) -> LinkRow {
     LinkRow {
         link: link.name.clone(),
         moves_with: (body != 0).then(|| model.bodies()[body].name.clone()),
@@ -196,8 +198,8 @@ fn link_row(k: usize, link: &Link, model: &Model<f64>) -> LinkRow {
 
 /// The floating base first, then the joints in the order of their coordinates, then those that have
 /// none of their own, as the file has them.
-fn joint_rows(description: &Description, model: &Model<f64>) -> Vec<JointRow> {
-    let carried = carried(model);
+fn joint_rows(description: &Description, model: &Model<f64>, bodies: &[usize]) -> Vec<JointRow> {
+    let carried = model.carried();
     let base = model.joints().iter().find(|j| j.name == FLOATING_BASE).map(|j| JointRow {
         joint: j.name.clone(),
         kind: JointKind::Floating.name(),
@@ -217,7 +219,7 @@ fn joint_rows(description: &Description, model: &Model<f64>) -> Vec<JointRow> {
     let rows = description.joints.iter().map(|joint| {
         let name = |link: usize| Some(description.links[link].name.clone());
         let place = places.get(joint.name.as_str()).filter(|_| joint.name != FLOATING_BASE);
-        let body = model.frames()[joint.child].body;
+        let body = bodies[joint.child];
         let limit = joint.limit;
         JointRow {
             joint: joint.name.clone(),
@@ -235,7 +237,7 @@ fn joint_rows(description: &Description, model: &Model<f64>) -> Vec<JointRow> {
                 MimicRow { joint: leader, multiplier: m.multiplier, offset: m.offset }
             }),
             locked: joint.locked.clone(),
-            carries: if body == model.frames()[joint.parent].body { 0.0 } else { carried[body] },
+            carries: if body == bodies[joint.parent] { 0.0 } else { carried[body] },
         }
     });
     let mut all: Vec<JointRow> = base.into_iter().chain(rows).collect();
@@ -244,15 +246,6 @@ fn joint_rows(description: &Description, model: &Model<f64>) -> Vec<JointRow> {
 }
 
 /// Joints that join links of one body.
-fn merged(description: &Description, model: &Model<f64>) -> usize {
-    description.joints.iter().filter(|j| model.frames()[j.child].body == model.frames()[j.parent].body).count()
-}
-
-/// kg of each body with everything that hangs on it.
-fn carried(model: &Model<f64>) -> Vec<f64> {
-    let mut mass: Vec<f64> = model.bodies().iter().map(|b| b.inertia.mass).collect();
-    for i in model.inward() {
-        mass[model.bodies()[i].parent] += mass[i];
-    }
-    mass
+fn merged(description: &Description, bodies: &[usize]) -> usize {
+    description.joints.iter().filter(|j| bodies[j.child] == bodies[j.parent]).count()
 }

@@ -145,9 +145,10 @@ fn base_parameters(base: &Base) -> String {
     };
     let (left, several) = match stages {
         false => (format!("regrouping leaves {regrouped}, and "), ""),
-        true => {
-            (String::new(), ";\na planar or universal joint has a row for each of its stages, whose parameters are not all independent")
-        }
+        true => (
+            String::new(),
+            ";\na planar or universal joint has a row for each of its stages; their parameters, and those of several joints on a body, are not all independent",
+        ),
     };
     let head = format!(
         "{merged}of {parameters} inertial parameters {left}torques determine {identifiable}: from the tips inward, in (brackets) what only\n\

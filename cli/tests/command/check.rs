@@ -103,6 +103,33 @@ fn a_file_that_is_not_there_is_told_with_the_nearest() {
     assert!(ended.status == 1 && ended.err.contains("did you mean \"elbow.urdf\"?"), "{}", ended.err);
 }
 
+/// Several joints on a body and joints beside the origin of their body: each link moves with the
+/// last joint before it, and each joint carries what is behind it. Sites are no links.
+#[test]
+fn joints_in_sequence_and_beside_the_origin_have_their_own_rows() {
+    let crane = File::new(
+        "crane.xml",
+        b"<mujoco model='crane'><worldbody><site name='ground'/><body name='cab'><joint name='turn' pos='0.2 0 0'/>
+          <geom size='0.1' mass='8'/><site name='seat'/><body name='boom' pos='0.5 0 0'>
+          <joint name='raise' axis='0 1 0' pos='-0.1 0 0'/><joint name='reach' type='slide' axis='1 0 0'/>
+          <joint name='roll' axis='1 0 0'/><geom size='0.1' mass='3'/><site name='end'/>
+          <body name='hook' pos='0 0 -1'><joint name='swing' type='ball' pos='0 0 0.4'/><geom size='0.05' mass='1'/></body>
+          </body></body></worldbody></mujoco>",
+    );
+    let ended = run(&["check", crane.name()]);
+    assert!(ended.status == 0 && ended.out.contains("crane, fixed base: 4 links"), "{}{}", ended.out, ended.err);
+    let json = run(&["check", crane.name(), "--format", "json"]).json();
+    let rows = |list: &str, name: &str, value: &str| -> Vec<(String, serde_json::Value)> {
+        let rows = json[list].as_array().unwrap();
+        rows.iter().map(|row| (row[name].as_str().unwrap().to_owned(), row[value].clone())).collect()
+    };
+    let moves_with = [("world", None), ("cab", Some("turn")), ("boom", Some("roll")), ("hook", Some("swing"))];
+    assert_eq!(rows("links", "link", "moves_with"), moves_with.map(|(link, joint)| (link.to_owned(), joint.into())));
+    let carries = [("turn", 12.0), ("raise", 4.0), ("reach", 4.0), ("roll", 4.0), ("swing", 1.0)];
+    let moving: Vec<_> = rows("joints", "joint", "carries").into_iter().filter(|(_, mass)| *mass != 0.0).collect();
+    assert_eq!(moving, carries.map(|(joint, mass)| (joint.to_owned(), mass.into())));
+}
+
 #[test]
 fn the_mass_table_adds_up() {
     let golfer = run(&["check", "golfer", "--format", "json"]).json();

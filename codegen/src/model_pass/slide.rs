@@ -28,6 +28,7 @@ pub fn slide<S: Scalar>(view: View<S>) -> View<S> {
             body.placement.position = offset(body, shifts[i], shifts[body.parent]);
             body.inertia = shifted(&body.inertia, shifts[i]);
             body.effects.body.iter_mut().for_each(|e| e.placement.position -= shifts[i]);
+            body.link.iter_mut().for_each(|link| link.placement.position -= shifts[i]);
         }
         for frame in &mut parts.frames {
             frame.placement.position -= shifts[frame.body];

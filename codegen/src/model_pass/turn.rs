@@ -3,7 +3,7 @@
 use articulated_core::Scalar;
 use articulated_core::algorithm::Formulation;
 use articulated_core::joint::Angle;
-use articulated_core::model::{Body, ModelParts};
+use articulated_core::model::{Body, BodyLink, ModelParts};
 use articulated_core::spatial::{Matrix3, Placement, Vector3, nearest_rotation, rotate_back};
 
 use super::view::View;
@@ -107,7 +107,9 @@ fn turn_body<S: Scalar>(parts: &mut ModelParts<S>, i: usize, angle: &Angle<S>, h
     let body = &mut parts.bodies[i];
     body.placement.rotation = nearest_rotation(&(body.placement.rotation * rotation).map(tidy));
     body.inertia = body.inertia.turned(&rotation.transpose());
-    body.link = body.link.map(|link| rotation.transpose() * link);
+    if let Some(BodyLink { placement, .. }) = &mut body.link {
+        *placement = Placement { rotation: rotation.transpose() * placement.rotation, position: back(angle, placement.position) };
+    }
     let turn = |x: &mut Placement<S>| {
         *x = Placement { rotation: nearest_rotation(&turned(&x.rotation, angle)), position: back(angle, x.position) }
     };

@@ -15,5 +15,6 @@ pub mod random;
 pub mod random_effects;
 pub mod random_limbs;
 pub mod random_tree;
+pub mod regressors;
 pub mod rigid;
 pub mod virtual_power;

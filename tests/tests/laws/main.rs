@@ -5,3 +5,4 @@ mod effects_fixtures;
 mod fixtures;
 mod interface;
 mod random_trees;
+mod regressors;

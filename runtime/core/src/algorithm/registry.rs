@@ -14,7 +14,7 @@ pub struct Shape {
     pub nv: usize,
     /// Number of frames.
     pub frames: usize,
-    /// Number of moving links, one for each joint that moves.
+    /// Number of moving links ([`Model::links`](crate::model::Model::links)).
     pub links: usize,
 }
 

@@ -2,14 +2,14 @@
 //!
 //! The parameters are π = (m, h_x, h_y, h_z, I_xx, I_xy, I_xz, I_yy, I_yz, I_zz) with h = m c and I
 //! about the origin of the link's frame, in its axes; a link is a moving link with everything that
-//! is fixed to it. Atkeson, An & Hollerbach, *Int. J. Robot. Res.* 5, 1986, 101–119; energies:
+//! is fixed to it ([`crate::model::Body::link`]), whether or not its joint is at its origin. Atkeson, An & Hollerbach, *Int. J. Robot. Res.* 5, 1986, 101–119; energies:
 //! Gautier & Khalil, *IEEE ICRA* 1988, 1026–1031.
 
 use super::Workspace;
 use super::common::{Axes, accelerations, on_the_way, positions, twists};
 use crate::Scalar;
-use crate::model::Model;
-use crate::spatial::{Matrix3, Twist, Vector3, rate_matrix, rotate_back};
+use crate::model::{BodyLink, Model};
+use crate::spatial::{Matrix3, Placement, Twist, Vector3, rate_matrix, rotate, rotate_back};
 
 /// Inertial parameters of a link.
 pub const PARAMETERS: usize = 10;
@@ -30,12 +30,13 @@ pub fn torque_regressor<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &
     out.fill(S::zero());
     let width = PARAMETERS * ws.shape.links;
     for (link, i) in model.links().enumerate() {
-        let (turn, state) = (turn(model, ws, i), &ws.common[i]);
+        let (Placement { rotation: turn, position: from }, state) = (link_frame(model, ws, i), &ws.common[i]);
         let back = |x: Vector3<S>| rotate_back(&turn, x);
         let u = rate_matrix(back(state.twist.angular), back(state.acceleration.angular));
-        // The true acceleration of the origin: spatial acceleration + ω × v.
-        let acceleration = back(state.acceleration.linear + state.twist.angular.cross(&state.twist.linear));
-        on_the_way(model, ws, i, Vector3::zeros(), |column, d| {
+        // The true acceleration of the body's origin: spatial acceleration + ω × v. That of the
+        // link's: U r more.
+        let acceleration = back(state.acceleration.linear + state.twist.angular.cross(&state.twist.linear)) + u * back(from);
+        on_the_way(model, ws, i, from, |column, d| {
             let entries = entries(&column.axis.at(d).turned_back(&turn), &acceleration, &u);
             let at = column.at * width + link * PARAMETERS;
             out[at..at + PARAMETERS].iter_mut().zip(entries).for_each(|(out, x)| *out += x);
@@ -70,8 +71,8 @@ pub fn kinetic_energy_regressor<S: Scalar>(model: &Model<S>, ws: &mut Workspace<
     twists(model, ws, Axes::Base, v);
     let half = S::from_f64(0.5);
     for (i, out) in model.links().zip(out.chunks_exact_mut(PARAMETERS)) {
-        let turn = turn(model, ws, i);
-        let Twist { angular: w, linear: v } = ws.common[i].twist.turned_back(&turn);
+        let Placement { rotation: turn, position: from } = link_frame(model, ws, i);
+        let Twist { angular: w, linear: v } = ws.common[i].twist.at(from).turned_back(&turn);
         // T = ½ m v² + v·(ω × h) + ½ ωᵀ I ω
         let first = v.cross(&w);
         out.copy_from_slice(&[
@@ -99,17 +100,22 @@ pub fn potential_energy_regressor<S: Scalar>(model: &Model<S>, ws: &mut Workspac
     positions(model, ws, Axes::Base, q);
     out.fill(S::zero());
     for (i, out) in model.links().zip(out.chunks_exact_mut(PARAMETERS)) {
+        let Placement { rotation: turn, position: from } = link_frame(model, ws, i);
         // U = −gᵀ (m p + R h)
-        out[0] = -model.gravity.dot(&ws.common[i].position);
-        let first = -rotate_back(&turn(model, ws, i), model.gravity);
+        out[0] = -model.gravity.dot(&(ws.common[i].position + from));
+        let first = -rotate_back(&turn, model.gravity);
         out[1..4].copy_from_slice(first.as_slice());
     }
 }
 
-/// Axes of the link of body `i` in common axes.
-fn turn<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize) -> Matrix3<S> {
+/// Axes of the link of body `i` in common axes, and its origin from the body's.
+fn link_frame<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize) -> Placement<S> {
     let rotation = ws.common[i].rotation;
-    model.bodies[i].link.map_or(rotation, |link| rotation * link)
+    let body = Placement { rotation, position: Vector3::zeros() };
+    model.bodies[i].link.as_ref().map_or(body, |link| Placement {
+        rotation: rotation * link.placement.rotation,
+        position: rotate(&rotation, link.placement.position),
+    })
 }
 
 impl<S: Scalar> Model<S> {
@@ -118,7 +124,8 @@ impl<S: Scalar> Model<S> {
     pub fn inertial_parameters(&self) -> alloc::vec::Vec<[S; PARAMETERS]> {
         let one = |i: usize| {
             let (inertia, link) = (&self.bodies[i].inertia, &self.bodies[i].link);
-            link.map_or(*inertia, |link| inertia.turned(&link.transpose())).parameters()
+            let of_link = |link: &BodyLink<S>| inertia.shifted(-link.placement.position).turned(&link.placement.rotation.transpose());
+            link.as_ref().map_or(*inertia, of_link).parameters()
         };
         self.links().map(one).collect()
     }

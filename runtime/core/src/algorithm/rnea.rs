@@ -13,7 +13,7 @@ use crate::Scalar;
 use crate::joint::with_pose;
 use crate::joint::{JointLaw, Mount};
 use crate::model::{Body, Model};
-use crate::spatial::{Motion, rate_matrix, rates_about, rotate};
+use crate::spatial::{Motion, Placement, rate_matrix, rates_about, rotate};
 
 /// τ = M(q)·a + h(q, v) − Σ Jᵀw, with external wrenches w on the frames.
 ///
@@ -112,7 +112,8 @@ pub fn joint_wrenches<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S
     ws.row = tau;
     for (i, out) in model.links().zip(out.chunks_exact_mut(6)) {
         if let Some(link) = &model.bodies[i].link {
-            out.copy_from_slice(&ws.bodies[i].wrench.turned_back(link).to_array());
+            let Placement { rotation, position } = &link.placement;
+            out.copy_from_slice(&ws.bodies[i].wrench.shifted(-position).turned_back(rotation).to_array());
         }
     }
 }

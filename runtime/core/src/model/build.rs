@@ -9,7 +9,7 @@ use core::fmt;
 use nalgebra::{Matrix3, Vector3};
 
 use super::leaders::{leads, others};
-use super::{Body, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model};
+use super::{Body, BodyLink, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model};
 use crate::description::{self, Base, Description, Inertial, JointKind, Limit, Mimic};
 use crate::effect::Effects;
 use crate::joint::with_pose;
@@ -189,9 +189,7 @@ impl<'a> Builder<'a> {
             Base::Fixed => 0,
             Base::Floating => {
                 let coordinates = self.push_joint(FLOATING_BASE, JointKind::Floating, None);
-                let body = self.push_body(FLOATING_BASE.to_string(), 0, Placement::identity(), Joint::Floating, coordinates);
-                self.model.bodies[body].link = Some(Matrix3::identity());
-                body
+                self.push_body(FLOATING_BASE.to_string(), 0, Placement::identity(), Joint::Floating, coordinates)
             }
         };
         self.seat(root, body, Placement::identity());
@@ -223,10 +221,10 @@ impl<'a> Builder<'a> {
             self.seat(joint.child, parent, x);
             return Ok(());
         }
-        let Some(last) = stages.last() else {
+        if stages.is_empty() {
             self.seat(joint.child, parent, x_joint);
             return Ok(());
-        };
+        }
         let first = match joint.mimic {
             Some(_) => AT_ZERO,
             None => self.push_joint(&joint.name, joint.kind, limit_of_coordinates(joint)),
@@ -237,9 +235,6 @@ impl<'a> Builder<'a> {
             let coordinates = Coordinates { q: first.q + stage.at, v: first.v + stage.at, pitch: per_radian(joint), ..AT_ZERO };
             parent = self.push_body(joint.name.clone(), parent, turned, stage.joint, coordinates);
             x_joint = turned_back(stage.turn);
-        }
-        if !self.description.links[joint.child].intermediate {
-            self.model.bodies[parent].link = Some(last.turn.transpose());
         }
         self.body_of[index] = Some(parent);
         self.seat(joint.child, parent, x_joint);
@@ -278,9 +273,6 @@ impl<'a> Builder<'a> {
             self.followers.push((parent, index, lead));
             self.body_of[index] = Some(parent);
         }
-        if self.body_of[index].is_some() && !self.description.links[joint.child].intermediate {
-            self.model.bodies[parent].link = Some(stage.turn.transpose());
-        }
         self.seat(joint.child, parent, x);
         Ok(())
     }
@@ -314,11 +306,16 @@ impl<'a> Builder<'a> {
         self.model.bodies.len() - 1
     }
 
-    /// Seats a link in a body and adds its mass to it.
+    /// Seats a link in a body and adds its mass to it. The first link of a moving body is the one
+    /// that gives the body its axes and origin in results for each link.
     fn seat(&mut self, link: usize, body: usize, placement: Placement<f64>) {
         self.seats[link] = Some((body, placement));
-        if let Some(inertial) = &self.description.links[link].inertial {
-            self.model.bodies[body].inertia += inertial.spatial_inertia().moved(&placement);
+        let (of_file, to) = (&self.description.links[link], &mut self.model.bodies[body]);
+        if body != 0 && to.link.is_none() && !of_file.intermediate {
+            to.link = Some(BodyLink { name: of_file.name.clone(), placement });
+        }
+        if let Some(inertial) = &of_file.inertial {
+            to.inertia += inertial.spatial_inertia().moved(&placement);
         }
     }
 

@@ -6,17 +6,19 @@ mod massless;
 mod parts;
 mod regroup;
 
+use alloc::collections::BTreeMap;
 use alloc::string::{String, ToString};
+use alloc::vec;
 use alloc::vec::Vec;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 pub use build::ModelError;
 pub use parts::ModelParts;
 pub use regroup::{regroup, regroup_body, subtract};
 
 use crate::Scalar;
-use crate::description::{EditError, JointKind, Limit};
+use crate::description::{Description, EditError, JointKind, Limit};
 use crate::effect::Effects;
 use crate::joint::{Coordinates, Joint};
 use crate::spatial::{Placement, Reference, SpatialInertia};
@@ -61,12 +63,23 @@ pub struct Body<S> {
     pub coordinates: Coordinates<S>,
     /// Mass properties in the body's frame, everything that is fixed to the body included.
     pub inertia: SpatialInertia<S>,
-    /// For the body of a joint's child link, the axes of that link in the body's, as a rotation;
-    /// the origins are the same. `None` for the base, and for the bodies without mass inside a
-    /// planar or universal joint.
-    pub link: Option<Matrix3<S>>,
+    /// The link of the file that the body is. `None` for the base, and for a body without mass
+    /// between two joints in sequence or inside a planar or universal joint.
+    pub link: Option<BodyLink<S>>,
     /// What acts on it and on its joint besides.
     pub effects: Effects<S>,
+}
+
+/// The link that a body is named after where results are given for each link: the first link of the
+/// file that is fixed in the body, [intermediate](crate::description::Link::intermediate) ones left
+/// out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyLink<S> {
+    /// Name of the link.
+    pub name: String,
+    /// The link's frame in the body's frame. The origins differ where the joint is not at the
+    /// origin of the link.
+    pub placement: Placement<S>,
 }
 
 /// A named frame fixed in a body: a link of the file.
@@ -188,10 +201,31 @@ impl<S: Scalar> Model<S> {
         self.outward().rev()
     }
 
-    /// Indices of the bodies that are moving links of the file: one for each joint that moves,
-    /// followers included.
+    /// Indices of the bodies that are moving links of the file ([`Body::link`]): all bodies with
+    /// mass but the base. A link that is fixed to another belongs to its body.
     pub fn links(&self) -> impl Iterator<Item = usize> + '_ {
         self.outward().filter(|&i| self.bodies[i].link.is_some())
+    }
+
+    /// The body that each link of the model's description is part of, intermediate links too:
+    /// `[links]`. 0 for links that no joint moves.
+    pub fn bodies_of_links(&self, description: &Description) -> Vec<usize> {
+        // Of a joint of several bodies the last.
+        let of_joints: BTreeMap<&str, usize> = self.outward().map(|i| (self.bodies[i].name.as_str(), i)).collect();
+        let root = of_joints.get(FLOATING_BASE).copied().unwrap_or(0);
+        let mut children = vec![Vec::new(); description.links.len()];
+        for joint in &description.joints {
+            children[joint.parent].push(joint);
+        }
+        let mut bodies = vec![root; description.links.len()];
+        let mut open: Vec<usize> = description.root().into_iter().collect();
+        while let Some(link) = open.pop() {
+            for joint in core::mem::take(&mut children[link]) {
+                bodies[joint.child] = of_joints.get(joint.name.as_str()).copied().unwrap_or(bodies[link]);
+                open.push(joint.child);
+            }
+        }
+        bodies
     }
 
     /// Whether a joint follows another.
@@ -212,7 +246,7 @@ impl<S: Scalar> Model<S> {
     /// The configuration of zeros, with quaternions that turn nothing, `[nq]` rad|m|quaternion:
     /// what a generated module has as `NEUTRAL`.
     pub fn neutral(&self) -> Vec<S> {
-        let mut q = alloc::vec![S::zero(); self.nq];
+        let mut q = vec![S::zero(); self.nq];
         crate::algorithm::neutral(self, &mut q);
         q
     }
@@ -330,9 +364,16 @@ impl<S: Scalar> Body<S> {
             joint: self.joint,
             coordinates: self.coordinates.map(f),
             inertia: self.inertia.map(f),
-            link: self.link.map(|r| r.map(f)),
+            link: self.link.as_ref().map(|link| link.map(f)),
             effects: self.effects.map(f),
         }
+    }
+}
+
+impl<S: Scalar> BodyLink<S> {
+    /// The same link with `f` of each constant, always in the same order.
+    pub fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> BodyLink<T> {
+        BodyLink { name: self.name.clone(), placement: self.placement.map(f) }
     }
 }
 

@@ -1,12 +1,12 @@
 //! Different descriptions of the same physics.
 
-use articulated_core::algorithm::{FunctionId, Needs, functions};
+use articulated_core::algorithm::{Dim, Needs, functions};
 use articulated_core::description::{Base, Description, Frame, Inertial, Joint, JointKind, Link, Origin, Rotation};
-use articulated_core::dynamics::Dynamics;
 use articulated_core::spatial::from_quaternion;
 use articulated_test_support::case::{Case, State, for_each_tree, inverse_dynamics};
 use articulated_test_support::measure::{distance, torque_scale};
 use articulated_test_support::random_tree::{Flavour, random_tree};
+use articulated_test_support::regressors::broken_laws;
 use articulated_test_support::{random::Random, rigid};
 use nalgebra::Vector3;
 
@@ -282,35 +282,54 @@ fn a_free_body_obeys_newton_and_euler() {
     assert!(far <= FEW, "{far} units of roundoff");
 }
 
-/// τ = Y π, T = y_T π and U = y_U π with the parameters that the model gives, on trees of any kind.
+/// τ = Y π, T = y_T π and U = y_U π with the parameters of the links, on trees of any kind.
 #[test]
-fn regressors_times_the_models_parameters_are_torques_and_energies() {
+fn regressors_times_the_parameters_of_links_are_torques_and_energies() {
     for_each_tree(30, Flavour::ANY, |case, random| {
-        let State { q, v, a, .. } = case.state(random);
-        let (model, mut ws) = (&case.model, case.model.workspace());
-        let pi = model.inertial_parameters().concat();
-        if pi.is_empty() {
-            return; // nothing moves
+        let broken = broken_laws(&case.description, &case.model, &case.state(random));
+        assert!(broken.is_empty(), "{}", broken.join("\n"));
+    });
+}
+
+/// The same tree with joints beside the origins of their links: between a joint and its link is an
+/// intermediate link, to which the link is fixed.
+fn beside(tree: &Description, random: &mut Random) -> Description {
+    let mut out = tree.clone();
+    for k in 0..tree.joints.len() {
+        if out.joints[k].kind.is_fixed() || random.below(3) == 0 {
+            continue;
         }
-        let mut called = |function: FunctionId, given: &[&[f64]]| {
-            let mut out = vec![0.0; function.row::<f64>().len(model.shape())];
-            model.call(function, &mut ws, given, &mut out).unwrap();
-            out
-        };
-        for (regressor, function, given) in [
-            (FunctionId::torque_regressor, FunctionId::inverse_dynamics, &[&q[..], &v, &a][..]),
-            (FunctionId::kinetic_energy_regressor, FunctionId::kinetic_energy, &[&q[..], &v]),
-            (FunctionId::potential_energy_regressor, FunctionId::potential_energy, &[&q[..]]),
-        ] {
-            let (y, expected) = (called(regressor, given), called(function, given));
-            for (row, expected) in y.chunks_exact(pi.len()).zip(&expected) {
-                let (found, size) = row.iter().zip(&pi).fold((0.0, 0.0), |(sum, size), (y, p)| (sum + y * p, size + (y * p).abs()));
-                assert!(
-                    (found - expected).abs() <= 1e-12 * size.max(f64::MIN_POSITIVE),
-                    "{}: {found}, expected {expected}",
-                    regressor.name()
-                );
+        let (between, child) = (out.links.len(), out.joints[k].child);
+        out.links.push(Link { name: format!("between_{k}"), intermediate: true, ..Link::default() });
+        out.joints[k].child = between;
+        let origin = Origin::new(random.three(1.0), random.three(1.0));
+        out.joints.push(Joint { name: format!("fixed_{k}"), parent: between, child, origin, ..Joint::default() });
+    }
+    out
+}
+
+/// What is given for each link is about the origin of the link and in its axes wherever its joint
+/// is, and no link is left out.
+#[test]
+fn a_joint_may_lie_beside_the_origin_of_its_link() {
+    let links = std::cell::Cell::new(0);
+    for_each_tree(40, Flavour::ANY, |case, random| {
+        let case = Case::new(case.name.clone(), beside(&case.description, random), case.base);
+        let state = case.state(random);
+        let broken = broken_laws(&case.description, &case.model, &state);
+        assert!(broken.is_empty(), "{}", broken.join("\n"));
+        let with_mass = case.model.bodies().iter().skip(1).enumerate().filter(|(_, body)| body.inertia.mass != 0.0);
+        assert!(with_mass.clone().all(|(_, body)| body.link.is_some()));
+        links.set(links.get() + with_mass.count());
+        for row in functions::<f64>().iter().filter(|row| row.gives.contains(&Dim::Links)) {
+            let given: Vec<&[f64]> = row.takes.iter().map(|argument| state.argument(*argument)).collect();
+            let (found, expected) = (case.call::<f64>(row.name, &given), case.textbook::<f64>().call(row.name, &given).unwrap().unwrap());
+            let largest = expected.iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+            assert_eq!(found.len(), expected.len(), "{}", row.name);
+            for (k, (found, expected)) in found.iter().zip(&expected).enumerate() {
+                assert!((found - expected).abs() <= 1e-11 * largest, "{} [{k}]: {found}, expected {expected}", row.name);
             }
         }
     });
+    assert!(links.get() > 300, "only {}", links.get());
 }

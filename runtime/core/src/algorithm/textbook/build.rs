@@ -38,7 +38,7 @@ impl<S: Scalar> Textbook<S> {
                 carried: joint.moves() || parent.is_some_and(|p| bodies[p].carried),
                 joint,
                 inertia: description.links[link].inertial.as_ref().map_or_else(Matrix6::zeros, inertia_matrix),
-                intermediate: description.links[link].intermediate,
+                is_link: !description.links[link].intermediate,
             });
         }
         let of_links = description.links.iter().zip(&body_of_link).filter(|(link, _)| !link.intermediate);
@@ -53,7 +53,7 @@ impl<S: Scalar> Textbook<S> {
                 carried: bodies[parent].carried,
                 joint: Joint::fixed(),
                 inertia: Matrix6::zeros(),
-                intermediate: false,
+                is_link: false,
             });
         }
         let frames = links.iter().map(|(_, body)| *body).collect();

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use nalgebra::{Vector3, Vector6};
 
 use super::Textbook;
-use super::matrix::{halves, stack};
+use super::matrix::{adjoint, halves, stack};
 use super::rnea::{inward, needed, outward, rnea};
 use super::solve::Factor;
 use crate::Scalar;
@@ -28,13 +28,16 @@ impl<S: Scalar> Textbook<S> {
         rnea(&self.at(q, v), v, a, &on_bodies)
     }
 
-    /// What each joint passes to its child link, `[links][6]`, in the link's frame.
+    /// What each joint passes to its link, `[links][6]`, in the link's frame.
     pub fn joint_wrenches(&self, q: &[S], v: &[S], a: &[S]) -> Vec<S> {
         let tree = self.at(q, v);
         let motion = outward(&tree, v, a);
         let mut wrenches: Vec<Vector6<S>> = tree.bodies.iter().zip(&motion).map(|(b, m)| needed(&b.inertia, m)).collect();
         inward(&tree, &mut wrenches);
-        self.moving_links().flat_map(|i| wrenches[i].iter().copied().collect::<Vec<_>>()).collect()
+        // F_link = Ad(T_i,link)ᵀ F_i
+        let seats = self.seats();
+        let one = |link: usize| adjoint(&seats[link].1).transpose() * wrenches[seats[link].0];
+        self.moving_links().into_iter().flat_map(|link| one(link).iter().copied().collect::<Vec<_>>()).collect()
     }
 
     /// M(q), column by column: the torques of a unit acceleration of one joint, at rest and without

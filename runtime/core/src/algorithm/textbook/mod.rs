@@ -71,8 +71,8 @@ struct Link<S> {
     inertia: Matrix6<S>,
     /// Whether any joint on the way from the base moves it.
     carried: bool,
-    /// Whether it only lies between two joints in sequence on one body.
-    intermediate: bool,
+    /// Whether it is a link of the file, and neither an intermediate one nor a frame.
+    is_link: bool,
 }
 
 impl<S: Scalar> Textbook<S> {
@@ -91,10 +91,25 @@ impl<S: Scalar> Textbook<S> {
         self
     }
 
-    /// The links that move, by the bodies that are the child links of joints that move, parents
-    /// first: everything fixed to one belongs to it.
-    fn moving_links(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.bodies.len()).filter(|&i| self.bodies[i].joint.moves() && !self.bodies[i].intermediate)
+    /// For each body the one that it is fixed to, by any number of fixed joints, and its frame in
+    /// that one's. The joint of that one moves, or it is the root.
+    fn seats(&self) -> Vec<(usize, Placement<S>)> {
+        let mut seats: Vec<(usize, Placement<S>)> = Vec::with_capacity(self.bodies.len());
+        for (i, body) in self.bodies.iter().enumerate() {
+            seats.push(match body.parent {
+                Some(p) if !body.joint.moves() => (seats[p].0, seats[p].1.compose(&body.placement)),
+                _ => (i, Placement::identity()),
+            });
+        }
+        seats
+    }
+
+    /// The links that move, in the order of the joints that move them: of all that a joint moves
+    /// and that is fixed together, the first link. The rest belongs to it.
+    fn moving_links(&self) -> Vec<usize> {
+        let seats = self.seats();
+        let moving = (0..self.bodies.len()).filter(|&i| self.bodies[i].joint.moves());
+        moving.filter_map(|i| (i..self.bodies.len()).find(|&k| seats[k].0 == i && self.bodies[k].is_link)).collect()
     }
 
     /// The same robot with constants that do not vary.
@@ -106,7 +121,7 @@ impl<S: Scalar> Textbook<S> {
             joint: b.joint.lift(),
             inertia: b.inertia.map(constant),
             carried: b.carried,
-            intermediate: b.intermediate,
+            is_link: b.is_link,
         };
         Textbook {
             bodies: self.bodies.iter().map(link).collect(),

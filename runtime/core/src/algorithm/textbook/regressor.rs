@@ -1,7 +1,7 @@
 //! Regressors: what a link whose only inertia is the unit of one parameter takes or has.
 //!
 //! Parameters of a link: m, h = m c, and I about the link's origin: xx, xy, xz, yy, yz, zz, in its
-//! axes. The link is what a moving joint carries, with everything fixed to it.
+//! axes. The link is the first that a moving joint carries, with everything fixed to it.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -9,10 +9,10 @@ use alloc::vec::Vec;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 use super::Textbook;
-use super::matrix::{blocks, cross_matrix, inverse_adjoint, mass_and_moment};
+use super::matrix::{adjoint, blocks, cross_matrix, inverse_adjoint, mass_and_moment};
 use super::rnea::{inward, needed, outward};
 use crate::Scalar;
-use crate::spatial::{Placement, Reference};
+use crate::spatial::Reference;
 
 /// Number of parameters of a link.
 const PARAMETERS: usize = 10;
@@ -42,30 +42,28 @@ fn unit_inertia<S: Scalar>(k: usize) -> Matrix6<S> {
 impl<S: Scalar> Textbook<S> {
     /// (link, G) of every parameter of every moving link.
     fn unit_links(&self) -> impl Iterator<Item = (usize, Matrix6<S>)> + '_ {
-        self.moving_links().flat_map(|i| (0..PARAMETERS).map(move |k| (i, unit_inertia(k))))
+        self.moving_links().into_iter().flat_map(|i| (0..PARAMETERS).map(move |k| (i, unit_inertia(k))))
     }
 
     /// π of the moving links, `[links][10]`.
     pub fn parameters(&self) -> Vec<S> {
-        // Where every body is in the link that it is fixed to.
-        let mut seats: Vec<(usize, Placement<S>)> = Vec::with_capacity(self.bodies.len());
+        let seats = self.seats();
         let mut inertia = vec![Matrix6::<S>::zeros(); self.bodies.len()];
-        for (i, body) in self.bodies.iter().enumerate() {
-            let seat = match body.parent {
-                Some(p) if !body.joint.moves() => (seats[p].0, seats[p].1.compose(&body.placement)),
-                _ => (i, Placement::identity()),
-            };
+        for (body, seat) in self.bodies.iter().zip(&seats) {
             // Gᵖ = Ad(T_ip)ᵀ G Ad(T_ip)
             let adjoint = inverse_adjoint(&seat.1);
             inertia[seat.0] += adjoint.transpose() * body.inertia * adjoint;
-            seats.push(seat);
         }
         let numbers = |g: &Matrix6<S>| {
             let (m, h) = mass_and_moment(g);
             let moments: Vec<S> = ENTRIES.iter().map(|&at| g[at]).collect();
             [&[m], h.as_slice(), &moments].concat()
         };
-        self.moving_links().flat_map(|i| numbers(&inertia[i])).collect()
+        let of_link = |i: usize| {
+            let to_link = adjoint(&seats[i].1);
+            to_link.transpose() * inertia[seats[i].0] * to_link
+        };
+        self.moving_links().into_iter().flat_map(|i| numbers(&of_link(i))).collect()
     }
 
     /// Y with τ = Y π, `[nv][links][10]`.
