@@ -21,12 +21,13 @@ const COMMIT: &str = match option_env!("ARTICULATED_COMMIT") {
 
 /// Options that do not apply to motions: reading and editing of a robot, which a scene determines,
 /// and functions and states to measure.
-const OF_FUNCTIONS: [&str; 19] = [
+const OF_FUNCTIONS: [&str; 20] = [
     "floating",
     "fixed",
     "gravity",
     "allow_unphysical_inertia",
     "first_of_duplicates",
+    "leave_out",
     "snap_angles",
     "arg",
     "package",

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use articulated_codegen::Precision;
 use articulated_core::lanes::Real;
-use articulated_formats::{SNAP_EXPECTED, can_snap};
+use articulated_formats::{LeaveOut, SNAP_EXPECTED, can_snap};
 use clap::{Args, ValueEnum};
 
 use crate::edits::{Edits, FrameArguments};
@@ -44,6 +44,10 @@ pub(crate) struct RobotArguments {
     /// Take the first of tags of a URDF that should be there once, with a warning
     #[arg(long)]
     pub(crate) first_of_duplicates: bool,
+    /// Leave out elements of an MJCF that change the motion and are not read, with a warning: flex,
+    /// composite, plugin. Those of another kind are errors
+    #[arg(long, value_name = "KINDS", value_delimiter = ',')]
+    pub(crate) leave_out: Vec<LeaveOut>,
     /// Snap angles of the file within TOL rad of a multiple of π/2 to that multiple: above 0, at
     /// most 0.5 [default: off]
     #[arg(long, value_name = "TOL", value_parser = tolerance)]
@@ -103,6 +107,7 @@ impl RobotArguments {
             gravity: None,
             allow_unphysical_inertia: false,
             first_of_duplicates: false,
+            leave_out: Vec::new(),
             snap_angles: None,
             arg: Vec::new(),
             package: Vec::new(),

@@ -61,6 +61,7 @@ impl Robot {
         options.robot.gravity = arguments.gravity.map(|g| g.0).or(options.robot.gravity);
         options.robot.allow_unphysical_inertia = arguments.allow_unphysical_inertia;
         options.robot.first_of_duplicates = arguments.first_of_duplicates;
+        options.robot.leave_out = arguments.leave_out.iter().copied().collect();
         options.robot.snap_angles = arguments.snap_angles;
         options.rename = arguments.rename.iter().cloned().map(Into::into).collect();
         options.max_code_size = arguments.max_code_size.unwrap_or(options.max_code_size);
@@ -86,6 +87,7 @@ impl Robot {
         options.robot.gravity = arguments.gravity.map(|g| g.0).or(options.robot.gravity);
         options.robot.allow_unphysical_inertia |= arguments.allow_unphysical_inertia;
         options.robot.first_of_duplicates |= arguments.first_of_duplicates;
+        options.robot.leave_out.extend(&arguments.leave_out);
         options.robot.snap_angles = arguments.snap_angles.or(options.robot.snap_angles);
         arguments.rename.iter().for_each(|(from, to)| options.set_name(from, to));
         if !arguments.arg.is_empty() || !arguments.package.is_empty() {

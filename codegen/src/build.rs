@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Span, Spanned, summary};
+use articulated_formats::LeaveOut;
 use articulated_scene::{Loader, Robot, beside};
 
 use crate::cache::Cache;
@@ -166,6 +167,14 @@ impl Build {
     #[must_use]
     pub fn first_of_duplicates(mut self) -> Self {
         self.request.options.robot.first_of_duplicates = true;
+        self
+    }
+
+    /// Elements of an MJCF that change the motion and are not read are left out, with a warning.
+    /// Those of another kind are errors.
+    #[must_use]
+    pub fn leave_out(mut self, kinds: impl IntoIterator<Item = LeaveOut>) -> Self {
+        self.request.options.robot.leave_out.extend(kinds);
         self
     }
 

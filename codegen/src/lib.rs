@@ -75,7 +75,7 @@ pub use articulated_core::precision::{Arithmetic, Precision, PrecisionError, Tri
 pub use articulated_core::spatial::Reference;
 pub use articulated_core::suggest::nearest;
 pub use articulated_formats as formats;
-pub use articulated_formats::MOST_SNAPPED;
+pub use articulated_formats::{LeaveOut, MOST_SNAPPED};
 pub use articulated_scene::{Appended, RobotOptions, RobotRequest};
 pub use build::{BatchType, Build, Written};
 pub use checked::checked_cost;

@@ -1,5 +1,5 @@
 //! Reads a robot and prints its numbers and its dynamics in some states, for comparisons:
-//! `dynamics FILE GX GY GZ`.
+//! `dynamics FILE GX GY GZ [KIND...]`. What is of a KIND (`flex`, `composite`, `plugin`) is left out.
 //!
 //! Standard input: states as little-endian doubles, q, v and a one after the other, until the end.
 //! Standard output: one line of JSON, which describes the robot, then for each state, as
@@ -8,6 +8,7 @@
 //! error, and the status is 1; so it is where inverse dynamics is not its regressor times the
 //! inertial parameters of the links.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::io::{Read, Write};
 use std::process::ExitCode;
@@ -16,16 +17,16 @@ use articulated_core::algorithm::{Workspace, function, inverse_dynamics, torque_
 use articulated_core::description::{Base, Description};
 use articulated_core::model::Model;
 use articulated_formats::world::{Actuator, Keyframe, World};
-use articulated_formats::{Disk, MOST_BYTES, Options, Reading, read_file, read_with};
+use articulated_formats::{Disk, LeaveOut, MOST_BYTES, Options, Reading, read_file, read_with};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [file, gravity @ ..] = arguments.as_slice() else {
-        eprintln!("dynamics FILE GX GY GZ");
+    let [file, rest @ ..] = arguments.as_slice() else {
+        eprintln!("dynamics FILE GX GY GZ [KIND...]");
         return ExitCode::from(2);
     };
-    let gravity: Vec<f64> = gravity.iter().filter_map(|x| x.parse().ok()).collect();
-    match run(file, &gravity) {
+    let gravity: Vec<f64> = rest.iter().filter_map(|x| x.parse().ok()).collect();
+    match run(file, &gravity, rest.iter().filter_map(|x| x.parse().ok()).collect()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             eprintln!("{message}");
@@ -34,9 +35,9 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(file: &str, gravity: &[f64]) -> Result<(), String> {
+fn run(file: &str, gravity: &[f64], leave_out: BTreeSet<LeaveOut>) -> Result<(), String> {
     let bytes = read_file(file.as_ref(), MOST_BYTES).map_err(|error| format!("{file}: {error}"))?;
-    let options = Options { file: file.to_owned(), ..Options::default() };
+    let options = Options { file: file.to_owned(), leave_out, ..Options::default() };
     let reading = read_with(&Disk, &bytes, &options).map_err(|diagnostics| diagnostics.to_string())?;
     let model: Model<f64> = Model::new(&reading.description, Base::Fixed).map_err(|error| format!("{file}: {error}"))?;
     let model = match gravity {
@@ -86,7 +87,9 @@ fn check_regressor(model: &Model<f64>, workspace: &mut Workspace<f64>, [q, v, a]
 fn header(reading: &Reading, model: &Model<f64>) -> String {
     let description = &reading.description;
     let mut out = format!("{{\"nq\": {}, \"nv\": {}, \"frames\": {}", model.nq(), model.nv(), model.frames().len());
-    let _ = write!(out, ", \"warnings\": {}, \"unused\": {}, \"links\": [", reading.warnings.len(), reading.unused.len());
+    let warnings = list(&reading.warnings, |one| format!("{:?}", one.to_string()));
+    let unused = list(&reading.unused, |one| format!("{:?}", one.to_string()));
+    let _ = write!(out, ", \"warnings\": {warnings}, \"unused\": {unused}, \"links\": [");
     let links = description.links.iter().filter(|link| !link.intermediate);
     let links: Vec<String> = links.map(link_of).collect();
     let _ = write!(out, "{}], \"joints\": [", links.join(", "));

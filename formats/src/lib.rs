@@ -44,6 +44,7 @@
 mod cycles;
 mod files;
 mod format;
+mod leave_out;
 pub mod mjcf;
 mod pose;
 mod reading;
@@ -62,5 +63,6 @@ use articulated_core::diagnostic::Diagnostics;
 
 pub use files::{AtMost, Disk, Environment, Included, MOST_BYTES, NoFiles, Sources, nearest_file, open_file, read_at_most, read_file};
 pub use format::{FORMATS, Format, Formats, Input};
+pub use leave_out::{LeaveOut, NoKind};
 pub use reading::{Options, Reading, included, read, read_with};
 pub use snap::{MOST_SNAPPED, SNAP_EXPECTED, can_snap, nearly_right_angles};

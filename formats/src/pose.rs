@@ -217,44 +217,6 @@ pub(crate) fn of_point(mass: f64, [x, y, z]: Vector) -> Symmetric {
     [y * y + z * z, -x * y, -x * z, x * x + z * z, -y * z, x * x + y * y].map(|i| mass * i)
 }
 
-/// The eigenvalues, the largest first, and the rotation to their axes: S = R·diag·Rᵀ. By Jacobi's
-/// rotations; Golub & Van Loan, *Matrix Computations*, §8.5.
-pub(crate) fn principal(s: Symmetric) -> (Vector, Quaternion) {
-    let [xx, xy, xz, yy, yz, zz] = s;
-    let mut a = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-    let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    for _ in 0..12 {
-        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            if a[p][q] == 0.0 {
-                continue;
-            }
-            let tau = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-            let t = 1.0_f64.copysign(tau) / (tau.abs() + tau.hypot(1.0));
-            let c = 1.0 / t.hypot(1.0);
-            let s = t * c;
-            let r = 3 - p - q;
-            let apq = a[p][q];
-            a[p][p] -= t * apq;
-            a[q][q] += t * apq;
-            (a[p][q], a[q][p]) = (0.0, 0.0);
-            let (arp, arq) = (a[r][p], a[r][q]);
-            a[r][p] = c * arp - s * arq;
-            a[p][r] = a[r][p];
-            a[r][q] = s * arp + c * arq;
-            a[q][r] = a[r][q];
-            for row in &mut v {
-                (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
-            }
-        }
-    }
-    let mut order = [0, 1, 2];
-    order.sort_by(|i, j| a[*j][*j].total_cmp(&a[*i][*i]));
-    let axis = |k: usize| [v[0][order[k]], v[1][order[k]], v[2][order[k]]];
-    let (x, y) = (axis(0), axis(1));
-    // Right-handed, whatever the order is.
-    (order.map(|k| a[k][k]), of_axes(x, y, cross(x, y)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -281,13 +243,5 @@ mod tests {
         let z = unit([0.3, -0.4, -0.2]).unwrap();
         assert!(near(rotate(of_z_axis(z), [0.0, 0.0, 1.0]), z));
         assert!(near(rotate(of_z_axis([0.0, 0.0, -1.0]), [0.0, 0.0, 1.0]), [0.0, 0.0, -1.0]));
-    }
-
-    #[test]
-    fn a_matrix_is_its_principal_moments_in_their_axes() {
-        let s = [3.0, -0.4, 0.3, 2.0, 0.1, 1.5];
-        let (moments, axes) = principal(s);
-        assert!(moments[0] >= moments[1] && moments[1] >= moments[2]);
-        assert!(near(turned(axes, diagonal(moments)), s));
     }
 }

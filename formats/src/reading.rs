@@ -10,7 +10,7 @@ use articulated_core::suggest::nearest;
 
 use crate::files::Recorder;
 use crate::world::{Document, World};
-use crate::{Format, Formats, Included, Input, NoFiles, Sources, snap};
+use crate::{Format, Formats, Included, Input, LeaveOut, NoFiles, Sources, snap};
 
 /// How to read.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +25,9 @@ pub struct Options {
     /// Takes the first of tags of a URDF that should be there once and contradict each other, with
     /// a warning, as urdfdom does.
     pub first_of_duplicates: bool,
+    /// Elements of an MJCF that change the motion and are not read, which are left out with a
+    /// warning. Those of another kind are errors.
+    pub leave_out: BTreeSet<LeaveOut>,
     /// Replaces an angle of a frame that is within this many rad of a multiple of π/2 by that
     /// multiple: above 0, at most [`MOST_SNAPPED`](crate::MOST_SNAPPED); any other number is an
     /// error. `None` leaves every number as written.
@@ -45,6 +48,7 @@ impl Default for Options {
             base: Base::Fixed,
             allow_unphysical_inertia: false,
             first_of_duplicates: false,
+            leave_out: BTreeSet::new(),
             snap_angles: None,
             formats: Formats::default(),
             arguments: BTreeMap::new(),

@@ -88,6 +88,7 @@ def load(
     coupling: Optional[str] = None,
     allow_unphysical_inertia: bool = False,
     first_of_duplicates: bool = False,
+    leave_out: Iterable[str] = ...,
     snap_angles: Optional[float] = None,
 ) -> Robot: ...
 def loads(
@@ -102,6 +103,7 @@ def loads(
     coupling: Optional[str] = None,
     allow_unphysical_inertia: bool = False,
     first_of_duplicates: bool = False,
+    leave_out: Iterable[str] = ...,
     snap_angles: Optional[float] = None,
 ) -> Robot: ...
 def bundled(

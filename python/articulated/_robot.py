@@ -134,7 +134,7 @@ class _Source(NamedTuple):
     args: tuple = ()
     packages: tuple = ()
     # Whether to accept unphysical inertias, whether the first of duplicates counts, and what angles are snapped.
-    reading: tuple = (False, False, None)
+    reading: tuple = (False, False, (), None)
     # Whether joints follow others as the file says, and as calls say.
     coupling: tuple = (False, ())
 
@@ -263,7 +263,7 @@ class Robot(_native.Robot):
                 raise ValueError("other: found a robot with edits, expected one as loaded; append it first, and edit the result")
             if source.args:
                 raise ValueError("other: found a robot with args, expected one without: args are those of the robot that carries it")
-            if source.reading not in (self._source.reading, (False, False, None)):
+            if source.reading not in (self._source.reading, (False, False, (), None)):
                 raise ValueError("other: found a robot read with other options, expected those of the robot that carries it")
             for name, folder in source.packages:
                 if packages.setdefault(name, folder) != folder:
@@ -470,14 +470,15 @@ def _pairs(what, given):
     return tuple((_name(what, name), value) for name, value in given.items())
 
 
-def _reading(allow_unphysical_inertia, first_of_duplicates, snap_angles):
+def _reading(allow_unphysical_inertia, first_of_duplicates, leave_out, snap_angles):
     """How to read a file."""
     for name, value in (("allow_unphysical_inertia", allow_unphysical_inertia), ("first_of_duplicates", first_of_duplicates)):
         if not isinstance(value, (bool, np.bool_)):
             raise TypeError(f"{name}: found {type(value).__name__}, expected True or False")
     if snap_angles is not None and (isinstance(snap_angles, bool) or not isinstance(snap_angles, (int, float, np.integer, np.floating))):
         raise TypeError(f"snap_angles: found {type(snap_angles).__name__}, expected a number, rad, or None")
-    return bool(allow_unphysical_inertia), bool(first_of_duplicates), None if snap_angles is None else float(snap_angles)
+    kinds = tuple(sorted(set(_names("leave_out", leave_out))))
+    return bool(allow_unphysical_inertia), bool(first_of_duplicates), kinds, None if snap_angles is None else float(snap_angles)
 
 
 def _coupling(coupling):
@@ -510,6 +511,7 @@ def load(
     coupling=None,
     allow_unphysical_inertia=False,
     first_of_duplicates=False,
+    leave_out=(),
     snap_angles=None,
 ):
     """The robot of a file.
@@ -527,6 +529,8 @@ def load(
         coupling: "file" lets joints follow others as linear equations of the file say (MJCF).
         allow_unphysical_inertia: True accepts negative principal moments, with a warning.
         first_of_duplicates: True takes the first of tags of a URDF that should be there once, with a warning.
+        leave_out: Elements of an MJCF that change the motion and are not read, to leave out with a warning: any of
+            "flex", "composite", "plugin". Those of another kind are errors.
         snap_angles: Takes angles within so many rad of a multiple of π/2 as that multiple.
 
     Raises:
@@ -536,7 +540,7 @@ def load(
         RobotWarning: Something in the file looks wrong; the values are used as they are.
     """
     path = _path("path", path)
-    reading = _reading(allow_unphysical_inertia, first_of_duplicates, snap_angles)
+    reading = _reading(allow_unphysical_inertia, first_of_duplicates, leave_out, snap_angles)
     given = {"args": _args(args), "packages": _packages(packages), "reading": reading, "coupling": _coupling(coupling)}
     return _robot(path, _native.read(path), base, gravity, frames, wrenches_in, True, **given)
 
@@ -553,6 +557,7 @@ def loads(
     coupling=None,
     allow_unphysical_inertia=False,
     first_of_duplicates=False,
+    leave_out=(),
     snap_angles=None,
 ):
     """The robot of a text, str or bytes, which includes no files; ``name`` is the name of its file in messages. See ``load``."""
@@ -564,7 +569,7 @@ def loads(
         raise TypeError(f"text: found {type(text).__name__}, expected str or bytes")
     if not isinstance(name, str):
         raise TypeError(f"name: found {type(name).__name__}, expected str")
-    reading = _reading(allow_unphysical_inertia, first_of_duplicates, snap_angles)
+    reading = _reading(allow_unphysical_inertia, first_of_duplicates, leave_out, snap_angles)
     given = {"args": _args(args), "reading": reading, "coupling": _coupling(coupling)}
     return _robot(name, text, base, gravity, frames, wrenches_in, False, **given)
 

@@ -104,6 +104,7 @@ def load(
     coupling: Optional[str] = None,
     allow_unphysical_inertia: bool = False,
     first_of_duplicates: bool = False,
+    leave_out: Iterable[str] = ...,
     snap_angles: Optional[float] = None,
 ) -> Robot: ...
 def loads(
@@ -118,6 +119,7 @@ def loads(
     coupling: Optional[str] = None,
     allow_unphysical_inertia: bool = False,
     first_of_duplicates: bool = False,
+    leave_out: Iterable[str] = ...,
     snap_angles: Optional[float] = None,
 ) -> Robot: ...
 def bundled(

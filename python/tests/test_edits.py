@@ -155,6 +155,13 @@ def test_options_of_the_reader():
         assert robot.mass_matrix([0.2]).tolist() == [[1.0]]
         with pytest.raises(TypeError, match=f"{option}: found int, expected True or False"):
             articulated.loads(text, **{option: 1})
+    cloth = "<mujoco><worldbody><body><joint/><geom size='.1'/></body><flexcomp name='cloth' type='grid'/></worldbody></mujoco>"
+    with pytest.raises(articulated.RobotError, match="found a flexible body .*cloth.*key `leave_out`"):
+        articulated.loads(cloth, name="cloth.xml")
+    with pytest.warns(articulated.RobotWarning, match="found a flexible body"):
+        assert articulated.loads(cloth, name="cloth.xml", leave_out=["flex"]).nv == 1
+    with pytest.raises(ValueError, match='leave_out: found "flexible", expected flex, composite or plugin'):
+        articulated.loads(cloth, name="cloth.xml", leave_out=["flexible"])
     with pytest.warns(articulated.RobotWarning, match="1.5707"):
         articulated.loads(plain, snap_angles=1e-3)
     with pytest.raises(articulated.RobotError, match="snap_angles: found 0.7"):

@@ -1,5 +1,7 @@
 //! A scene, and the keys at its top.
 
+use std::collections::BTreeSet;
+
 use articulated_core::Plain;
 use articulated_core::description::Base;
 use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, quote};
@@ -8,7 +10,7 @@ use articulated_core::integrator::IntegratorId;
 use articulated_core::lanes::Real;
 use articulated_core::precision::Precision;
 use articulated_core::spatial::Reference;
-use articulated_formats::{SNAP_EXPECTED, can_snap};
+use articulated_formats::{LeaveOut, SNAP_EXPECTED, can_snap};
 
 use crate::control::{self, Control};
 use crate::document;
@@ -95,6 +97,8 @@ pub struct CodeOptions {
     pub allow_unphysical_inertia: Option<bool>,
     /// Take the first of tags of a URDF that should be there once.
     pub first_of_duplicates: Option<bool>,
+    /// Elements of an MJCF that are not read, to leave out.
+    pub leave_out: Option<BTreeSet<LeaveOut>>,
     /// Take angles this near to a multiple of π/2 as that, rad.
     pub snap_angles: Option<f64>,
     /// Limbs that are alike at once.
@@ -401,6 +405,14 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         read: |s, spot, log| s.code.first_of_duplicates = spot.boolean(log),
     },
     Row {
+        name: "leave_out",
+        required: false,
+        value: "list of `\"flex\"`, `\"composite\"`, `\"plugin\"`",
+        default: "none",
+        what: "leave out elements of an MJCF that change the motion and are not read, with a warning; else they are errors",
+        read: |s, spot, log| s.code.leave_out = left_out(spot, log),
+    },
+    Row {
         name: "snap_angles",
         required: false,
         value: "number, rad",
@@ -514,6 +526,14 @@ fn batch(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Vec<Real>> {
         }
     }
     Some(reals)
+}
+
+fn left_out(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<BTreeSet<LeaveOut>> {
+    let Some(list) = spot.list() else {
+        spot.wrong(log, "a list of \"flex\", \"composite\", \"plugin\"");
+        return None;
+    };
+    Some(list.iter().filter_map(|item| item.word(log, &LeaveOut::WORDS)).collect())
 }
 
 fn level(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Precision> {

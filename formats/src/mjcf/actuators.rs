@@ -12,9 +12,10 @@ use articulated_core::diagnostic::{Code, Diagnostics, Subject};
 
 use super::bodies::Kind;
 use super::element::Element;
-use super::reflected::{Drives, Inertia};
+use super::reflected::{Drives, Inertia, Unknown};
 use super::scope::{References, Scope, Sort};
-use super::settings::{Settings, Simulation};
+use super::settings::Settings;
+use super::simulation::Simulation;
 use super::tendons::Tendon;
 use super::values::Values;
 use crate::world::{Actuator, World};
@@ -328,11 +329,11 @@ impl General {
     }
 
     /// Why it is not read, apart from what it acts on.
-    fn obstacle(&self, simulation: &Simulation) -> Option<String> {
+    fn obstacle(&self, simulation: &Simulation<'_>) -> Option<String> {
         if let Some(kind) = &self.foreign {
             return Some(format!("an actuator of the kind <{kind}>"));
         }
-        if simulation.no_actuation {
+        if simulation.flags().no_actuation {
             return Some("an actuator, where a flag of <option> turns actuators off".to_owned());
         }
         if simulation.disabled_groups.contains(&self.group) {
@@ -409,7 +410,7 @@ struct Target {
 pub(crate) fn actuators(
     scope: &mut Scope<'_>,
     tendons: &[Tendon],
-    simulation: &Simulation,
+    simulation: &Simulation<'_>,
     description: &Description,
     world: &mut World,
     log: &mut Diagnostics,
@@ -433,7 +434,7 @@ pub(crate) fn actuators(
             let Some(found) = scope.resolve(index, element, &references, log) else { continue };
             let class = part.settings.classes.find(element, "class", log).unwrap_or(0);
             let of_class = defaults.entry((Rc::as_ptr(&part.settings), class));
-            let general = General::of(element, of_class.or_insert_with(|| General::defaults(class, &part.settings, log)), log);
+            let mut general = General::of(element, of_class.or_insert_with(|| General::defaults(class, &part.settings, log)), log);
             let name = scope.full(index, element).unwrap_or_else(|| format!("actuator_{number}"));
             number += 1;
             let found = references.first().zip(found.first()).map(|((_, field, _), at)| (*field, *at));
@@ -443,6 +444,9 @@ pub(crate) fn actuators(
             };
             let obstacle = general.obstacle(simulation).or(target.as_ref().err().map(|why| (*why).to_owned()));
             if let Ok(target) = &target {
+                if simulation.flags().no_damper {
+                    general.damping = [0.0; 3];
+                }
                 passive(&name, element, &general, target, scope, world, log);
                 armatures.push((general.armature, target.drives.clone()));
             }
@@ -463,7 +467,7 @@ pub(crate) fn actuators(
                         drives: names.collect(),
                         gain,
                         bias,
-                        control_range: control_range.filter(|_| !simulation.no_clamp),
+                        control_range: control_range.filter(|_| !simulation.flags().no_clamp),
                         force_range,
                         place: scope.place(element),
                     });
@@ -577,14 +581,21 @@ fn damp(
     if ratios.is_empty() {
         return lost;
     }
-    let inertia = if log.is_ok() { Inertia::at_reference(ratios.len(), description, scope, armatures) } else { None };
+    let inertia = Inertia::at_reference(ratios.len(), description, scope, armatures, log);
     for (index, element) in ratios {
-        let mass = inertia.as_ref().and_then(|inertia| inertia.reflected(&drives_of[*index]));
+        let known = inertia.as_ref().map_err(|why| *why);
+        let mass = known.and_then(|inertia| inertia.reflected(&drives_of[*index]).ok_or(Unknown::Singular));
         let actuator = &mut world.actuators[*index];
         match mass {
-            Some(mass) if actuator.gain[0] >= 0.0 => actuator.bias[2] = -2.0 * actuator.bias[2] * (actuator.gain[0] * mass).sqrt(),
-            _ => {
-                lose(element, "an actuator with a dampratio, but without an inertia or with kp below zero,", scope, log);
+            Ok(mass) if actuator.gain[0] >= 0.0 => actuator.bias[2] = -2.0 * actuator.bias[2] * (actuator.gain[0] * mass).sqrt(),
+            Ok(_) => {
+                lose(element, "an actuator with a dampratio and kp below zero", scope, log);
+                lost.push(*index);
+            }
+            // What the mistakes are is reported.
+            Err(Unknown::Mistakes) => {}
+            Err(why) => {
+                lose(element, &why.found("an actuator with a dampratio"), scope, log);
                 lost.push(*index);
             }
         }

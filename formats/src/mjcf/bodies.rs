@@ -1,5 +1,6 @@
 //! From tags to bodies: frames, copies and attached models are gone, and classes are applied.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::rc::Rc;
 
@@ -10,9 +11,13 @@ use super::documents::Documents;
 use super::element::Element;
 use super::geometry::{self, Geom};
 use super::grammar::subject;
+use super::inertia::Own;
+use super::left_out::Gate;
 use super::settings::{Compiler, Settings};
+use super::simulation::Flags;
 use super::values::Values;
-use crate::pose::{Pose, Symmetric, Vector, about, diagonal, multiply, rotate, unit};
+use crate::LeaveOut;
+use crate::pose::{IDENTITY, Pose, Vector, about, diagonal, multiply, rotate, unit};
 
 /// A model may have so many bodies, joints, geoms and sites altogether.
 const MOST_ITEMS: usize = 100_000;
@@ -36,7 +41,7 @@ pub(crate) struct Body<'a> {
     pub(crate) joints: Vec<Joint<'a>>,
     pub(crate) geoms: Vec<Geom<'a>>,
     pub(crate) sites: Vec<Site<'a>>,
-    pub(crate) inertial: Option<Explicit>,
+    pub(crate) inertial: Option<Explicit<'a>>,
     /// The part of the tree that it is in.
     pub(crate) part: usize,
 }
@@ -87,29 +92,42 @@ pub(crate) struct Site<'a> {
 
 /// What `<inertial>` says.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Explicit {
-    pub(crate) pose: Pose,
-    pub(crate) mass: f64,
-    pub(crate) inertia: Symmetric,
+pub(crate) struct Explicit<'a> {
+    pub(crate) element: &'a Element,
+    pub(crate) own: Own,
+    /// Whether it has moments of inertia.
+    pub(crate) has_inertia: bool,
 }
 
-fn explicit(values: &Values<'_>, compiler: &Compiler, log: &mut Diagnostics) -> Option<Explicit> {
-    for name in ["pos", "mass"].iter().filter(|name| !values.has(name)) {
+/// What holds for all bodies, of the main file.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rules {
+    pub(crate) flags: Flags,
+    /// Whether shapes are fitted to the corners of meshes, rather than to their inertia.
+    pub(crate) fit_corners: bool,
+    /// Whether there is no gravity.
+    pub(crate) is_weightless: bool,
+}
+
+fn explicit<'a>(values: &Values<'a>, compiler: &Compiler, log: &mut Diagnostics) -> Option<Explicit<'a>> {
+    for name in ["pos", "mass"].iter().filter(|name| !values.has_numbers(name)) {
         values.error(name, Code::MissingAttribute, "none", format!("the attribute {name} in <inertial>"), log);
     }
     let pose = values.pose(&compiler.angles, log);
     let mass = values.number("mass", log)?;
-    let inertia = match values.exactly::<6>("fullinertia", log) {
+    // The axes of a diagonal are those of the tag.
+    let (inertia, axes) = match values.exactly::<6>("fullinertia", log) {
         Some([xx, yy, zz, xy, xz, yz]) => {
             let turns = ["quat", "axisangle", "xyaxes", "zaxis", "euler", "diaginertia"];
-            if let Some(name) = turns.iter().find(|name| values.has(name)) {
+            if let Some(name) = turns.iter().find(|name| values.has_numbers(name)) {
                 values.error("fullinertia", Code::Together, format!("both fullinertia and {name}"), "one of them", log);
             }
-            [xx, xy, xz, yy, yz, zz]
+            ([xx, xy, xz, yy, yz, zz], None)
         }
-        None => diagonal(values.exactly::<3>("diaginertia", log).unwrap_or_default()),
+        None => (diagonal(values.exactly::<3>("diaginertia", log).unwrap_or_default()), Some(IDENTITY)),
     };
-    Some(Explicit { pose, mass, inertia })
+    let has_inertia = values.has_numbers("fullinertia") || values.has_numbers("diaginertia");
+    Some(Explicit { element: values.element, own: Own { pose, mass, inertia, axes }, has_inertia })
 }
 
 /// The bodies of a model, and the documents that they are from.
@@ -161,10 +179,18 @@ struct Context<'a> {
     is_first: bool,
 }
 
-/// All bodies of a model.
-pub(crate) fn tree<'a>(documents: &'a Documents, log: &mut Diagnostics) -> Tree<'a> {
+/// All bodies of a model, with these flags. What `leave_out` has is left out.
+pub(crate) fn tree<'a>(
+    documents: &'a Documents,
+    (flags, is_weightless): (Flags, bool),
+    leave_out: &'a BTreeSet<LeaveOut>,
+    log: &mut Diagnostics,
+) -> Tree<'a> {
     let settings: Vec<Rc<Settings<'a>>> = documents.roots().map(|root| Rc::new(Settings::of(root, log))).collect();
-    let mut build = Build { documents, settings, bodies: Vec::new(), parts: Vec::new(), items: 0, letters: 0, depth: 0 };
+    let fit_corners = settings.first().is_some_and(|main| main.compiler.fit_aabb);
+    let (rules, gate) = (Rules { flags, fit_corners, is_weightless }, Gate::new(leave_out));
+    let (bodies, parts) = (Vec::new(), Vec::new());
+    let mut build = Build { documents, settings, rules, gate, bodies, parts, items: 0, letters: 0, depth: 0 };
     let root = documents.root(0);
     let context = build.context(0);
     build.add(None, root, 0, Pose::default(), &context);
@@ -179,6 +205,8 @@ pub(crate) fn tree<'a>(documents: &'a Documents, log: &mut Diagnostics) -> Tree<
 struct Build<'a> {
     documents: &'a Documents,
     settings: Vec<Rc<Settings<'a>>>,
+    rules: Rules,
+    gate: Gate<'a>,
     bodies: Vec<Body<'a>>,
     parts: Vec<Part<'a>>,
     items: usize,
@@ -197,6 +225,7 @@ impl<'a> Build<'a> {
     /// Begins a part of the tree, and returns its index.
     fn begin(&mut self, context: &Context<'a>, extent: Extent, element: &Element, log: &mut Diagnostics) -> usize {
         self.spell(context.prefix.len() + context.suffix.len(), element, log);
+        self.gate.document(self.documents.root(context.document), log);
         let index = self.parts.len();
         self.parts.push(Part {
             settings: context.settings.clone(),
@@ -291,7 +320,7 @@ impl<'a> Build<'a> {
                 }
                 "joint" => {
                     let name = self.name(element, context, log);
-                    if let Some(joint) = joint(name, &values("joint"), context, log) {
+                    if let Some(joint) = joint(name, &values("joint"), context, self.rules.flags, log) {
                         self.bodies[body].joints.push(joint);
                     }
                 }
@@ -316,7 +345,7 @@ impl<'a> Build<'a> {
                     self.bodies[body].joints.push(free);
                 }
                 "geom" => {
-                    if let Some(geom) = geometry::geom(&values("geom"), &context.settings, &context.frame, log) {
+                    if let Some(geom) = geometry::geom(&values("geom"), &context.settings, &context.frame, (self.rules, &mut self.gate), log) {
                         self.bodies[body].geoms.push(geom);
                     }
                 }
@@ -335,8 +364,7 @@ impl<'a> Build<'a> {
                 }
                 "replicate" => self.replicate(element, body, context, log),
                 "attach" => self.attach(element, body, context, log),
-                // What is not used has been reported.
-                _ => {}
+                _ => self.gate.body(element, log),
             }
         }
     }
@@ -350,7 +378,8 @@ impl<'a> Build<'a> {
             let attribute = element.attribute("mocap");
             element.unused(&subject, attribute, "the body is fixed at its place: nothing moves it", log);
         }
-        if values.number("gravcomp", log).is_some_and(|part| part != 0.0) {
+        let is_compensated = !self.rules.is_weightless && !self.rules.flags.no_passive_force();
+        if is_compensated && values.number("gravcomp", log).is_some_and(|part| part != 0.0) {
             let expected = "gravity on all bodies: it is not compensated";
             element.warning((&subject, "gravcomp"), Code::LostDynamics, "a body whose weight is compensated", expected, log);
         }
@@ -470,26 +499,33 @@ fn find<'a>(root: &'a Element, tag: &str, name: &str, settings: &Settings<'a>, l
 
 fn site(values: &Values<'_>, context: &Context<'_>, log: &mut Diagnostics) -> Pose {
     let angles = &context.settings.compiler.angles;
-    let pose = match values.has("fromto") {
+    let pose = match values.has_numbers("fromto") {
         true => geometry::between(values, log).map(|(pose, _)| pose).unwrap_or_default(),
         false => values.pose(angles, log),
     };
     context.frame.then(&pose)
 }
 
-fn joint<'a>(name: Option<String>, values: &Values<'a>, context: &Context<'a>, log: &mut Diagnostics) -> Option<Joint<'a>> {
+fn joint<'a>(
+    name: Option<String>,
+    values: &Values<'a>,
+    context: &Context<'a>,
+    flags: Flags,
+    log: &mut Diagnostics,
+) -> Option<Joint<'a>> {
     use Kind::{Ball, Free, Hinge, Slide};
     let compiler = &context.settings.compiler;
     let kind = match values.has("type") {
         true => values.word("type", &[("free", Free), ("ball", Ball), ("slide", Slide), ("hinge", Hinge)], log)?,
         false => Hinge,
     };
+    let is_scalar = matches!(kind, Slide | Hinge);
     let angle = |angle: f64| if kind == Hinge { compiler.angles.radians(angle) } else { angle };
     let (mut anchor, mut axis) = ([0.0; 3], [0.0, 0.0, 1.0]);
     if kind != Free {
         anchor = context.frame.then(&Pose::at(values.exactly("pos", log).unwrap_or_default())).position;
     }
-    if matches!(kind, Slide | Hinge) {
+    if is_scalar {
         let given = values.exactly::<3>("axis", log).unwrap_or(axis);
         let Some(unit) = unit(given) else {
             let [x, y, z] = given;
@@ -499,8 +535,9 @@ fn joint<'a>(name: Option<String>, values: &Values<'a>, context: &Context<'a>, l
         // As written, where it is a multiple of a unit vector already.
         axis = rotate(context.frame.rotation, if is_of_length_one(given) { given } else { unit });
     }
-    let (is_limited, limit, force_range) = limits(values, kind, context, log);
-    let reference = if matches!(kind, Slide | Hinge) { angle(values.number("ref", log).unwrap_or(0.0)) } else { 0.0 };
+    let (is_limited, limit, force_range) = limits(values, kind, context, flags, log);
+    // A number that the kind does not have is not parsed.
+    let scalar = |name: &str, log: &mut Diagnostics| if is_scalar { values.number(name, log).map_or(0.0, angle) } else { 0.0 };
     // Mistakes in these are reported above and below.
     let mut reported = log.apart();
     Some(Joint {
@@ -509,15 +546,15 @@ fn joint<'a>(name: Option<String>, values: &Values<'a>, context: &Context<'a>, l
         kind,
         anchor,
         axis,
-        reference,
+        reference: scalar("ref", log),
         is_limited,
-        range: values.exactly("range", &mut reported).unwrap_or_default().map(angle),
+        range: if is_scalar { values.exactly("range", &mut reported).unwrap_or_default().map(angle) } else { [0.0; 2] },
         limit,
         force_range,
-        rest: angle(values.number("springref", &mut reported).unwrap_or(0.0)),
+        rest: scalar("springref", &mut reported),
         spring_damper: values.exactly("springdamper", log).unwrap_or_default(),
         armature: values.number("armature", &mut reported).unwrap_or(0.0),
-        dynamics: dynamics(values, kind, &angle, log),
+        dynamics: dynamics(values, kind, flags, &angle, log),
         part: context.part,
     })
 }
@@ -540,35 +577,48 @@ fn is_bound(values: &Values<'_>, (flag, field): (&str, &str), range: [f64; 2], a
 }
 
 /// Whether the range is a bound, the bounds, and those of the force of all actuators.
-fn limits(values: &Values<'_>, kind: Kind, context: &Context<'_>, log: &mut Diagnostics) -> (bool, Option<Limit>, Option<[f64; 2]>) {
+fn limits(
+    values: &Values<'_>,
+    kind: Kind,
+    context: &Context<'_>,
+    flags: Flags,
+    log: &mut Diagnostics,
+) -> (bool, Option<Limit>, Option<[f64; 2]>) {
+    if kind == Kind::Free {
+        return (false, None, None);
+    }
     let compiler = &context.settings.compiler;
     let range = values.exactly::<2>("range", log).unwrap_or_default();
-    let force = values.exactly::<2>("actuatorfrcrange", log).unwrap_or_default();
-    let is_limited = kind != Kind::Free && is_bound(values, ("limited", "range"), range, compiler.auto_limits, log);
+    let is_limited = is_bound(values, ("limited", "range"), range, compiler.auto_limits, log);
     let ordered = |field: &str, [lower, upper]: [f64; 2], log: &mut Diagnostics| {
         if lower >= upper {
             values.error(field, Code::LimitOrder, format!("{lower} and {upper}"), "the lower bound, then a greater one", log);
         }
     };
-    match kind {
-        Kind::Free => return (false, None, None),
-        Kind::Ball if is_limited => {
-            ordered("range", range, log);
-            if range[0] != 0.0 {
-                let expected = "0: the range of a ball joint is that of the angle of its rotation, which is not negative";
-                values.error("range", Code::LimitOrder, format!("the lower bound {}", range[0]), expected, log);
-            }
-            return (true, Some(Limit { upper: compiler.angles.radians(range[1]), ..Limit::NONE }), None);
+    if kind == Kind::Ball {
+        if is_limited && range[0] != 0.0 {
+            let expected = "0: the range of a ball joint is that of the angle of its rotation, which is not negative";
+            values.error("range", Code::LimitOrder, format!("the lower bound {}", range[0]), expected, log);
         }
-        Kind::Ball => return (false, None, None),
-        Kind::Slide | Kind::Hinge => {}
+        let is_limited = is_limited && !flags.no_limit;
+        // MuJoCo takes the greater of both bounds.
+        let upper = compiler.angles.radians(range[1].max(0.0));
+        if is_limited && upper == 0.0 {
+            let expected = "an upper bound above 0: a limit of no rotation gives no torque here";
+            values.element.warning((&values.subject, "range"), Code::LostDynamics, "a ball joint that is limited to 0", expected, log);
+        }
+        return (is_limited, is_limited.then_some(Limit { upper, ..Limit::NONE }), None);
     }
     let mut limit = Limit::NONE;
     if is_limited {
         ordered("range", range, log);
+    }
+    let is_limited = is_limited && !flags.no_limit;
+    if is_limited {
         let convert = |bound: f64| if kind == Kind::Hinge { compiler.angles.radians(bound) } else { bound };
         [limit.lower, limit.upper] = range.map(convert);
     }
+    let force = values.exactly::<2>("actuatorfrcrange", log).unwrap_or_default();
     let is_force_limited = is_bound(values, ("actuatorfrclimited", "actuatorfrcrange"), force, compiler.auto_limits, log);
     if is_force_limited {
         ordered("actuatorfrcrange", force, log);
@@ -577,24 +627,24 @@ fn limits(values: &Values<'_>, kind: Kind, context: &Context<'_>, log: &mut Diag
     (is_limited, (limit != Limit::NONE).then_some(limit), is_force_limited.then_some(force))
 }
 
-fn dynamics(values: &Values<'_>, kind: Kind, angle: &dyn Fn(f64) -> f64, log: &mut Diagnostics) -> JointDynamics {
-    let [damping, stiffness] = ["damping", "stiffness"].map(|name| {
-        if !values.has(name) {
+fn dynamics(values: &Values<'_>, kind: Kind, flags: Flags, angle: &dyn Fn(f64) -> f64, log: &mut Diagnostics) -> JointDynamics {
+    let [damping, stiffness] = [("damping", flags.no_damper), ("stiffness", flags.no_spring)].map(|(name, is_off)| {
+        if !values.has_numbers(name) {
             return None;
         }
         let [first, second, third] = values.at_most(name, [0.0; 3], log);
-        if second != 0.0 || third != 0.0 {
+        if (second != 0.0 || third != 0.0) && !is_off {
             let expected = format!("one coefficient: the {name} is linear, and the others are not used");
             values.element.warning((&values.subject, name), Code::LostDynamics, format!("a {name} of higher degree"), expected, log);
         }
-        Some(first)
+        Some(first).filter(|_| !is_off)
     });
-    let [friction, armature] = ["frictionloss", "armature"].map(|name| values.number(name, log));
-    let rest = values.number("springref", log).map(angle);
+    let friction = values.number("frictionloss", log).filter(|_| !flags.no_friction);
+    let armature = values.number("armature", log);
     if kind != Kind::Free {
         // A ball joint is slack where its coordinate is the identity.
-        let rest = rest.filter(|_| stiffness.is_some() && kind != Kind::Ball);
-        return JointDynamics { damping, friction, armature, stiffness, rest };
+        let rest = if kind == Kind::Ball { None } else { values.number("springref", log).map(angle) };
+        return JointDynamics { damping, friction, armature, stiffness, rest: rest.filter(|_| stiffness.is_some()) };
     }
     let lost = [("damping", damping), ("frictionloss", friction), ("armature", armature), ("stiffness", stiffness)];
     for (name, _) in lost.iter().filter(|(_, number)| number.is_some_and(|number| number != 0.0)) {

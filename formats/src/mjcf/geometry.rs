@@ -1,16 +1,21 @@
 //! The tag `<geom>`: mass, and the shape for contact and for drawings.
 
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use articulated_core::description::CollisionShape;
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
+use super::axes;
+use super::bodies::Rules;
 use super::element::Element;
 use super::grammar::subject;
+use super::inertia::Own;
+use super::left_out::Gate;
 use super::mesh::{self, Meshes};
 use super::settings::Settings;
 use super::values::Values;
-use crate::pose::{Pose, Symmetric, TINY, Vector, add, diagonal, norm, of_z_axis, rotate, scale, subtract};
+use crate::pose::{IDENTITY, Pose, TINY, Vector, add, diagonal, norm, of_z_axis, rotate, scale, subtract};
 use crate::world::ContactMask;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,19 +47,12 @@ pub(crate) struct Geom<'a> {
     density: f64,
     is_shell: bool,
     fit_scale: f64,
+    /// Whether shapes are fitted to the corners of meshes, rather than to their inertia.
+    fit_corners: bool,
     pub(crate) group: i64,
     /// `contype` and `conaffinity`.
     pub(crate) mask: ContactMask,
     pub(crate) color: Option<[f64; 4]>,
-}
-
-/// A mass with its centre and its inertia about it, in the frame of the body.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Mass {
-    pub(crate) mass: f64,
-    pub(crate) pose: Pose,
-    /// In the axes of the pose.
-    pub(crate) inertia: Symmetric,
 }
 
 const KINDS: [(&str, Kind); 9] = [
@@ -84,32 +82,32 @@ pub(crate) fn between(values: &Values<'_>, log: &mut Diagnostics) -> Option<(Pos
 }
 
 /// A geom, of which meshes are not read yet.
-pub(crate) fn geom<'a>(values: &Values<'a>, settings: &Rc<Settings<'a>>, frame: &Pose, log: &mut Diagnostics) -> Option<Geom<'a>> {
+pub(crate) fn geom<'a>(
+    values: &Values<'a>,
+    settings: &Rc<Settings<'a>>,
+    frame: &Pose,
+    (rules, gate): (Rules, &mut Gate<'_>),
+    log: &mut Diagnostics,
+) -> Option<Geom<'a>> {
     let kind = if values.has("type") { values.word("type", &KINDS, log)? } else { Kind::Sphere };
-    let mut size = values.at_most("size", [0.0; 3], log);
-    let mesh = match values.text("mesh") {
-        None => None,
-        Some(name) => {
-            let found = settings.meshes.get(name).copied();
-            if found.is_none() {
-                let near = articulated_core::suggest::nearest(name, settings.meshes.keys().map(String::as_str));
-                let hint = near.map(|near| format!(" (did you mean {near:?}?)")).unwrap_or_default();
-                values.error("mesh", Code::UnknownName, quote(name), format!("the name of a mesh of <asset>{hint}"), log);
-                return None;
-            }
-            found
-        }
-    };
+    let mesh = asset(values, ("mesh", &settings.meshes), log)?;
+    let has_plugin = gate.has_plugin(values.element, "a plugin of a geom", log);
+    let mesh_has_plugin = mesh.is_some_and(|mesh| gate.has_plugin(mesh, "a plugin of a mesh", log));
+    if has_plugin || mesh_has_plugin {
+        return None;
+    }
     if kind == Kind::Mesh && mesh.is_none() {
         values.error("mesh", Code::MissingAttribute, "none", "the name of a mesh", log);
         return None;
     }
-    let pose = if values.has("fromto") {
+    let mut size = size(values, kind, mesh.is_some(), settings, log)?;
+    let pose = if values.has_numbers("fromto") {
         let (pose, half) = between(values, log)?;
         if values.exactly::<3>("pos", log).is_some_and(|pos| pos != [0.0; 3]) {
             values.error("fromto", Code::Together, "both pos and fromto", "one of them", log);
         }
         match kind {
+            _ if mesh.is_some() => values.error("fromto", Code::Together, "both mesh and fromto", "one of them", log),
             Kind::Capsule | Kind::Cylinder => size[1] = half,
             Kind::Ellipsoid | Kind::Box => size = [size[0], size[0], half],
             _ => values.error("fromto", Code::Together, "fromto", "it in a capsule, a cylinder, a box or an ellipsoid", log),
@@ -118,25 +116,28 @@ pub(crate) fn geom<'a>(values: &Values<'a>, settings: &Rc<Settings<'a>>, frame: 
     } else {
         values.pose(&settings.compiler.angles, log)
     };
-    let sizes = match kind {
-        Kind::Sphere => 1,
-        Kind::Capsule | Kind::Cylinder => 2,
-        Kind::Ellipsoid | Kind::Box => 3,
-        _ => 0,
-    };
+    let sizes = sizes(kind);
     if mesh.is_none() && size[..sizes].iter().any(|size| *size <= 0.0) {
         let found = quote(values.text("size").unwrap_or_default());
         values.error("size", Code::Number, found, format!("{sizes} numbers above zero, m"), log);
         return None;
     }
     let mass = values.number("mass", log);
-    let density = values.number("density", log).unwrap_or(1000.0);
+    let density = if mass.is_none() { values.number("density", log).unwrap_or(1000.0) } else { 0.0 };
     if mass.unwrap_or(density) < 0.0 {
         let field = if mass.is_some() { "mass" } else { "density" };
         values.error(field, Code::NegativeMass, format!("a negative {field}"), "zero or more", log);
     }
+    let is_shell = values.yes("shellinertia", log).unwrap_or(false);
+    if is_shell && matches!(kind, Kind::Mesh | Kind::Sdf) {
+        values.error("shellinertia", Code::Together, "a mesh with shellinertia", "inertia=\"shell\" of the mesh in <asset>", log);
+    }
     let affinity = |name: &str, log: &mut Diagnostics| values.integer(name, log).unwrap_or(1);
-    let mask = ContactMask { kinds: affinity("contype", log), affinity: affinity("conaffinity", log) };
+    let mask = match rules.flags.no_contact {
+        true => ContactMask::default(),
+        false => ContactMask { kinds: affinity("contype", log), affinity: affinity("conaffinity", log) },
+    };
+    let is_fitted = mesh.is_some() && !matches!(kind, Kind::Mesh | Kind::Sdf);
     Some(Geom {
         element: values.element,
         settings: settings.clone(),
@@ -146,17 +147,76 @@ pub(crate) fn geom<'a>(values: &Values<'a>, settings: &Rc<Settings<'a>>, frame: 
         mesh,
         mass,
         density,
-        is_shell: values.yes("shellinertia", log).unwrap_or(false),
-        fit_scale: values.number("fitscale", log).unwrap_or(1.0),
+        is_shell,
+        fit_scale: if is_fitted { values.number("fitscale", log).unwrap_or(1.0) } else { 1.0 },
+        fit_corners: rules.fit_corners,
         group: values.integer("group", log).unwrap_or(0),
         mask,
         color: values.exactly::<4>("rgba", log),
     })
 }
 
+/// The tag of `<asset>` that an attribute names; an error, and `None`, if there is no such tag.
+fn asset<'a>(
+    values: &Values<'a>,
+    (field, all): (&str, &BTreeMap<String, &'a Element>),
+    log: &mut Diagnostics,
+) -> Option<Option<&'a Element>> {
+    let Some(name) = values.text(field) else { return Some(None) };
+    let found = all.get(name).copied();
+    if found.is_none() {
+        let near = articulated_core::suggest::nearest(name, all.keys().map(String::as_str));
+        let hint = near.map(|near| format!(" (did you mean {near:?}?)")).unwrap_or_default();
+        let what = if field == "mesh" { "mesh" } else { "height field" };
+        values.error(field, Code::UnknownName, quote(name), format!("the name of a {what} of <asset>{hint}"), log);
+        return None;
+    }
+    Some(found)
+}
+
+/// How many numbers the size of a shape has.
+fn sizes(kind: Kind) -> usize {
+    match kind {
+        Kind::Sphere => 1,
+        Kind::Capsule | Kind::Cylinder => 2,
+        Kind::Ellipsoid | Kind::Box | Kind::HeightField => 3,
+        Kind::Plane | Kind::Mesh | Kind::Sdf => 0,
+    }
+}
+
+/// Half of what a shape measures along its axes, m; `None` after an error.
+fn size(values: &Values<'_>, kind: Kind, has_mesh: bool, settings: &Settings<'_>, log: &mut Diagnostics) -> Option<Vector> {
+    let field = asset(values, ("hfield", &settings.height_fields), log)?;
+    match (kind, field, has_mesh) {
+        (Kind::HeightField | Kind::Plane, _, true) => {
+            values.error("mesh", Code::Together, "a plane or a height field with a mesh", "a shape that can be fitted to a mesh", log);
+            None
+        }
+        (Kind::HeightField, None, _) => {
+            values.error("hfield", Code::MissingAttribute, "none", "the name of a height field", log);
+            None
+        }
+        (Kind::HeightField, Some(field), _) => {
+            let field = Values::alone(field, &Subject::Document);
+            let Some([x, y, elevation, base]) = field.exactly::<4>("size", log).filter(|size| size.iter().all(|x| *x > 0.0)) else {
+                field.error("size", Code::Number, quote(field.text("size").unwrap_or_default()), "4 numbers above zero, m", log);
+                return None;
+            };
+            // As if it was half as high everywhere; its base is below.
+            Some([x, y, 0.25 * elevation + 0.5 * base])
+        }
+        (_, Some(_), _) => {
+            values.error("hfield", Code::Together, "a height field in another shape", "type=\"hfield\"", log);
+            None
+        }
+        _ if has_mesh || sizes(kind) == 0 => Some([0.0; 3]),
+        _ => Some(values.at_most("size", [0.0; 3], log)),
+    }
+}
+
 impl Geom<'_> {
     /// Its mass, centre and inertia; `None` if it has no mass, or an error was reported.
-    pub(crate) fn mass(&self, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Option<Mass> {
+    pub(crate) fn mass(&self, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Option<Own> {
         if self.mass == Some(0.0) || (self.mass.is_none() && self.density == 0.0) {
             return None;
         }
@@ -169,29 +229,44 @@ impl Geom<'_> {
             }
             None => None,
         };
-        let (pose, volume, inertia) = match (&body, self.kind) {
+        let (pose, volume, inertia, axes) = match (&body, self.kind) {
             (Some(body), Kind::Mesh | Kind::Sdf) => {
                 let inertia = body.inertia.map(|x| x / body.volume);
-                (self.pose.then(&Pose::at(body.center)), body.volume, inertia)
+                (self.pose.then(&Pose::at(body.center)), body.volume, inertia, axes::principal_of_mesh(body.inertia).1)
             }
             (Some(body), kind) => {
-                let (size, center) = fitted(body, kind, self.settings.compiler.fit_aabb);
+                let (size, center) = fitted(body, kind, self.fit_corners);
                 let size = scale(size, self.fit_scale);
+                if size[..sizes(kind)].iter().any(|size| *size <= 0.0) {
+                    let expected = "a shape that fits: the mesh is too flat for this one";
+                    self.element.error((&subject(self.element), "mesh"), Code::Number, "a fitted shape without a size", expected, log);
+                    return None;
+                }
                 let axes = body.principal().axes;
                 let position = add(body.center, rotate(axes, center));
                 let (volume, inertia) = shape(kind, size, self.is_shell);
-                (self.pose.then(&Pose { position, rotation: axes }), volume, diagonal(inertia))
+                (self.pose.then(&Pose { position, rotation: axes }), volume, diagonal(inertia), IDENTITY)
             }
             (None, kind) => {
                 let (volume, inertia) = shape(kind, self.size, self.is_shell);
-                (self.pose, volume, diagonal(inertia))
+                (self.pose, volume, diagonal(inertia), IDENTITY)
             }
         };
         if self.mass.is_some() && volume <= TINY {
             return None;
         }
         let mass = self.mass.unwrap_or(self.density * volume);
-        (mass > TINY).then(|| Mass { mass, pose, inertia: inertia.map(|x| mass * x) })
+        (mass > TINY).then(|| Own { mass, pose, inertia: inertia.map(|x| mass * x), axes: Some(axes) })
+    }
+
+    /// Moves it, as the frame of its body moves the other way.
+    pub(crate) fn move_by(&mut self, pose: &Pose) {
+        self.pose = pose.then(&self.pose);
+    }
+
+    /// Whether it is a plane, with or without contact.
+    pub(crate) fn is_plane(&self) -> bool {
+        self.kind == Kind::Plane
     }
 
     /// Its shape for contact and drawings, with its pose in the body.

@@ -34,6 +34,7 @@ const DEFORMABLE: &str = "deformable bodies are not read: the dynamics are those
 const PLUGIN: &str = "plugins of MuJoCo are not read";
 const ACTUATOR: &str = "controls are given by the scene";
 const UNREAD_ACTUATOR: &str = "actuators of this kind are not read";
+const HEIGHTS: &str = "contact with height fields is not computed: they give mass alone";
 const FLUID: &str = "forces of the medium are given by the scene";
 
 const BODY_TAGS: Names = "body frame replicate attach inertial joint freejoint geom site";
@@ -76,12 +77,12 @@ const ROWS: &[Row] = &[
         name: "compiler",
         within: "mujoco",
         attributes: "autolimits boundmass boundinertia settotalmass balanceinertia coordinate angle eulerseq meshdir assetdir \
-                     inertiafromgeom inertiagrouprange fitaabb strippath alignfree",
+                     inertiafromgeom inertiagrouprange fitaabb strippath alignfree conflict",
         unused_attributes: &[
             ("texturedir", APPEARANCE),
             ("discardvisual", "appearance and collision geometry are read as written"),
             ("fusestatic", "links without joints stay links: the dynamics are the same"),
-            ("usethread saveinertial conflict", SIMULATOR),
+            ("usethread saveinertial", SIMULATOR),
         ],
         tags: "",
         unused_tags: &[("lengthrange", SIMULATOR)],
@@ -106,9 +107,9 @@ const ROWS: &[Row] = &[
     Row {
         name: "flag",
         within: "option",
-        attributes: "gravity constraint equality clampctrl actuation",
+        attributes: "gravity constraint equality frictionloss limit contact spring damper clampctrl actuation",
         unused_attributes: &[(
-            "frictionloss limit contact spring damper warmstart filterparent refsafe sensor midphase eulerdamp autoreset nativeccd \
+            "warmstart filterparent refsafe sensor midphase eulerdamp autoreset nativeccd \
              island multiccd override energy fwdinv invdiscrete sleep diagexact ipc speculative",
             "what acts on the robot is given by the scene",
         )],
@@ -132,8 +133,16 @@ const ROWS: &[Row] = &[
         within: "mujoco",
         attributes: "",
         unused_attributes: &[],
-        tags: "mesh model",
-        unused_tags: &[("texture material skin", APPEARANCE), ("hfield", "height fields are not read: they have no mass")],
+        tags: "mesh model hfield",
+        unused_tags: &[("texture material skin", APPEARANCE)],
+    },
+    Row {
+        name: "hfield",
+        within: "asset",
+        attributes: "name file size",
+        unused_attributes: &[("content_type nrow ncol elevation", HEIGHTS)],
+        tags: "",
+        unused_tags: &[],
     },
     Row {
         name: "mesh",
@@ -205,11 +214,10 @@ const ROWS: &[Row] = &[
         name: "geom",
         within: IN_BODIES,
         attributes: "name class type contype conaffinity group size mass density shellinertia fromto pos quat axisangle xyaxes zaxis euler \
-                     mesh fitscale rgba",
+                     mesh hfield fitscale rgba",
         unused_attributes: &[
             ("condim priority friction solmix solref solimp margin gap surfacevel adhesion", CONTACT),
             ("material", APPEARANCE),
-            ("hfield", "height fields are not read: they have no mass"),
             ("fluidshape fluidcoef", FLUID),
             ("user", USER),
         ],

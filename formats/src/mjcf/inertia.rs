@@ -3,14 +3,90 @@
 use articulated_core::description::{Inertial, PrincipalMoments};
 use articulated_core::diagnostic::{Code, Diagnostics};
 
-use super::bodies::Body;
+use super::axes;
+use super::bodies::{Body, Explicit};
 use super::grammar::subject;
 use super::mesh::Meshes;
 use super::settings::{Compiler, InertiaFromGeom};
-use crate::pose::{Pose, Symmetric, add, diagonal, of_point, principal, scale, subtract, turned};
+use crate::pose::{IDENTITY, Pose, Quaternion, Symmetric, add, diagonal, of_point, scale, subtract, turned};
 
-/// The mass of a body, its centre and its inertia, bounds included; `None` for a body without.
-pub(crate) fn of_body(body: &Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Option<Inertial> {
+/// MuJoCo refuses bodies that move and have less mass, kg, or moments of inertia, kg·m².
+const LEAST: f64 = 1e-15;
+
+/// The mass of a body, with its centre and its inertia about it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Own {
+    pub(crate) pose: Pose,
+    pub(crate) mass: f64,
+    /// In the axes of the pose.
+    pub(crate) inertia: Symmetric,
+    /// The rotation from the pose to the principal axes, where it is not that of the inertia.
+    pub(crate) axes: Option<Quaternion>,
+}
+
+impl Own {
+    /// As a description has it.
+    pub(crate) fn inertial(&self) -> Inertial {
+        Inertial { origin: self.pose.origin(), mass: self.mass, inertia: self.inertia }
+    }
+
+    /// Whether MuJoCo accepts it for a body that moves.
+    fn can_move(&self) -> bool {
+        let (moments, _) = axes::principal(self.inertia);
+        self.mass >= LEAST && moments.iter().all(|moment| *moment >= LEAST)
+    }
+}
+
+/// The masses of all bodies; `None` for bodies without.
+pub(crate) fn of_bodies(bodies: &[Body<'_>], meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Vec<Option<Own>> {
+    let mut all: Vec<Option<Own>> = Vec::with_capacity(bodies.len());
+    // Without its inertia
+    let mut points: Vec<Option<&Explicit<'_>>> = vec![None; bodies.len()];
+    all.push(None);
+    for (body, point) in bodies.iter().zip(&mut points).skip(1) {
+        let (own, given) = of_body(body, meshes, log);
+        *point = given.filter(|given| !given.has_inertia);
+        all.push(own);
+    }
+    refuse_points(bodies, &all, &points, log);
+    set_total_mass(bodies, &mut all);
+    all
+}
+
+/// Refuses masses without inertia of what moves as one, unless another body of it has inertia.
+fn refuse_points(bodies: &[Body<'_>], all: &[Option<Own>], points: &[Option<&Explicit<'_>>], log: &mut Diagnostics) {
+    // The body with joints that carries each body; the world carries the rest
+    let mut carriers = vec![0; bodies.len()];
+    let mut can_move = vec![false; bodies.len()];
+    for (index, body) in bodies.iter().enumerate().skip(1) {
+        carriers[index] = if body.joints.is_empty() { carriers[body.parent] } else { index };
+        can_move[carriers[index]] |= all[index].is_some_and(|own| own.can_move());
+    }
+    for (point, carrier) in points.iter().zip(carriers) {
+        if let Some(given) = point.filter(|_| carrier != 0 && !can_move[carrier]) {
+            let expected = "diaginertia or fullinertia: MuJoCo refuses a body that moves and has no inertia";
+            given.element.error((&subject(given.element), "inertial"), Code::MissingAttribute, "a mass without inertia", expected, log);
+        }
+    }
+}
+
+/// Scales all masses so that they are the `settotalmass` of the main file.
+fn set_total_mass(bodies: &[Body<'_>], all: &mut [Option<Own>]) {
+    let Some(wanted) = bodies.first().and_then(|world| world.settings.compiler.total_mass) else { return };
+    let total: f64 = all.iter().flatten().map(|own| own.mass).sum();
+    if total <= 0.0 {
+        return;
+    }
+    let factor = wanted / total;
+    for own in all.iter_mut().flatten() {
+        own.mass *= factor;
+        own.inertia = own.inertia.map(|moment| moment * factor);
+    }
+}
+
+/// The mass of a body, bounds included, and the `<inertial>` that gives it; `None` for a body
+/// without.
+fn of_body<'b>(body: &'b Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> (Option<Own>, Option<&'b Explicit<'b>>) {
     let compiler = &body.settings.compiler;
     let from_geoms = match compiler.inertia_from_geom {
         InertiaFromGeom::Never => false,
@@ -18,25 +94,24 @@ pub(crate) fn of_body(body: &Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagno
         InertiaFromGeom::Auto => body.inertial.is_none(),
     };
     let geoms = if from_geoms { of_geoms(body, meshes, log) } else { None };
-    let found = geoms.or_else(|| body.inertial.map(|given| (given.pose, given.mass, given.inertia)));
-    let (pose, mass, inertia) = found.unwrap_or_default();
-    let mass_of_file = mass;
-    let mass = mass.max(compiler.bound_mass);
-    let (pose, inertia) = bounded(body, compiler, pose, inertia, log);
-    if mass_of_file < 0.0 {
-        let found = format!("a negative mass, {mass_of_file} kg");
+    let given = body.inertial.as_ref().filter(|_| geoms.is_none());
+    let found = geoms.or_else(|| given.map(|given| given.own)).unwrap_or_default();
+    let mass = found.mass.max(compiler.bound_mass);
+    let own = Own { mass, ..bounded(body, compiler, found, log) };
+    if found.mass < 0.0 {
+        let found = format!("a negative mass, {} kg", found.mass);
         body.element.error((&subject(body.element), "mass"), Code::NegativeMass, found, "a mass of zero or more", log);
     }
-    (mass != 0.0 || inertia != [0.0; 6]).then_some(Inertial { origin: pose.origin(), mass, inertia })
+    ((own.mass != 0.0 || own.inertia != [0.0; 6]).then_some(own), given)
 }
 
 /// The masses of all geoms of the groups that count, as one.
-fn of_geoms(body: &Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Option<(Pose, f64, Symmetric)> {
+fn of_geoms(body: &Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Option<Own> {
     let [first, last] = body.settings.compiler.groups;
     let counted = body.geoms.iter().filter(|geom| (first..=last).contains(&geom.group));
     let masses: Vec<_> = counted.filter_map(|geom| geom.mass(meshes, log)).collect();
     if let [only] = masses.as_slice() {
-        return Some((only.pose, only.mass, only.inertia));
+        return Some(*only);
     }
     let mass: f64 = masses.iter().map(|part| part.mass).sum();
     if masses.is_empty() {
@@ -50,27 +125,29 @@ fn of_geoms(body: &Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> 
         let shifted = of_point(part.mass, subtract(part.pose.position, center));
         inertia.iter_mut().zip(own.iter().zip(shifted)).for_each(|(sum, (own, shifted))| *sum += own + shifted);
     }
-    Some((Pose::at(center), mass, inertia))
+    Some(Own { pose: Pose::at(center), mass, inertia, axes: None })
 }
 
 /// The inertia with `boundinertia` and `balanceinertia`, and what is wrong with it.
-fn bounded(body: &Body<'_>, compiler: &Compiler, pose: Pose, inertia: Symmetric, log: &mut Diagnostics) -> (Pose, Symmetric) {
+fn bounded(body: &Body<'_>, compiler: &Compiler, own: Own, log: &mut Diagnostics) -> Own {
+    let Own { pose, inertia, .. } = own;
     let is_diagonal = inertia[1] == 0.0 && inertia[2] == 0.0 && inertia[4] == 0.0;
     let (mut moments, axes) = if is_diagonal {
         ([inertia[0], inertia[3], inertia[5]], pose)
     } else {
-        let (moments, rotation) = principal(inertia);
+        let (moments, rotation) = axes::principal(inertia);
         (moments, pose.then(&Pose { rotation, ..Pose::default() }))
     };
     let before = moments;
     moments = moments.map(|moment| moment.max(compiler.bound_inertia));
+    let balanced = |moments| Own { pose: axes, inertia: balanced(compiler, moments), axes: Some(IDENTITY), ..own };
     if moments != before && compiler.bound_inertia > 0.0 {
-        return balanced(compiler, axes, moments);
+        return balanced(moments);
     }
     let found = PrincipalMoments::of(inertia);
     let [a, b, c] = before;
     if compiler.balance_inertia && (a + b < c || a + c < b || b + c < a) {
-        return balanced(compiler, axes, before);
+        return balanced(before);
     }
     let subject = subject(body.element);
     if found.are_negative() {
@@ -80,11 +157,10 @@ fn bounded(body: &Body<'_>, compiler: &Compiler, pose: Pose, inertia: Symmetric,
         let expected = format!("{}; `balanceinertia` of <compiler> replaces such an inertia", PrincipalMoments::TRIANGLE);
         body.element.error((&subject, "inertial"), Code::InertiaTriangle, found.to_string(), expected, log);
     }
-    (pose, inertia)
+    own
 }
 
-fn balanced(compiler: &Compiler, axes: Pose, [a, b, c]: [f64; 3]) -> (Pose, Symmetric) {
+fn balanced(compiler: &Compiler, [a, b, c]: [f64; 3]) -> Symmetric {
     let is_unbalanced = a + b < c || a + c < b || b + c < a;
-    let moments = if compiler.balance_inertia && is_unbalanced { [(a + b + c) / 3.0; 3] } else { [a, b, c] };
-    (axes, diagonal(moments))
+    diagonal(if compiler.balance_inertia && is_unbalanced { [(a + b + c) / 3.0; 3] } else { [a, b, c] })
 }

@@ -7,8 +7,7 @@ use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
 use super::bodies::{self, Body, Kind, at_reference};
 use super::grammar::subject;
-use super::inertia;
-use super::mesh::Meshes;
+use super::inertia::Own;
 use crate::Options;
 use crate::pose::{Pose, scale, subtract};
 use crate::reading::HELD;
@@ -27,8 +26,8 @@ pub(crate) struct Lowered {
     pub(crate) masks: BTreeMap<String, Vec<ContactMask>>,
 }
 
-/// The description of all bodies; `None` where an error leaves no sense in it.
-pub(crate) fn lower(name: &str, bodies: &[Body<'_>], meshes: &mut Meshes<'_>, options: &Options, log: &mut Diagnostics) -> Option<Lowered> {
+/// The description of all bodies with their masses.
+pub(crate) fn lower(name: &str, bodies: &[Body<'_>], inertials: &[Option<Own>], options: &Options, log: &mut Diagnostics) -> Lowered {
     let mut lower = Lower {
         description: Description { name: name.to_owned(), ..Description::default() },
         links: Taken::with(WORLD),
@@ -39,36 +38,18 @@ pub(crate) fn lower(name: &str, bodies: &[Body<'_>], meshes: &mut Meshes<'_>, op
         masks: BTreeMap::new(),
     };
     lower.reserve(bodies, log);
-    let mut inertials: Vec<Option<Inertial>> = Vec::with_capacity(bodies.len());
-    inertials.push(None);
-    inertials.extend(bodies.iter().skip(1).map(|body| inertia::of_body(body, meshes, log)));
-    set_total_mass(bodies, &mut inertials);
-    for (index, (body, inertial)) in bodies.iter().zip(inertials).enumerate() {
+    for (index, (body, own)) in bodies.iter().zip(inertials).enumerate() {
         if index == 0 {
             lower.description.links.push(Link { name: WORLD.to_owned(), ..Link::default() });
             lower.link_of.push(0);
             lower.is_fixed.push(true);
         } else {
-            lower.body(index, body, inertial, options, log);
+            lower.body(index, body, own.as_ref().map(Own::inertial), options, log);
         }
         lower.content(index, body);
     }
     lower.sites(bodies, log);
-    Some(Lowered { description: lower.description, joints: lower.names, masks: lower.masks })
-}
-
-/// Scales all masses so that they are the `settotalmass` of the main file.
-fn set_total_mass(bodies: &[Body<'_>], inertials: &mut [Option<Inertial>]) {
-    let Some(wanted) = bodies.first().and_then(|world| world.settings.compiler.total_mass) else { return };
-    let total: f64 = inertials.iter().flatten().map(|inertial| inertial.mass).sum();
-    if total <= 0.0 {
-        return;
-    }
-    let factor = wanted / total;
-    for inertial in inertials.iter_mut().flatten() {
-        inertial.mass *= factor;
-        inertial.inertia = inertial.inertia.map(|moment| moment * factor);
-    }
+    Lowered { description: lower.description, joints: lower.names, masks: lower.masks }
 }
 
 struct Lower {
@@ -164,11 +145,6 @@ impl Lower {
         if body.parent != 0 || body.joints.len() > 1 {
             let found = if body.parent == 0 { "a free joint beside others" } else { "a free joint inside a moving body" };
             joint.element.error((&subject, "type"), Code::Misplaced, found, "it alone, in a body directly inside the world", log);
-        }
-        let align = joint.element.text("align");
-        if align == Some("true") || (align != Some("false") && body.settings.compiler.align_free) {
-            let why = "the coordinates are those of the body's frame, not of its inertia";
-            joint.element.unused(&subject, joint.element.attribute("align"), why, log);
         }
         let name = joint.name.clone().unwrap_or_else(|| self.joints.free(format!("{}_free", link.name)));
         // One beside others is an error.

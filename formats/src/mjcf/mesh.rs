@@ -10,18 +10,21 @@ use std::rc::Rc;
 
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
+use super::axes;
 use super::element::Element;
 use super::hull::hull;
 use super::settings::Settings;
 use super::values::Values;
 use crate::Sources;
-use crate::pose::{Quaternion, Symmetric, Vector, add, conjugate, cross, dot, norm, principal, rotate, scale, subtract};
+use crate::pose::{Quaternion, Symmetric, Vector, add, conjugate, cross, dot, norm, rotate, scale, subtract};
 
 /// Vertices that are read have coordinates of single precision, as in MuJoCo.
 #[derive(Debug, Default)]
 struct Triangles {
     vertices: Vec<Vector>,
     faces: Vec<[u32; 3]>,
+    /// Whether the file has more faces, of other objects.
+    has_others: bool,
 }
 
 /// How a mesh becomes a body.
@@ -60,7 +63,7 @@ pub(crate) struct Principal {
 
 impl Body {
     pub(crate) fn principal(&self) -> Principal {
-        let ([a, b, c], axes) = principal(self.inertia);
+        let ([a, b, c], axes) = axes::principal_of_mesh(self.inertia);
         let side = |two: f64, one: f64| 0.5 * (6.0 * (two - one).max(0.0) / self.volume).sqrt();
         let back = conjugate(axes);
         let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
@@ -141,7 +144,14 @@ impl<'a> Meshes<'a> {
             Some(file) => {
                 let (bytes, path) = self.file(element, file, settings, log)?;
                 match parse(&bytes, &path, element.text("content_type").unwrap_or_default()) {
-                    Ok(triangles) => triangles,
+                    Ok(triangles) => {
+                        if triangles.has_others {
+                            let found = format!("{}: an OBJ of several objects or groups", quote(file));
+                            let expected = "one object: the first one alone gives the mass, as in MuJoCo";
+                            element.warning((&values.subject, "file"), Code::LostDynamics, found, expected, log);
+                        }
+                        triangles
+                    }
                     Err(found) => {
                         let expected = "a binary STL, an OBJ or an MSH with faces of vertices that exist";
                         values.error("file", Code::File, format!("{}: {found}", quote(file)), expected, log);
@@ -245,17 +255,22 @@ fn msh(bytes: &[u8]) -> Option<Triangles> {
     Some(Triangles {
         vertices: numbers.chunks_exact(3).map(|v| [v[0], v[1], v[2]]).collect(),
         faces: indices.chunks_exact(3).map(|f| [f[0], f[1], f[2]]).collect(),
+        has_others: false,
     })
 }
 
-/// The lines `v` and `f`.
+/// The lines `v` and `f`; of several objects (`o`) or groups (`g`) the faces of the first that has
+/// any, as MuJoCo reads them.
 fn obj(bytes: &[u8]) -> Option<Triangles> {
     let text = String::from_utf8_lossy(bytes);
     let mut triangles = Triangles::default();
-    let mut polygon = Vec::new();
+    let (mut polygon, mut is_over) = (Vec::new(), false);
     for line in text.lines() {
         let mut words = line.split_ascii_whitespace();
+        let has_more = line.trim_start().len() > 1;
         match words.next() {
+            Some("o" | "g") if has_more => is_over = !triangles.faces.is_empty(),
+            Some("f") if is_over => triangles.has_others = true,
             Some("v") => {
                 let mut next = || words.next()?.parse::<f32>().ok().map(f64::from);
                 triangles.vertices.push([next()?, next()?, next()?]);
@@ -292,7 +307,7 @@ fn split(polygon: &[u32], into: &mut Triangles) -> Option<()> {
 /// Volume, centre and inertia of what the faces enclose, or of the faces.
 fn body(triangles: Triangles, mode: Mode) -> Option<Body> {
     const LEAST: f64 = 1e-15;
-    let Triangles { vertices, faces } = triangles;
+    let Triangles { vertices, faces, .. } = triangles;
     let corners = |face: &[u32; 3]| face.map(|k| vertices[k as usize]);
     let middle = |[a, b, c]: [Vector; 3]| scale(add(add(a, b), c), 1.0 / 3.0);
     // Twice the area, along the normal.

@@ -14,7 +14,9 @@
 //!   `pos` says.
 //! * A site is a frame. Names that the file leaves out are made: `body_3`, `arm_hinge`.
 //! * Masses are those of `<inertial>` or of the geoms, as `<compiler>` says.
-//! * Limits, damping, friction, armature and springs of joints are kept in the description.
+//! * Limits, damping, friction, armature and springs of joints are kept in the description, unless
+//!   a flag of `<option>` turns them off.
+//! * The frame of a free body without children is that of its inertia, where `align` says so.
 //! * Gravity, step, integrator, states, actuators, springs of tendons, equations of joints and
 //!   planes become a [`World`](crate::world::World).
 //!
@@ -22,6 +24,8 @@
 //! error.
 
 mod actuators;
+mod align;
+mod axes;
 mod bodies;
 mod documents;
 mod element;
@@ -30,11 +34,13 @@ mod geometry;
 mod grammar;
 mod hull;
 mod inertia;
+mod left_out;
 mod lower;
 mod mesh;
 mod reflected;
 mod scope;
 mod settings;
+mod simulation;
 mod states;
 mod tendons;
 mod values;
@@ -75,10 +81,14 @@ impl Format for Mjcf {
         input.options.warn_of_arguments(&BTreeSet::new(), diagnostics);
         let documents = documents::Documents::read(input, diagnostics)?;
         let name = documents.root(0).text("model").filter(|name| !name.trim().is_empty()).unwrap_or("robot");
-        let tree = bodies::tree(&documents, diagnostics);
+        let simulation = simulation::Simulation::of(&documents, diagnostics);
+        let rules = (simulation.flags(), simulation.gravity() == Some([0.0; 3]));
+        let mut tree = bodies::tree(&documents, rules, &input.options.leave_out, diagnostics);
         let mut meshes = mesh::Meshes::new(input.sources);
-        let mut lowered = lower::lower(name, &tree.bodies, &mut meshes, input.options, diagnostics)?;
-        let world = world::world(&documents, &tree, &mut lowered, diagnostics);
+        let mut inertials = inertia::of_bodies(&tree.bodies, &mut meshes, diagnostics);
+        align::align(&mut tree.bodies, &mut inertials);
+        let mut lowered = lower::lower(name, &tree.bodies, &inertials, input.options, diagnostics);
+        let world = world::world(&documents, &tree, &simulation, &mut lowered, diagnostics);
         Some(Document { description: lowered.description, world })
     }
 }

@@ -8,6 +8,7 @@ use articulated_core::model::Model;
 use super::bodies::Kind;
 use super::lower::KEPT;
 use super::scope::{Known, Scope, freedoms, reference};
+use super::simulation::Flags;
 
 /// Joints by their indices, with lengths for a unit of each rate.
 pub(crate) type Drives = Vec<(usize, Vec<f64>)>;
@@ -16,6 +17,30 @@ pub(crate) type Drives = Vec<(usize, Vec<f64>)>;
 const MOST: usize = 1000;
 /// More products are not computed.
 const MOST_PRODUCTS: usize = 2_000_000_000;
+
+/// Why no mass is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Unknown {
+    /// The file has mistakes.
+    Mistakes,
+    /// An armature is on a length that is not read.
+    Armature,
+    /// The robot has very many degrees of freedom.
+    Size,
+    /// The mass matrix is singular.
+    Singular,
+}
+
+impl Unknown {
+    /// What is said of something that needs the mass.
+    pub(crate) fn found(self, what: &str) -> String {
+        match self {
+            Self::Armature => format!("{what} beside a spatial tendon with armature"),
+            Self::Size => format!("{what} in a robot of very many degrees of freedom"),
+            Self::Mistakes | Self::Singular => format!("{what} in a robot whose mass matrix is singular"),
+        }
+    }
+}
 
 /// The mass matrix at the reference state, with armature, as L·Lᵀ.
 pub(crate) struct Inertia {
@@ -27,17 +52,30 @@ pub(crate) struct Inertia {
 }
 
 impl Inertia {
-    /// For so many actuators. `armatures`: each with the lengths that it is on. `None` if the
-    /// matrix is not positive definite or very large, or where an armature is on an unknown length.
-    pub(crate) fn at_reference(count: usize, description: &Description, scope: &Scope<'_>, armatures: &[(f64, Drives)]) -> Option<Self> {
+    /// For so many actuators. `armatures`: each with the lengths that it is on.
+    pub(crate) fn at_reference(
+        count: usize,
+        description: &Description,
+        scope: &Scope<'_>,
+        armatures: &[(f64, Drives)],
+        log: &Diagnostics,
+    ) -> Result<Self, Unknown> {
+        if !log.is_ok() {
+            return Err(Unknown::Mistakes);
+        }
         if armatures.iter().any(|(armature, drives)| *armature != 0.0 && drives.is_empty()) {
-            return None;
+            return Err(Unknown::Armature);
         }
-        let model: Model<f64> = Model::new(description, Base::Fixed).ok()?;
-        let (n, mut q) = (model.nv(), vec![0.0; model.nq()]);
+        let model: Model<f64> = Model::new(description, Base::Fixed).map_err(|_| Unknown::Mistakes)?;
+        let n = model.nv();
         if n > MOST || n * n * (n + count) > MOST_PRODUCTS {
-            return None;
+            return Err(Unknown::Size);
         }
+        Self::of(&model, scope, armatures).ok_or(Unknown::Singular)
+    }
+
+    fn of(model: &Model<f64>, scope: &Scope<'_>, armatures: &[(f64, Drives)]) -> Option<Self> {
+        let (n, mut q) = (model.nv(), vec![0.0; model.nq()]);
         let mut starts = Vec::with_capacity(scope.joints.len());
         for known in &scope.joints {
             let own = model.joints().iter().find(|joint| joint.name == known.name)?;
@@ -47,14 +85,19 @@ impl Inertia {
         }
         let row = function::<f64>("mass_matrix")?;
         let mut matrix = vec![0.0; row.len(model.shape())];
-        row.call(&model, &mut Workspace::new(&model), &[&q], &mut matrix).ok()?;
+        row.call(model, &mut Workspace::new(model), &[&q], &mut matrix).ok()?;
         for (known, start) in scope.joints.iter().zip(&starts) {
             (*start..start + freedoms(known.joint.kind)).for_each(|k| matrix[k * n + k] += known.joint.armature);
         }
         for (armature, drives) in armatures.iter().filter(|(armature, _)| *armature != 0.0) {
-            let row = entries(drives, &starts);
-            for (i, a) in &row {
-                row.iter().for_each(|(j, b)| matrix[i * n + j] += armature * a * b);
+            for (one, own) in drives {
+                // MuJoCo's matrix has no entries for joints of different branches.
+                for (other, others) in drives.iter().filter(|(other, _)| is_one_branch(scope, *one, *other)) {
+                    let entry = |k: usize, l: usize| (starts[*one] + k) * n + starts[*other] + l;
+                    for (k, a) in own.iter().enumerate() {
+                        others.iter().enumerate().for_each(|(l, b)| matrix[entry(k, l)] += armature * a * b);
+                    }
+                }
             }
         }
         Some(Self { size: n, factor: cholesky(matrix, n)?, starts })
@@ -75,37 +118,71 @@ impl Inertia {
     }
 }
 
+/// Whether one of two joints carries the other.
+fn is_one_branch(scope: &Scope<'_>, one: usize, other: usize) -> bool {
+    let [one, other] = [one, other].map(|joint| scope.joints[joint].body);
+    let (upper, mut body) = (one.min(other), one.max(other));
+    // Parents come first.
+    while body > upper {
+        body = scope.tree.bodies[body].parent;
+    }
+    body == upper
+}
+
 /// Gives joints the stiffness and the damping of `springdamper`: k = m/(T ζ)² and d = 2 m/T, with
 /// the mass m of the joint at the reference state, the time constant T and the ratio ζ.
-pub(crate) fn spring_dampers(scope: &Scope<'_>, description: &mut Description, armatures: &[(f64, Drives)], log: &mut Diagnostics) {
+pub(crate) fn spring_dampers(
+    scope: &Scope<'_>,
+    flags: Flags,
+    description: &mut Description,
+    armatures: &[(f64, Drives)],
+    log: &mut Diagnostics,
+) {
     let has_one = |(_, known): &(usize, &Known<'_>)| known.joint.spring_damper.iter().all(|x| *x > 0.0);
     let all: Vec<usize> = scope.joints.iter().enumerate().filter(has_one).map(|(index, _)| index).collect();
-    if all.is_empty() {
+    if all.is_empty() || flags.no_passive_force() {
         return;
     }
-    let inertia = if log.is_ok() { Inertia::at_reference(3 * all.len(), description, scope, armatures) } else { None };
+    let inertia = Inertia::at_reference(3 * all.len(), description, scope, armatures, log);
     for index in all {
         let Known { joint, name, .. } = scope.joints[index];
         let count = freedoms(joint.kind);
         let along = |k: usize| (0..count).map(|i| f64::from(u8::from(i == k))).collect();
         // 1/m is the mean of the diagonal of M⁻¹
-        let mass = inertia.as_ref().filter(|_| joint.kind != Kind::Free).and_then(|inertia| {
+        let mass = inertia.as_ref().map_err(|why| *why).and_then(|inertia| {
             let inverse: Option<f64> = (0..count).map(|k| Some(1.0 / inertia.reflected(&vec![(index, along(k))])?)).sum();
-            Some(count as f64 / inverse?)
+            Ok(count as f64 / inverse.ok_or(Unknown::Singular)?)
         });
         let about = Subject::Joint(name.to_owned());
-        let (Some(mass), Some(own)) = (mass, description.joint(name)) else {
-            let expected = "a hinge, slide or ball of a robot whose mass matrix is regular: else it is not used";
-            joint.element.warning((&about, "springdamper"), Code::LostDynamics, "a springdamper", expected, log);
-            continue;
+        let found = match mass {
+            _ if joint.kind == Kind::Free => Err("a springdamper of a free joint".to_owned()),
+            Ok(mass) => Ok(mass),
+            // What the mistakes are is reported.
+            Err(Unknown::Mistakes) => continue,
+            Err(why) => Err(why.found("a springdamper")),
+        };
+        let (mass, own) = match (found, description.joint(name)) {
+            (Ok(mass), Some(own)) => (mass, own),
+            (Ok(_), None) => continue,
+            (Err(found), _) => {
+                let expected = "a hinge, slide or ball that moves a known mass: else it is not used";
+                joint.element.warning((&about, "springdamper"), Code::LostDynamics, found, expected, log);
+                continue;
+            }
         };
         let [time, ratio] = joint.spring_damper;
         let dynamics = &mut description.joints[own].dynamics;
-        (dynamics.stiffness, dynamics.damping) = (Some(mass / (time * ratio).powi(2)), Some(2.0 * mass / time));
-        if joint.kind != Kind::Ball {
-            dynamics.rest = Some(joint.rest);
+        if !flags.no_damper {
+            dynamics.damping = Some(2.0 * mass / time);
         }
-        for tag in ["joint stiffness", "dynamics damping"] {
+        if !flags.no_spring {
+            dynamics.stiffness = Some(mass / (time * ratio).powi(2));
+            if joint.kind != Kind::Ball {
+                dynamics.rest = Some(joint.rest);
+            }
+        }
+        let tags = [("joint stiffness", flags.no_spring), ("dynamics damping", flags.no_damper)];
+        for (tag, _) in tags.into_iter().filter(|(_, is_off)| !is_off) {
             joint.element.unused_part(&about, (joint.element.attribute("springdamper"), tag.to_owned()), KEPT, log);
         }
     }

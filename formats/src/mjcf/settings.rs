@@ -1,4 +1,4 @@
-//! The sections `<compiler>`, `<option>`, `<default>` and `<asset>` of one document.
+//! The sections `<compiler>`, `<default>` and `<asset>` of one document.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -190,8 +190,9 @@ pub(crate) struct Settings<'a> {
     pub(crate) folder: PathBuf,
     pub(crate) compiler: Compiler,
     pub(crate) classes: Classes<'a>,
-    /// Meshes by their names.
+    /// Meshes and height fields by their names.
     pub(crate) meshes: BTreeMap<String, &'a Element>,
+    pub(crate) height_fields: BTreeMap<String, &'a Element>,
     /// Other documents by their names.
     pub(crate) models: BTreeMap<String, &'a Element>,
     /// What is in the sections of these names.
@@ -206,11 +207,12 @@ impl<'a> Settings<'a> {
         let folder = Path::new(&root.file.name).parent().map(Path::to_owned).unwrap_or_default();
         let compiler = Compiler::of(root, log);
         let classes = Classes::of(root, log);
-        let (mut meshes, mut models, mut seen) = (BTreeMap::new(), BTreeMap::new(), BTreeSet::new());
+        let (mut meshes, mut models, mut height_fields, mut seen) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new(), BTreeSet::new());
         for asset in root.all("asset").flat_map(|section| &section.children) {
             let (list, what) = match asset.name.as_str() {
                 "mesh" => (&mut meshes, "mesh"),
                 "model" => (&mut models, "model"),
+                "hfield" => (&mut height_fields, "hfield"),
                 _ => continue,
             };
             let name = asset.text("name").map_or_else(|| stem(asset.text("file").unwrap_or_default()), str::to_owned);
@@ -225,7 +227,7 @@ impl<'a> Settings<'a> {
         }
         let section = |name| root.all(name).flat_map(|section| &section.children).collect();
         let [tendons, actuators, equations, keyframes] = ["tendon", "actuator", "equality", "keyframe"].map(section);
-        Self { folder, compiler, classes, meshes, models, tendons, actuators, equations, keyframes }
+        Self { folder, compiler, classes, meshes, height_fields, models, tendons, actuators, equations, keyframes }
     }
 }
 
@@ -233,65 +235,4 @@ impl<'a> Settings<'a> {
 fn stem(file: &str) -> String {
     let name = file.rsplit(['/', '\\']).next().unwrap_or_default();
     name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_owned()
-}
-
-/// What `<option>` says of a simulation.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Simulation {
-    /// m/s².
-    pub(crate) gravity: Option<[f64; 3]>,
-    /// s.
-    pub(crate) step: Option<f64>,
-    pub(crate) integrator: Option<String>,
-    /// Groups of actuators that give no force.
-    pub(crate) disabled_groups: Vec<i64>,
-    /// Whether actuators give no force.
-    pub(crate) no_actuation: bool,
-    /// Whether controls go beyond their bounds.
-    pub(crate) no_clamp: bool,
-    /// Whether no equation is kept.
-    pub(crate) no_equality: bool,
-}
-
-impl Simulation {
-    /// Of the main document. A medium is a warning.
-    pub(crate) fn of(root: &Element, log: &mut Diagnostics) -> Self {
-        let mut all = Self::default();
-        let (mut is_weightless, mut no_constraint) = (false, false);
-        for section in root.all("option") {
-            let values = Values::alone(section, &Subject::Document);
-            all.gravity = values.exactly("gravity", log).or(all.gravity);
-            if let Some(step) = values.number("timestep", log) {
-                if step <= 0.0 {
-                    values.error("timestep", Code::Number, format!("{step}"), "a time step above zero, s", log);
-                }
-                all.step = Some(step);
-            }
-            let words = ["Euler", "RK4", "implicit", "implicitfast", "discrete"].map(|word| (word, word));
-            all.integrator = values.word("integrator", &words, log).map(str::to_owned).or(all.integrator);
-            all.disabled_groups.extend(values.list("actuatorgroupdisable", log).unwrap_or_default().iter().map(|group| *group as i64));
-            for name in ["density", "viscosity"] {
-                if values.number(name, log).is_some_and(|number| number != 0.0) {
-                    let expected = "effects of the scene, as `drag` and `buoyancy`: the forces of the medium are not read";
-                    section.warning((&Subject::Document, name), Code::LostDynamics, "a medium", expected, log);
-                }
-            }
-            for flag in section.all("flag") {
-                let flags = Values::alone(flag, &Subject::Document);
-                let mut disables = |name: &str, into: &mut bool| {
-                    *into = flags.word(name, &[("disable", true), ("enable", false)], log).unwrap_or(*into);
-                };
-                disables("gravity", &mut is_weightless);
-                disables("actuation", &mut all.no_actuation);
-                disables("clampctrl", &mut all.no_clamp);
-                disables("equality", &mut all.no_equality);
-                disables("constraint", &mut no_constraint);
-            }
-        }
-        all.no_equality |= no_constraint;
-        if is_weightless {
-            all.gravity = Some([0.0; 3]);
-        }
-        all
-    }
 }

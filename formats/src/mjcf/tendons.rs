@@ -6,6 +6,7 @@ use super::bodies::Kind;
 use super::element::Element;
 use super::scope::{References, Scope, Sort};
 use super::settings::Settings;
+use super::simulation::Flags;
 use super::values::Values;
 use crate::world::Actuator;
 
@@ -24,7 +25,7 @@ const LIMITED: &str = "forces of the spring and the damper alone: its limits do 
 const ONE: &str = "one coefficient: the others are not used";
 
 /// All tendons. Their springs and dampers become `passive`.
-pub(crate) fn tendons(scope: &mut Scope<'_>, passive: &mut Vec<Actuator>, log: &mut Diagnostics) -> Vec<Tendon> {
+pub(crate) fn tendons(scope: &mut Scope<'_>, flags: Flags, passive: &mut Vec<Actuator>, log: &mut Diagnostics) -> Vec<Tendon> {
     let mut all = Vec::new();
     for index in 0..scope.tree.parts.len() {
         if scope.is_full() {
@@ -36,7 +37,7 @@ pub(crate) fn tendons(scope: &mut Scope<'_>, passive: &mut Vec<Actuator>, log: &
             let Some(found) = scope.resolve(index, element, &references, log) else { continue };
             let class = part.settings.classes.find(element, "class", log).unwrap_or(0);
             let values = Values::new(element, part.settings.classes.tags(class, "tendon"), &Subject::Document);
-            let own = Own::of(&values, &part.settings, log);
+            let own = Own::of(&values, &part.settings, log).with(flags);
             let full = scope.full(index, element);
             scope.add(Sort::Tendon, element, full.as_ref(), (all.len(), index));
             let name = full.unwrap_or_else(|| format!("tendon_{}", all.len()));
@@ -82,7 +83,9 @@ struct Own<'a> {
     armature: f64,
     friction: f64,
     yields: bool,
-    has_higher_terms: bool,
+    /// The coefficients of higher degree.
+    higher_stiffness: [f64; 2],
+    higher_damping: [f64; 2],
 }
 
 impl<'a> Own<'a> {
@@ -119,8 +122,28 @@ impl<'a> Own<'a> {
             armature: number("armature", log),
             friction: number("frictionloss", log),
             yields: number("springyield", log) > 0.0,
-            has_higher_terms: [k2, k3, d2, d3] != [0.0; 4],
+            higher_stiffness: [k2, k3],
+            higher_damping: [d2, d3],
         }
+    }
+
+    /// Without what the flags turn off.
+    fn with(mut self, flags: Flags) -> Self {
+        if flags.no_spring {
+            (self.stiffness, self.higher_stiffness, self.yields) = (0.0, [0.0; 2], false);
+        }
+        if flags.no_damper {
+            (self.damping, self.higher_damping) = (0.0, [0.0; 2]);
+        }
+        if flags.no_friction {
+            self.friction = 0.0;
+        }
+        self.is_limited &= !flags.no_limit;
+        self
+    }
+
+    fn has_higher_terms(&self) -> bool {
+        self.higher_stiffness != [0.0; 2] || self.higher_damping != [0.0; 2]
     }
 
     /// The joints of these indices with their factors; none where it is no sum of coordinates.
@@ -152,7 +175,7 @@ impl<'a> Own<'a> {
     /// one pushes where l < l₁.
     fn force(&self, tendon: &Tendon, scope: &mut Scope<'_>, passive: &mut Vec<Actuator>, log: &mut Diagnostics) {
         let element = self.element;
-        let has_force = [self.stiffness, self.damping, self.friction, self.armature] != [0.0; 4] || self.has_higher_terms;
+        let has_force = [self.stiffness, self.damping, self.friction, self.armature] != [0.0; 4] || self.has_higher_terms();
         if !element.is("fixed") {
             let lost = ("a spatial tendon with forces", "fixed tendons: the motion is that without it");
             let why = "the length of a spatial tendon is no sum of coordinates";
@@ -164,7 +187,7 @@ impl<'a> Own<'a> {
             (self.is_force_limited, "actuatorfrcrange", ("limits of the forces on a tendon", "those of its actuators and joints")),
             (self.friction != 0.0, "frictionloss", ("friction of a tendon", "friction of the joints: that of tendons is not read")),
             (self.armature != 0.0, "armature", ("armature of a tendon", "armature of the joints: that of tendons is not read")),
-            (self.has_higher_terms, "stiffness", ("stiffness or damping of higher degree", ONE)),
+            (self.has_higher_terms(), "stiffness", ("stiffness or damping of higher degree", ONE)),
             (self.yields, "springyield", ("a spring that yields", "a spring that does not: it is elastic")),
         ];
         for (_, field, lost) in losses.iter().filter(|(is_lost, ..)| *is_lost) {

@@ -32,6 +32,16 @@ impl<'a> Values<'a> {
         self.layers.iter().find_map(|layer| Some((*layer, layer.attribute(name)?)))
     }
 
+    /// As [`Self::nearest`], of lists of numbers: an empty one is an absent one.
+    fn nearest_list(&self, name: &str) -> Option<(&'a Element, &'a Attribute)> {
+        self.layers.iter().find_map(|layer| Some((*layer, list(layer, name)?)))
+    }
+
+    /// Whether there are numbers.
+    pub(crate) fn has_numbers(&self, name: &str) -> bool {
+        self.nearest_list(name).is_some()
+    }
+
     pub(crate) fn has(&self, name: &str) -> bool {
         self.nearest(name).is_some()
     }
@@ -47,7 +57,7 @@ impl<'a> Values<'a> {
 
     /// Exactly `N` numbers.
     pub(crate) fn exactly<const N: usize>(&self, name: &str, log: &mut Diagnostics) -> Option<[f64; N]> {
-        let (element, attribute) = self.nearest(name)?;
+        let (element, attribute) = self.nearest_list(name)?;
         let numbers = numbers(element, attribute, &self.subject, log)?;
         let exact = numbers.as_slice().try_into().ok();
         if exact.is_none() {
@@ -61,9 +71,9 @@ impl<'a> Values<'a> {
     pub(crate) fn at_most<const N: usize>(&self, name: &str, base: [f64; N], log: &mut Diagnostics) -> [f64; N] {
         let mut all = base;
         for layer in self.layers.iter().rev() {
-            let Some(attribute) = layer.attribute(name) else { continue };
+            let Some(attribute) = list(layer, name) else { continue };
             let Some(numbers) = numbers(layer, attribute, &self.subject, log) else { continue };
-            if numbers.len() > N || numbers.is_empty() {
+            if numbers.len() > N {
                 let found = format!("{} numbers in {}", numbers.len(), quote(&attribute.value));
                 layer.error((&self.subject, name), Code::WrongCount, found, format!("1 to {N} numbers"), log);
                 continue;
@@ -75,7 +85,7 @@ impl<'a> Values<'a> {
 
     /// All numbers of an attribute.
     pub(crate) fn list(&self, name: &str, log: &mut Diagnostics) -> Option<Vec<f64>> {
-        let (element, attribute) = self.nearest(name)?;
+        let (element, attribute) = self.nearest_list(name)?;
         numbers(element, attribute, &self.subject, log)
     }
 
@@ -122,7 +132,7 @@ impl<'a> Values<'a> {
     /// The orientation, of the nearest class that has one.
     pub(crate) fn orientation(&self, angles: &Angles, log: &mut Diagnostics) -> Quaternion {
         const FORMS: [&str; 5] = ["quat", "axisangle", "xyaxes", "zaxis", "euler"];
-        let forms = |layer: &&Element| -> Vec<&str> { FORMS.into_iter().filter(|name| layer.attribute(name).is_some()).collect() };
+        let forms = |layer: &&Element| -> Vec<&str> { FORMS.into_iter().filter(|name| list(layer, name).is_some()).collect() };
         let with = self.layers.iter().map(|layer| (*layer, forms(layer))).find(|(_, forms)| !forms.is_empty());
         let with = match with {
             None => return IDENTITY,
@@ -159,6 +169,11 @@ impl<'a> Values<'a> {
             None => IDENTITY,
         }
     }
+}
+
+/// The attribute of a tag, unless it is an empty list.
+fn list<'a>(element: &'a Element, name: &str) -> Option<&'a Attribute> {
+    element.attribute(name).filter(|attribute| !attribute.value.trim().is_empty())
 }
 
 fn numbers(element: &Element, attribute: &Attribute, subject: &Subject, log: &mut Diagnostics) -> Option<Vec<f64>> {

@@ -1,6 +1,6 @@
 //! What a document says beside its bodies, as a [`World`].
 
-use articulated_core::diagnostic::Diagnostics;
+use articulated_core::diagnostic::{Code, Diagnostics};
 
 use super::actuators::actuators;
 use super::bodies::{Kind, Tree};
@@ -11,21 +11,27 @@ use super::grammar::subject;
 use super::lower::Lowered;
 use super::reflected::spring_dampers;
 use super::scope::Scope;
-use super::settings::Simulation;
+use super::simulation::Simulation;
 use super::states;
 use super::tendons::tendons;
 use crate::pose::{Pose, rotate};
 use crate::world::{Plane, World};
 
 /// Reads the rest of a model.
-pub(crate) fn world(documents: &Documents, tree: &Tree<'_>, lowered: &mut Lowered, log: &mut Diagnostics) -> World {
+pub(crate) fn world(
+    documents: &Documents,
+    tree: &Tree<'_>,
+    simulation: &Simulation<'_>,
+    lowered: &mut Lowered,
+    log: &mut Diagnostics,
+) -> World {
     let main = documents.root(0);
-    let simulation = Simulation::of(main, log);
+    let flags = simulation.flags();
     let has_unread_joints = documents.roots().any(has_deformable);
     let names = lowered.joints.clone();
     let mut scope = Scope::new(&main.file.name, tree, &names, log.is_ok() && !has_unread_joints);
     let mut world = World {
-        gravity: simulation.gravity,
+        gravity: simulation.gravity(),
         step: simulation.step,
         integrator: simulation.integrator.clone(),
         planes: planes(&scope, log),
@@ -34,13 +40,13 @@ pub(crate) fn world(documents: &Documents, tree: &Tree<'_>, lowered: &mut Lowere
     };
     let bounds = scope.joints.iter().filter(|known| matches!(known.joint.kind, Kind::Hinge | Kind::Slide));
     world.joint_forces = bounds.filter_map(|known| Some((known.name.to_owned(), known.joint.force_range?))).collect();
-    let tendons = tendons(&mut scope, &mut world.passive, log);
-    let (controls, armatures) = actuators(&mut scope, &tendons, &simulation, &lowered.description, &mut world, log);
+    let tendons = tendons(&mut scope, flags, &mut world.passive, log);
+    let (controls, armatures) = actuators(&mut scope, &tendons, simulation, &lowered.description, &mut world, log);
     if !world.planes.is_empty() {
         world.contact_masks = std::mem::take(&mut lowered.masks);
     }
-    spring_dampers(&scope, &mut lowered.description, &armatures, log);
-    equalities(&mut scope, &tendons, simulation.no_equality, &mut world, log);
+    spring_dampers(&scope, flags, &mut lowered.description, &armatures, log);
+    equalities(&mut scope, &tendons, flags.no_equality, &mut world, log);
     states::keyframes(&mut scope, &controls, has_unread_joints, &mut world, log);
     world
 }
@@ -68,11 +74,11 @@ fn planes(scope: &Scope<'_>, log: &mut Diagnostics) -> Vec<Plane> {
         let own = parent.filter(|_| body.joints.is_empty()).map(|parent| parent.then(&body.pose));
         poses.push(own);
         for geom in &body.geoms {
-            let Some(plane) = geom.plane() else { continue };
-            let Some(frame) = own.map(|own| own.then(&plane)) else {
-                geom.element.unused(&subject(geom.element), None, "a plane that moves makes no contact", log);
-                continue;
-            };
+            if geom.is_plane() && own.is_none() {
+                let expected = "it in a body that does not move, as MuJoCo does";
+                geom.element.error((&subject(geom.element), "type"), Code::Misplaced, "a plane of a body that moves", expected, log);
+            }
+            let Some(frame) = own.zip(geom.plane()).map(|(own, plane)| own.then(&plane)) else { continue };
             all.push(Plane {
                 name: geom.element.text("name").unwrap_or_default().to_owned(),
                 point: frame.position,

@@ -1,6 +1,6 @@
 //! What is requested of a robot before anything is computed.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use articulated_core::description::{Base, Coupling, Origin, Payload, Shaft};
@@ -9,7 +9,7 @@ use articulated_core::effect::Applied;
 use articulated_core::model::GRAVITY;
 use articulated_core::spatial::Reference;
 use articulated_formats::world::World;
-use articulated_formats::{Formats, Included};
+use articulated_formats::{Formats, Included, LeaveOut};
 
 use crate::scene::Scene;
 
@@ -52,6 +52,8 @@ pub struct RobotOptions {
     pub allow_unphysical_inertia: bool,
     /// Take the first of tags of a URDF that should be there once, with a warning.
     pub first_of_duplicates: bool,
+    /// Elements of an MJCF that change the motion and are not read, to leave out with a warning.
+    pub leave_out: BTreeSet<LeaveOut>,
     /// Take angles this near (rad, above 0, at most
     /// [`MOST_SNAPPED`](articulated_formats::MOST_SNAPPED)) to a multiple of π/2 as that multiple;
     /// every one is reported. `None`: never.
@@ -115,6 +117,7 @@ impl Default for RobotOptions {
             effects: Vec::new(),
             allow_unphysical_inertia: false,
             first_of_duplicates: false,
+            leave_out: BTreeSet::new(),
             snap_angles: None,
             formats: Formats::default(),
             included: Included::default(),

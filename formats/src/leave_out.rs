@@ -1,0 +1,86 @@
+//! What a file may have that is not read, and which an option leaves out.
+
+use std::fmt;
+use std::str::FromStr;
+
+use articulated_core::suggest::nearest;
+
+/// Elements of an MJCF that change the motion and are not read. They are errors, unless
+/// [`Options::leave_out`](crate::Options::leave_out) has their kind: then they are warnings, and
+/// the motion is that without them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum LeaveOut {
+    /// Flexible bodies: `flex` and `flexcomp`.
+    Flex,
+    /// Bodies that `composite` makes.
+    Composite,
+    /// Plugins that give forces (elastic ones) or shapes (signed distance fields).
+    Plugin,
+}
+
+impl LeaveOut {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Flex, Self::Composite, Self::Plugin];
+
+    /// The names and what they are of, as lists of words have them.
+    pub const WORDS: [(&str, Self); 3] = [("flex", Self::Flex), ("composite", Self::Composite), ("plugin", Self::Plugin)];
+
+    /// The name in options: `flex`, `composite` or `plugin`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Flex => "flex",
+            Self::Composite => "composite",
+            Self::Plugin => "plugin",
+        }
+    }
+
+    /// The options that leave it out.
+    pub(crate) fn option(self) -> String {
+        format!("`--leave-out {}` (key `leave_out`, method `Build::leave_out`)", self.name())
+    }
+}
+
+impl fmt::Display for LeaveOut {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A word that is no kind of element.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NoKind(String);
+
+impl fmt::Display for NoKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "found {:?}, expected flex, composite or plugin", self.0)?;
+        match nearest(&self.0, LeaveOut::ALL.iter().map(|kind| kind.name())) {
+            Some(near) => write!(f, " (did you mean {near:?}?)"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for NoKind {}
+
+impl FromStr for LeaveOut {
+    type Err = NoKind;
+
+    fn from_str(text: &str) -> Result<Self, NoKind> {
+        Self::ALL.into_iter().find(|kind| kind.name() == text).ok_or_else(|| NoKind(text.to_owned()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_kind_has_its_name() {
+        for (kind, (name, own)) in LeaveOut::ALL.into_iter().zip(LeaveOut::WORDS) {
+            assert_eq!((kind, kind.name(), name.parse()), (own, name, Ok(kind)));
+        }
+        let error = "plugins".parse::<LeaveOut>().unwrap_err().to_string();
+        assert_eq!(error, "found \"plugins\", expected flex, composite or plugin (did you mean \"plugin\"?)");
+    }
+}

@@ -1,0 +1,307 @@
+//! The sections `<option>` of a document and of the models that it attaches.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
+
+use super::documents::Documents;
+use super::element::Element;
+use super::values::Values;
+
+/// Parts of the simulation that a flag turns off.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Flags {
+    pub(crate) no_gravity: bool,
+    pub(crate) no_actuation: bool,
+    /// Controls go beyond their bounds.
+    pub(crate) no_clamp: bool,
+    pub(crate) no_equality: bool,
+    /// Dry friction of joints and tendons.
+    pub(crate) no_friction: bool,
+    /// Limits of joints and tendons.
+    pub(crate) no_limit: bool,
+    pub(crate) no_contact: bool,
+    pub(crate) no_spring: bool,
+    pub(crate) no_damper: bool,
+}
+
+impl Flags {
+    /// Without springs and dampers MuJoCo computes no passive force, of the medium and of
+    /// `gravcomp` neither.
+    pub(crate) fn no_passive_force(self) -> bool {
+        self.no_spring && self.no_damper
+    }
+}
+
+/// The flags that are read, with what is lost without a word where one is disabled; empty: it is
+/// reported elsewhere.
+const FLAGS: [(&str, &str); 10] = [
+    ("gravity", ""),
+    ("actuation", ""),
+    ("clampctrl", ""),
+    ("equality", ""),
+    ("constraint", "it turns limits, dry friction, contact and equations off, as in MuJoCo: those of this file do nothing"),
+    ("frictionloss", "it turns dry friction off, as in MuJoCo: that of this file does nothing"),
+    ("limit", "it turns limits off, as in MuJoCo: those of this file do nothing"),
+    ("contact", "it turns contact off, as in MuJoCo: no geom of this file makes contact"),
+    ("spring", "it turns springs off, as in MuJoCo: those of this file do nothing"),
+    ("damper", "it turns dampers off, as in MuJoCo: those of this file do nothing"),
+];
+
+/// What an attached model changes in the options of the document that attaches it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Conflict {
+    /// Nothing.
+    #[default]
+    Warning,
+    /// What the document does not say; the smaller step and all flags that disable.
+    Merge,
+    /// Nothing, and two values are an error.
+    Error,
+}
+
+/// What `<option>` says of a simulation.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Simulation<'a> {
+    /// m/s².
+    pub(crate) gravity: Option<[f64; 3]>,
+    /// s.
+    pub(crate) step: Option<f64>,
+    pub(crate) integrator: Option<String>,
+    /// kg/m³ and Pa·s.
+    density: Option<f64>,
+    viscosity: Option<f64>,
+    /// Groups of actuators that give no force.
+    pub(crate) disabled_groups: BTreeSet<i64>,
+    /// Flags as the file has them: whether each is disabled.
+    flags: BTreeMap<&'static str, bool>,
+    /// The tags of options and flags, by their names.
+    places: BTreeMap<&'static str, &'a Element>,
+}
+
+impl<'a> Simulation<'a> {
+    /// Of the main document, with what the models that it attaches change. A medium is a warning.
+    pub(crate) fn of(documents: &'a Documents, log: &mut Diagnostics) -> Self {
+        let all = Self::with_attached(0, documents, &mut BTreeSet::new(), log);
+        for (flag, why) in FLAGS.iter().filter(|(flag, why)| !why.is_empty() && all.is_off(flag)) {
+            if let Some(place) = all.places.get(flag) {
+                place.unused(&Subject::Document, place.attribute(flag), why, log);
+            }
+        }
+        for (name, number) in [("density", all.density), ("viscosity", all.viscosity)] {
+            let place = all.places.get(name).filter(|_| number.is_some_and(|number| number != 0.0));
+            if let Some(place) = place.filter(|_| !all.flags().no_passive_force()) {
+                let expected = "effects of the scene, as `drag` and `buoyancy`: the forces of the medium are not read";
+                place.warning((&Subject::Document, name), Code::LostDynamics, "a medium", expected, log);
+            }
+        }
+        all
+    }
+
+    fn is_off(&self, flag: &str) -> bool {
+        self.flags.get(flag) == Some(&true)
+    }
+
+    pub(crate) fn flags(&self) -> Flags {
+        let no_constraint = self.is_off("constraint");
+        Flags {
+            no_gravity: self.is_off("gravity"),
+            no_actuation: self.is_off("actuation"),
+            no_clamp: self.is_off("clampctrl"),
+            no_equality: no_constraint || self.is_off("equality"),
+            no_friction: no_constraint || self.is_off("frictionloss"),
+            no_limit: no_constraint || self.is_off("limit"),
+            no_contact: no_constraint || self.is_off("contact"),
+            no_spring: self.is_off("spring"),
+            no_damper: self.is_off("damper"),
+        }
+    }
+
+    /// Gravity with its flag, m/s².
+    pub(crate) fn gravity(&self) -> Option<[f64; 3]> {
+        if self.is_off("gravity") { Some([0.0; 3]) } else { self.gravity }
+    }
+
+    /// Of a document alone.
+    fn alone(root: &'a Element, log: &mut Diagnostics) -> Self {
+        let mut all = Self::default();
+        for section in root.all("option") {
+            let values = Values::alone(section, &Subject::Document);
+            all.gravity = values.exactly("gravity", log).or(all.gravity);
+            if let Some(step) = values.number("timestep", log) {
+                if step <= 0.0 {
+                    values.error("timestep", Code::Number, format!("{step}"), "a time step above zero, s", log);
+                }
+                all.step = Some(step);
+            }
+            let words = ["Euler", "RK4", "implicit", "implicitfast", "discrete"].map(|word| (word, word));
+            all.integrator = values.word("integrator", &words, log).map(str::to_owned).or(all.integrator);
+            all.density = values.number("density", log).or(all.density);
+            all.viscosity = values.number("viscosity", log).or(all.viscosity);
+            all.disabled_groups.extend(values.list("actuatorgroupdisable", log).unwrap_or_default().iter().map(|group| *group as i64));
+            for name in ["gravity", "timestep", "integrator", "density", "viscosity", "actuatorgroupdisable"] {
+                if section.attribute(name).is_some() {
+                    all.places.insert(name, section);
+                }
+            }
+            for flag in section.all("flag") {
+                let values = Values::alone(flag, &Subject::Document);
+                for (name, _) in FLAGS {
+                    if let Some(disabled) = values.word(name, &[("disable", true), ("enable", false)], log) {
+                        all.flags.insert(name, disabled);
+                        // The gravity of the section is another number.
+                        all.places.insert(if name == "gravity" { "gravity flag" } else { name }, flag);
+                    }
+                }
+            }
+        }
+        all
+    }
+
+    /// Of a document and of what it attaches, one after the other. `above`: the documents that
+    /// attach it.
+    fn with_attached(document: usize, documents: &'a Documents, above: &mut BTreeSet<usize>, log: &mut Diagnostics) -> Self {
+        let root = documents.root(document);
+        let mut all = Self::alone(root, log);
+        let policy = conflict(root, log);
+        above.insert(document);
+        let mut known = BTreeSet::new();
+        for attach in attached(root) {
+            let Some(other) = attach.text("model").and_then(|name| documents.model(document, name)) else { continue };
+            if above.contains(&other) {
+                continue;
+            }
+            if !known.insert(other) {
+                continue;
+            }
+            // Mistakes in numbers that nothing takes are none.
+            let mut own = log.apart();
+            let model = Self::with_attached(other, documents, above, &mut own);
+            if policy == Conflict::Merge {
+                log.take(own);
+            }
+            all.merge(&model, policy, attach, log);
+        }
+        above.remove(&document);
+        all
+    }
+
+    /// Takes what an attached model says of the simulation, as far as the policy lets it.
+    fn merge(&mut self, other: &Self, policy: Conflict, attach: &Element, log: &mut Diagnostics) {
+        let mut merge = Merge { policy, attach, log };
+        let texts = |number: Option<f64>| number.map(|number| number.to_string());
+        let vector = |all: Option<[f64; 3]>| all.map(|all| all.map(|number| number.to_string()).join(" "));
+        if merge.takes("gravity", vector(self.gravity), vector(other.gravity), other) {
+            self.take("gravity", other);
+            self.gravity = other.gravity;
+        }
+        if merge.takes("integrator", self.integrator.clone(), other.integrator.clone(), other) {
+            self.take("integrator", other);
+            self.integrator.clone_from(&other.integrator);
+        }
+        if merge.takes("density", texts(self.density), texts(other.density), other) {
+            self.take("density", other);
+            self.density = other.density;
+        }
+        if merge.takes("viscosity", texts(self.viscosity), texts(other.viscosity), other) {
+            self.take("viscosity", other);
+            self.viscosity = other.viscosity;
+        }
+        match (self.step, other.step) {
+            // Of two steps the smaller one
+            (Some(own), Some(step)) if policy == Conflict::Merge => self.step = Some(own.min(step)),
+            (own, step) => {
+                if merge.takes("timestep", texts(own), texts(step), other) {
+                    self.step = step;
+                }
+            }
+        }
+        for (flag, disabled) in &other.flags {
+            let own = self.flags.get(flag).copied();
+            match policy {
+                Conflict::Merge if *disabled && own != Some(true) => {
+                    self.flags.insert(*flag, true);
+                    self.take(flag, other);
+                }
+                Conflict::Merge => {}
+                Conflict::Error if own.is_some_and(|own| own != *disabled) => merge.refuse(flag, "another value of the flag"),
+                _ if own.unwrap_or_default() != *disabled => merge.keep(flag, other),
+                _ => {}
+            }
+        }
+        let groups: Vec<i64> = other.disabled_groups.difference(&self.disabled_groups).copied().collect();
+        match policy {
+            Conflict::Merge => self.disabled_groups.extend(groups),
+            _ if !groups.is_empty() => merge.keep("actuatorgroupdisable", other),
+            _ => {}
+        }
+    }
+
+    fn take(&mut self, name: &'static str, other: &Self) {
+        if let Some(place) = other.places.get(name) {
+            self.places.insert(name, place);
+        }
+    }
+}
+
+/// The options of one attached model beside those of the document that attaches it.
+struct Merge<'a, 'l> {
+    policy: Conflict,
+    attach: &'a Element,
+    log: &'l mut Diagnostics,
+}
+
+impl Merge<'_, '_> {
+    /// Whether the document takes a value of the model. Two values are an error or a warning.
+    fn takes(&mut self, name: &'static str, own: Option<String>, value: Option<String>, other: &Simulation<'_>) -> bool {
+        match (own, value) {
+            (_, None) => false,
+            (Some(own), Some(value)) if own == value => false,
+            (None, Some(_)) if self.policy == Conflict::Merge => true,
+            (Some(own), Some(value)) if self.policy != Conflict::Warning => {
+                self.refuse(name, &format!("the {name} {value} beside {own}"));
+                false
+            }
+            _ => {
+                self.keep(name, other);
+                false
+            }
+        }
+    }
+
+    fn refuse(&mut self, name: &str, found: &str) {
+        let found = format!("{found} in the attached model {}", quote(self.attach.text("model").unwrap_or_default()));
+        let word = if self.policy == Conflict::Merge { "merge" } else { "error" };
+        let expected = format!("one value of {name}, since <compiler conflict=\"{word}\">");
+        self.attach.error((&Subject::Document, "model"), Code::Together, found, expected, self.log);
+    }
+
+    /// Warns that a value of the model is not used.
+    fn keep(&mut self, name: &str, other: &Simulation<'_>) {
+        let found = format!("the {name} of the attached model {}", quote(self.attach.text("model").unwrap_or_default()));
+        let expected = "that of the file that attaches it, which holds: <compiler conflict=\"merge\"> takes it from the model";
+        let place = other.places.get(name).copied().unwrap_or(self.attach);
+        place.warning((&Subject::Document, name), Code::LostDynamics, found, expected, self.log);
+    }
+}
+
+/// The policy of a document; the last word counts.
+fn conflict(root: &Element, log: &mut Diagnostics) -> Conflict {
+    let words = [("warning", Conflict::Warning), ("merge", Conflict::Merge), ("error", Conflict::Error)];
+    let of = |section: &Element, log: &mut Diagnostics| Values::alone(section, &Subject::Document).word("conflict", &words, log);
+    root.all("compiler").fold(Conflict::default(), |before, section| of(section, log).unwrap_or(before))
+}
+
+/// The tags that attach models, in the order of the document.
+fn attached(root: &Element) -> Vec<&Element> {
+    let mut found = Vec::new();
+    let mut next: Vec<&Element> = root.all("worldbody").collect();
+    next.reverse();
+    while let Some(element) = next.pop() {
+        if element.is("attach") {
+            found.push(element);
+        }
+        next.extend(element.children.iter().rev());
+    }
+    found
+}
