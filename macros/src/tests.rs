@@ -2,7 +2,7 @@
 //! workspace's `tests/ui`.
 
 use articulated_codegen::scene::Scene;
-use articulated_codegen::{Base, Build, Origin, Payload, Reference, Request, generate};
+use articulated_codegen::{Base, Build, LeaveOut, Origin, Payload, Reference, Request, generate};
 use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
 use syn::{Item, ItemMod};
@@ -23,7 +23,11 @@ fn items(module: ItemMod) -> Vec<Item> {
 fn macro_build_script_and_library_give_the_same_tokens() {
     let rename = [("a-b", "A_MINUS_B"), ("j-1", "J_MINUS_1")].map(|(from, to)| (from.to_owned(), to.to_owned()));
     let build = Build::new(URDF).floating().gravity([0.0, 1.5, -9.0]).functions(["gravity_torque", "placements"]);
-    let build = rename.iter().fold(build.snap_angles(1e-9), |build, (from, to)| build.rename(from, to)).generate().unwrap();
+    let build = rename
+        .iter()
+        .fold(build.snap_angles(1e-9).leave_out([LeaveOut::Flex]), |build, (from, to)| build.rename(from, to))
+        .generate()
+        .unwrap();
 
     let mut request = Request::new(URDF, std::fs::read(URDF).unwrap());
     request.options.robot.base = Base::Floating;
@@ -42,6 +46,7 @@ fn macro_build_script_and_library_give_the_same_tokens() {
             functions = [gravity_torque, placements],
             rename = { "a-b" = A_MINUS_B, "j-1" = J_MINUS_1 },
             snap_angles = 1e-9,
+            leave_out = [flex],
         }
     }));
     items.pop();
@@ -252,6 +257,8 @@ fn a_number_with_a_unit_behind_it_is_refused() {
         "payload = { link = tool, mass = 1, center_of_mass = [0, 0, -70cm] }",
         "effects = { damping = 5mNms }",
         "effects = { damping = { elbow = 1.5f32 } }",
+        "leave_out = flex",
+        "leave_out = [flexible]",
         "snap_angles = 1u8",
         "snap_angles = 2",
         "snap_angles = 0",

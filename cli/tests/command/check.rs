@@ -426,3 +426,20 @@ fn errors_of_scenes_have_their_lines_in_json() {
         assert_eq!(at, [(Some(2), Some("gravity")), (Some(4), Some("initial.q"))], "{command}: {errors}");
     }
 }
+
+#[test]
+fn what_is_not_read_can_be_left_out() {
+    let text =
+        "<mujoco><worldbody><body name='a'><joint name='j'/><geom size='0.1'/></body>\n<flexcomp name='cloth'/></worldbody></mujoco>";
+    let robot = File::new("cloth.xml", text.as_bytes());
+    let refused = run(&["check", robot.name()]);
+    assert!(refused.status == 1 && refused.err.contains(":2: found a flexible body \"cloth\""), "{}", refused.err);
+    assert!(refused.err.contains("`--leave-out flex` (key `leave_out`, method `Build::leave_out`)"), "{}", refused.err);
+    let scene = File::new("cloth.toml", format!("file = {:?}", robot.name()).as_bytes());
+    for name in [robot.name(), scene.name()] {
+        let accepted = run(&["check", name, "--leave-out", "plugin,flex", "--format", "json"]).json();
+        assert_eq!((&accepted["usable"], &accepted["warnings"][0]["line"]), (&true.into(), &2.into()), "{accepted}");
+    }
+    let wrong = run(&["check", robot.name(), "--leave-out", "flexible"]);
+    assert!(wrong.status == 2 && wrong.err.contains("expected flex, composite or plugin"), "{}", wrong.err);
+}

@@ -345,7 +345,9 @@ impl<'a> Build<'a> {
                     self.bodies[body].joints.push(free);
                 }
                 "geom" => {
-                    if let Some(geom) = geometry::geom(&values("geom"), &context.settings, &context.frame, (self.rules, &mut self.gate), log) {
+                    if let Some(geom) =
+                        geometry::geom(&values("geom"), &context.settings, &context.frame, (self.rules, &mut self.gate), log)
+                    {
                         self.bodies[body].geoms.push(geom);
                     }
                 }
@@ -506,13 +508,7 @@ fn site(values: &Values<'_>, context: &Context<'_>, log: &mut Diagnostics) -> Po
     context.frame.then(&pose)
 }
 
-fn joint<'a>(
-    name: Option<String>,
-    values: &Values<'a>,
-    context: &Context<'a>,
-    flags: Flags,
-    log: &mut Diagnostics,
-) -> Option<Joint<'a>> {
+fn joint<'a>(name: Option<String>, values: &Values<'a>, context: &Context<'a>, flags: Flags, log: &mut Diagnostics) -> Option<Joint<'a>> {
     use Kind::{Ball, Free, Hinge, Slide};
     let compiler = &context.settings.compiler;
     let kind = match values.has("type") {

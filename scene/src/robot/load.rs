@@ -343,6 +343,26 @@ mod tests {
     ]);
 
     #[test]
+    fn a_scene_leaves_out_what_its_key_names() {
+        const CLOTH: Files = Files(&[
+            ("all.toml", "file = \"cloth.xml\""),
+            ("without.toml", "file = \"cloth.xml\"\nleave_out = [\"flex\"]"),
+            ("cloth.xml", "<mujoco><worldbody><body><joint/><geom size='1'/></body><flexcomp name='cloth'/></worldbody></mujoco>"),
+        ]);
+        let read = |name: &str| {
+            let mut log = Diagnostics::new("");
+            let mut loader = Loader { sources: &CLOTH, ..Loader::default() };
+            let scene = loader.scene(name.as_ref(), &Span::default(), &mut log);
+            let opened = scene.and_then(|scene| loader.open("".as_ref(), scene, &mut log));
+            opened.unwrap_or_else(|| panic!("{log}")).robot().read()
+        };
+        let found = read("all.toml").map(|_| ()).unwrap_err().to_string();
+        assert!(found.contains("key `leave_out`"), "{found}");
+        let reading = read("without.toml").unwrap_or_else(|found| panic!("{found}"));
+        assert!(reading.warnings[0].to_string().contains("a flexible body \"cloth\""), "{:?}", reading.warnings);
+    }
+
+    #[test]
     fn arguments_and_packages_of_a_scene_are_those_of_its_robot() {
         let mut log = Diagnostics::new("");
         let mut loader = Loader { sources: &FILES, root: "here".into(), ..Loader::default() };
