@@ -249,6 +249,69 @@ fn a_link_with_two_parents_is_named_with_both_joints() {
     assert!(["\"hook\"", "\"swing\"", "\"again\""].iter().all(|name| message.contains(name)), "{message}");
 }
 
+/// A follower with a law that is not read would be another mechanism.
+#[test]
+fn what_may_change_the_law_of_a_follower_is_an_error_that_names_joint_and_attribute() {
+    let with = |mimic: &str| crane("<axis xyz=\"0 1 0\"/>", &format!("<axis xyz=\"0 1 0\"/>\n{mimic}"));
+    let wrong = [
+        ("<mimic joint='slew' cubic='-0.2'/>", Code::Unknown, "mimic cubic: found the attribute cubic = \"-0.2\""),
+        ("<mimic joint='slew' law='sine'/>", Code::Unknown, "mimic law: found the attribute law = \"sine\""),
+        ("<mimic joint='slew' a:gain='1e-3'/>", Code::Unknown, "mimic a:gain: found the attribute a:gain = \"1e-3\""),
+        (
+            "<mimic joint='slew' multiplyer='0'/>",
+            Code::Misspelt,
+            "multiplyer = \"0\", expected the attributes joint, multiplier and offset (did you mean \"multiplier\"?)",
+        ),
+        ("<mimic joint='slew'><multiplier>2</multiplier></mimic>", Code::Misspelt, "mimic multiplier: found the tag <multiplier>"),
+        ("<mimic joint='slew'><poly c='1 2'/></mimic>", Code::Unknown, "mimic poly: found the tag <poly>"),
+    ];
+    for (mimic, code, words) in wrong {
+        let error = only_error(&with(mimic));
+        assert_eq!((error.code, error.line()), (code, Some(35)), "{error}");
+        assert!(error.to_string().contains("joint \"swing\": ") && error.to_string().contains(words), "{error}");
+        assert!(error.to_string().contains("q = multiplier · q of the joint + offset is the one law that is read"), "{error}");
+    }
+    // All of them at once, and a mistake of the format's own.
+    let all = refused(&with("<mimic joint='slew' quadratic='3' cubic='4' offset='x'/>"));
+    assert_eq!(all.errors.iter().map(|e| e.code).collect::<Vec<_>>(), [Code::Unknown, Code::Unknown, Code::NotANumber]);
+    // What says nothing of the law is a warning.
+    for mimic in [
+        "<mimic joint='slew' name='m' quadratic='0' smooth='false' unit=''/>",
+        "<mimic joint='slew' a:comment='' xmlns:a='b'><note/></mimic>",
+    ] {
+        let reading = read(with(mimic).as_bytes(), &options()).unwrap();
+        assert!(
+            reading.warnings.iter().all(|w| w.code == Code::Unknown) && reading.description.joints[2].mimic.is_some(),
+            "{:?}",
+            reading.warnings
+        );
+    }
+}
+
+#[test]
+fn two_laws_for_one_leader_are_an_error() {
+    let twice = |again: &str| {
+        let tags = format!("<axis xyz=\"0 1 0\"/>\n<mimic joint='slew' multiplier='2'/><mimic joint='travel'/>\n{again}");
+        crane("<axis xyz=\"0 1 0\"/>", &tags)
+    };
+    let found = "joint \"swing\": mimic: found a second <mimic> of joint \"slew\" (the first is in line 35)";
+    let error = only_error(&twice("<mimic joint='slew' multiplier='3'/>"));
+    assert_eq!((error.code, error.line()), (Code::DuplicateTag, Some(36)));
+    assert!(error.to_string().contains(found) && error.expected.contains("`--first-of-duplicates`"), "{error}");
+    assert!(
+        only_error(&twice("<drake:mimic joint='slew' multiplier='3'/>")).to_string().contains("a second <drake:mimic> of joint \"slew\"")
+    );
+    // The first, where that is asked for; and one that says the same.
+    let first = Options { first_of_duplicates: true, ..options() };
+    for (again, options) in [("<mimic joint='slew' multiplier='3'/>", first), ("<mimic multiplier='2' joint='slew'/>", options())] {
+        let reading = read(twice(again).as_bytes(), &options).unwrap();
+        let swing = &reading.description.joints[2];
+        let laws: Vec<_> = swing.mimic.iter().chain(&swing.also).map(|law| (law.joint, law.multiplier)).collect();
+        assert_eq!(laws, [(0, 2.0), (1, 1.0)]);
+        assert_eq!(reading.warnings.iter().map(|w| w.code).collect::<Vec<_>>(), [Code::DuplicateTag]);
+    }
+}
+
 #[test]
 fn a_ring_of_mimics_is_one_error() {
     let text = crane("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"travel\"/>")

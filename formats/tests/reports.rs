@@ -189,7 +189,38 @@ const LOST: &[(&str, &[&str])] = &[
     ),
     (
         "<gazebo><joint name='d' type='revolute'><parent>boom</parent><child>hook</child></joint></gazebo>",
+        &[
+            "<joint>: found a closed loop between the links \"boom\" and \"hook\" by the joint \"d\" inside <gazebo>, expected a tree of joints: it is not closed",
+        ],
+    ),
+    (
+        "<gazebo reference='hook'><joint name='d' type='ball'><parent link='crane::boom'/><child link='hook'/></joint></gazebo>",
+        &["found a closed loop between the links \"boom\" and \"hook\" by the joint \"d\" inside <gazebo reference=\"hook\">"],
+    ),
+    (
+        "<gazebo><joint name='d' type='fixed'><parent>boom</parent><child>ground</child></joint></gazebo>",
         &["<joint>: found a joint \"d\" inside <gazebo>, expected <joint> directly inside <robot>"],
+    ),
+    (
+        "<gazebo><joint name='d' type='gearbox'><parent>boom</parent><child>hook</child></joint></gazebo>",
+        &["found a coupling of two joints by the gearbox \"d\" inside <gazebo>, expected <mimic> inside <joint>"],
+    ),
+    (
+        "<gazebo><plugin name='p' filename='libroboticsgroup_gazebo_mimic_joint_plugin.so'><joint>swing</joint><mimicJoint>slew</mimicJoint>\
+         <multiplier>-0.5</multiplier></plugin></gazebo>",
+        &["<plugin>: found a coupling of joint \"swing\" with joint \"slew\", -0.5 · q + 0, by the plugin \"p\" inside <gazebo>, \
+           expected <mimic joint=\"slew\" multiplier=\"-0.5\" offset=\"0\"/> inside joint \"swing\": it is not read, and the joint moves by itself"],
+    ),
+    (
+        "<plugin name='finger_mimic'/>",
+        &["<plugin>: found a coupling of joints by the plugin \"finger_mimic\", expected <mimic> inside <joint>: it is not read"],
+    ),
+    ("<gazebo><plugin name='p' filename='libClosedLoopPlugin.so'/></gazebo>", &["found a closed loop by the plugin \"p\" inside <gazebo>"]),
+    (
+        "<ros2_control name='c' type='system'><joint name='swing'><param name='mimic'>slew</param><param name='multiplier'>2</param></joint></ros2_control>",
+        &[
+            "<joint>: found a coupling of joint \"swing\" with joint \"slew\", 2 · q + 0, by a parameter of the joint \"swing\" inside <ros2_control>",
+        ],
     ),
     (
         "<gazebo reference='hook'><springStiffness>30</springStiffness><springReference>0</springReference></gazebo>",
@@ -224,6 +255,16 @@ fn dynamics_that_are_stated_where_they_are_not_read_are_warned_of() {
         for (told, expected) in told.iter().zip(*expected) {
             assert!(told.starts_with("crane.urdf:42: ") && told.contains(expected), "{told}");
         }
+    }
+    // A plugin that says what <mimic> says is no news; one that says something else is.
+    for (multiplier, expected) in [("0.5", None), ("-0.5", Some("the law of <mimic> inside joint \"swing\": that one is used"))] {
+        let plugin = "<plugin filename='libgazebo_mimic_joint_plugin.so'><joint>swing</joint><mimicJoint>travel</mimicJoint><multiplier>0.5</multiplier>";
+        let text =
+            crane("<axis xyz=\"0 1 0\"/>", &format!("<axis xyz=\"0 1 0\"/><mimic joint='travel' multiplier='{multiplier}' offset='0'/>"))
+                .replace("lower=\"-1\" upper=\"1\"", "lower=\"-2\" upper=\"2\"")
+                .replace("</robot>", &format!("<gazebo>{plugin}</plugin></gazebo></robot>"));
+        let told: Vec<String> = accepted(&text).warnings.iter().map(|w| w.expected.clone()).collect();
+        assert_eq!(told, expected.into_iter().collect::<Vec<_>>());
     }
     // Inside a joint and a link too.
     let spring = accepted(&crane("<child link=\"hook\"/>", "<child link=\"hook\"/><drake:spring stiffness='3'/>"));

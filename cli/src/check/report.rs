@@ -1,6 +1,6 @@
 //! What there is to say of a robot, as data.
 
-use articulated_core::description::{Description, JointKind, Link};
+use articulated_core::description::{Description, Joint, JointKind, Link, Mimic};
 use articulated_core::diagnostic::{Diagnostic as Finding, summary};
 use articulated_core::eigen::eigenvalues;
 use articulated_core::model::{FLOATING_BASE, Model};
@@ -103,12 +103,27 @@ pub(super) struct JointRow {
     pub(super) carries: f64,
 }
 
-/// own = multiplier · leader's + offset.
+/// own = Σ multiplier · leader's + offset.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct MimicRow {
+    pub(super) leaders: Vec<LeaderRow>,
+    pub(super) offset: f64,
+}
+
+/// A joint that another one follows.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct LeaderRow {
     pub(super) joint: String,
     pub(super) multiplier: f64,
-    pub(super) offset: f64,
+}
+
+impl MimicRow {
+    fn of(joint: &Joint, description: &Description) -> Option<Self> {
+        let leader = |m: &Mimic| LeaderRow { joint: description.joints[m.joint].name.clone(), multiplier: m.multiplier };
+        let all = || joint.mimic.iter().chain(&joint.also);
+        joint.mimic?;
+        Some(Self { leaders: all().map(leader).collect(), offset: all().map(|m| m.offset).sum() })
+    }
 }
 
 impl Report {
@@ -232,10 +247,7 @@ fn joint_rows(description: &Description, model: &Model<f64>, bodies: &[usize]) -
             upper: limit.map(|l| l.upper).filter(|x| x.is_finite()),
             velocity: limit.map(|l| l.velocity).filter(|x| x.is_finite()),
             effort: limit.map(|l| l.effort).filter(|x| x.is_finite()),
-            mimic: joint.mimic.map(|m| {
-                let leader = description.joints[m.joint].name.clone();
-                MimicRow { joint: leader, multiplier: m.multiplier, offset: m.offset }
-            }),
+            mimic: MimicRow::of(joint, description),
             locked: joint.locked.clone(),
             carries: if body == bodies[joint.parent] { 0.0 } else { carried[body] },
         }

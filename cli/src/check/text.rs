@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::base::{Base, BaseRow, Identifiable};
-use super::report::{JointRow, LinkRow, Report};
+use super::report::{JointRow, LinkRow, MimicRow, Report};
 use crate::excerpt::Excerpts;
 use crate::robot::named;
 use crate::table::{Table, counted, freedom, number, plain};
@@ -115,9 +115,7 @@ fn joints(rows: &[JointRow]) -> Table {
         let text = |x: &Option<String>| x.clone().unwrap_or_else(|| "–".into());
         let limit = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), number);
         let locked = row.locked.as_ref().map(|at| format!("locked at {}", at.iter().map(|x| number(*x)).collect::<Vec<_>>().join(", ")));
-        let follows = row.mimic.as_ref().map(|m| {
-            format!("{} · {} {} {}", number(m.multiplier), m.joint, if m.offset < 0.0 { '-' } else { '+' }, number(m.offset.abs()))
-        });
+        let follows = row.mimic.as_ref().map(sum);
         table.row([
             row.joint.clone(),
             row.kind.to_owned(),
@@ -136,6 +134,18 @@ fn joints(rows: &[JointRow]) -> Table {
     table
 }
 
+/// What a joint follows: `0.5 · a - 0.5 · c + 0.1`.
+fn sum(mimic: &MimicRow) -> String {
+    let mut out = String::new();
+    let sign = |x: f64| if x < 0.0 { " - " } else { " + " };
+    for (k, leader) in mimic.leaders.iter().enumerate() {
+        let (sign, size) = if k == 0 { ("", leader.multiplier) } else { (sign(leader.multiplier), leader.multiplier.abs()) };
+        let _ = write!(out, "{sign}{} · {}", number(size), leader.joint);
+    }
+    let _ = write!(out, "{}{}", sign(mimic.offset), number(mimic.offset.abs()));
+    out
+}
+
 fn base_parameters(base: &Base) -> String {
     let Base { parameters, stages, regrouped, identifiable, merged_joints, joints } = base;
     let merged = match merged_joints {
@@ -147,7 +157,8 @@ fn base_parameters(base: &Base) -> String {
         false => (format!("regrouping leaves {regrouped}, and "), ""),
         true => (
             String::new(),
-            ";\na planar or universal joint has a row for each of its stages; their parameters, and those of several joints on a body, are not all independent",
+            ";\na planar or universal joint and one that follows several have a row for each of their stages;\n\
+             their parameters, and those of several joints on a body, are not all independent",
         ),
     };
     let head = format!(

@@ -140,10 +140,35 @@ fn the_mass_table_adds_up() {
     let gripper = run(&["check", "gripper_arm", "--format", "json"]).json();
     let follows = |name: &str| {
         let joint = gripper["joints"].as_array().unwrap().iter().find(|j| j["joint"] == name).unwrap();
-        joint["mimic"]["multiplier"].as_f64()
+        joint["mimic"]["leaders"][0]["multiplier"].as_f64()
     };
     assert_eq!((follows("pinion"), follows("yaw")), (Some(80.0), None));
     assert!(!gripper["unused"].as_array().unwrap().is_empty());
+}
+
+/// A wrist that two motors turn: both of them are in the report, with the sum of the offsets.
+#[test]
+fn a_joint_that_follows_several_is_reported_with_all_of_them() {
+    let link = |name: &str| {
+        format!(
+            "<link name='{name}'><inertial><mass value='2'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>"
+        )
+    };
+    let joint = |name: &str, child: &str, mimics: &str| {
+        format!("<joint name='{name}' type='continuous'><parent link='trunk'/><child link='{child}'/><axis xyz='0 0 1'/>{mimics}</joint>")
+    };
+    let links = ["trunk", "left", "right", "hand"].map(link).concat();
+    let mimics = "<mimic joint='m1' multiplier='0.5' offset='0.25'/><mimic joint='m2' multiplier='-0.75' offset='-0.125'/>";
+    let joints = [joint("m1", "left", ""), joint("m2", "right", ""), joint("roll", "hand", mimics)].concat();
+    let file = File::new("wrist.urdf", format!("<robot name='wrist'>{links}{joints}</robot>").as_bytes());
+    let text = run(&["check", file.name()]);
+    assert!(text.status == 0 && text.out.contains(" 0.5 · m1 - 0.75 · m2 + 0.125 "), "{}{}", text.out, text.err);
+    let json = run(&["check", file.name(), "--format", "json"]).json();
+    let row = json["joints"].as_array().unwrap().iter().find(|row| row["joint"] == "roll").unwrap();
+    let leaders = serde_json::json!([{"joint": "m1", "multiplier": 0.5}, {"joint": "m2", "multiplier": -0.75}]);
+    assert_eq!(row["mimic"], serde_json::json!({"leaders": leaders, "offset": 0.125}));
+    // It is two bodies of the model.
+    assert!(text.out.contains("that follows several have a row for each of their stages"), "{}", text.out);
 }
 
 /// The humanoid's file has its legs before its arms, and q has them after.

@@ -5,18 +5,18 @@ use articulated_core::description::{JointDynamics, JointKind};
 use articulated_core::diagnostic::{Code, Diagnostics, Place, Subject, quote};
 use articulated_core::suggest::nearest;
 
-use super::ast::{DRAKE_JOINT, DraftJoint, DraftMimic, Reference, has_one_coordinate};
+use super::ast::{DRAKE_JOINT, DraftJoint, Reference, has_one_coordinate};
+use super::mimic_tag::{DRAKE_MIMIC, mimics};
 use super::robot::{Context, Version};
 use super::{frame, limits, unused};
 use crate::xml::element::Tag;
-use crate::xml::number::{self, attribute, attribute_list};
+use crate::xml::number::{self, attribute_list};
 
 const TAGS: [&str; 10] = ["origin", "parent", "child", "axis", "axis2", "thread", "limit", "dynamics", "mimic", DRAKE_MIMIC];
 
 /// Tags that only `<drake:joint>` has.
 const DRAKE_TAGS: [&str; 3] = [DRAKE_PARENT, DRAKE_CHILD, DRAKE_PITCH];
 
-const DRAKE_MIMIC: &str = "drake:mimic";
 const DRAKE_PARENT: &str = "drake:parent";
 const DRAKE_CHILD: &str = "drake:child";
 const DRAKE_PITCH: &str = "drake:screw_thread_pitch";
@@ -254,23 +254,4 @@ fn pitch(joint: &Tag<'_>, log: &mut Diagnostics) -> Option<f64> {
         log.warning(tag.place(&format!("{name} {attribute}")), Code::ZeroPitch, "zero", expected);
     }
     Some(pitch)
-}
-
-/// The joints that a joint follows. Two tags for one leader are one too many.
-fn mimics(joint: &Tag<'_>, log: &mut Diagnostics) -> Vec<DraftMimic> {
-    let all: Vec<Tag<'_>> = joint.children().filter(|tag| tag.is("mimic") || tag.is(DRAKE_MIMIC)).collect();
-    let leaders: Vec<_> = all.iter().map(|tag| tag.attribute("joint")).collect();
-    let is_twice = |(k, leader): (usize, &Option<_>)| leaders[..k].contains(leader);
-    if leaders.iter().enumerate().any(is_twice) {
-        return joint.only("mimic", log).and_then(|tag| mimic(&tag, log)).into_iter().collect();
-    }
-    all.iter().filter_map(|tag| mimic(tag, log)).collect()
-}
-
-fn mimic(tag: &Tag<'_>, log: &mut Diagnostics) -> Option<DraftMimic> {
-    unused::rest(tag, &[], &["joint", "multiplier", "offset"], log);
-    let multiplier = attribute(tag, "multiplier", log);
-    let offset = attribute(tag, "offset", log);
-    let name = tag.required_name("joint", log)?;
-    Some(DraftMimic { leader: Reference { name, at: tag.at() }, multiplier, offset })
 }

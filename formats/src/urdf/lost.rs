@@ -1,13 +1,13 @@
 //! Dynamics that a file states where they are not read: inside `<gazebo>`, under a prefix, in tags
 //! that the format does not have.
 
+use super::coupled::{LOOP, Loss, Parts, is_joint, letters, says_loop};
 use super::joint_forces;
 use crate::xml::element::Tag;
-use crate::xml::markup;
 use articulated_core::diagnostic::{Code, Diagnostics, quote};
 
 /// Known tags of other programs that may state dynamics.
-const SEARCHED: [&str; 4] = ["gazebo", "mujoco", "plugin", "frame"];
+const SEARCHED: [&str; 5] = ["gazebo", "mujoco", "plugin", "frame", "ros2_control"];
 
 /// Whether a tag that is known and not used is searched for dynamics.
 pub(crate) fn is_searched(name: &str) -> bool {
@@ -15,7 +15,7 @@ pub(crate) fn is_searched(name: &str) -> bool {
 }
 
 /// Warns of all dynamics that `tag` and the tags inside it state. Whether there are some.
-pub(crate) fn report(tag: &Tag<'_>, log: &mut Diagnostics) -> bool {
+pub(crate) fn report(tag: &Tag<'_>, parts: &Parts<'_>, log: &mut Diagnostics) -> bool {
     // What is inside a tag that was reported belongs to it.
     let (mut end, mut any) = (0, false);
     for inner in tag.descendants() {
@@ -26,7 +26,7 @@ pub(crate) fn report(tag: &Tag<'_>, log: &mut Diagnostics) -> bool {
         if inner.is(joint_forces::SPRING) && tag.attribute("reference").is_some() {
             continue;
         }
-        if let Some((what, expected)) = loss(&inner) {
+        if let Some(Loss { what, expected }) = parts.loss(&inner).or_else(|| loss(&inner)) {
             let name = inner.attribute("name").map(|_| format!(" {}", quote(&inner.name_for_messages()))).unwrap_or_default();
             let within = if inner.start() == tag.start() { String::new() } else { format!(" inside {}", shown(tag)) };
             log.warning(inner.place(&format!("<{}>", inner.name())), Code::LostDynamics, format!("{what}{name}{within}"), expected);
@@ -43,16 +43,18 @@ fn shown(tag: &Tag<'_>) -> String {
     }
 }
 
+/// What a tag states that is lost.
+fn loss(tag: &Tag<'_>) -> Option<Loss> {
+    let (what, expected) = stated(tag)?;
+    Some(Loss { what: what.to_owned(), expected: expected.to_owned() })
+}
+
 /// What a tag states that is lost, and what is expected in its place.
-fn loss(tag: &Tag<'_>) -> Option<(&'static str, &'static str)> {
-    const LOOPS: [&str; 4] = ["loopjoint", "closedloop", "kinematicloop", "equality"];
-    let name = letters(tag);
+fn stated(tag: &Tag<'_>) -> Option<(&'static str, &'static str)> {
+    let name = letters(&tag.name());
     let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
-    if has(&LOOPS) || name.ends_with("constraint") {
-        return Some((
-            "a closed loop or a constraint",
-            "a tree of joints: it is not closed, and the dynamics are those of the tree without it",
-        ));
+    if says_loop(&name) || has(&["equality"]) || name.ends_with("constraint") {
+        return Some(("a closed loop or a constraint", LOOP));
     }
     if has(&["bushing"]) {
         return Some(("a spring and damper between two links", "none: it is not read, and no such force acts"));
@@ -70,19 +72,6 @@ fn loss(tag: &Tag<'_>) -> Option<(&'static str, &'static str)> {
         return Some(("a link without gravity", "gravity on all links: it is not turned off"));
     }
     None
-}
-
-/// Whether a tag other than `<joint>` joins two links: a joint of another program.
-pub(crate) fn is_joint(tag: &Tag<'_>) -> bool {
-    let has = |name: &str| tag.children().any(|child| child.is(name));
-    letters(tag).ends_with("joint") && has("parent") && has("child")
-}
-
-/// The tag's name without its prefix, in small letters alone.
-fn letters(tag: &Tag<'_>) -> String {
-    let name = markup::as_written(&tag.name());
-    let name = name.rsplit(':').next().unwrap_or_default();
-    name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
 fn value<'a>(tag: &Tag<'a>) -> Option<&'a str> {

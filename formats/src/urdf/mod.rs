@@ -52,6 +52,7 @@ mod collision;
 mod compiler;
 #[cfg(feature = "urdf-rs")]
 mod conversion;
+mod coupled;
 mod frame;
 mod inertia;
 mod joint_forces;
@@ -61,6 +62,7 @@ mod links;
 mod lost;
 mod lower;
 mod mimic;
+mod mimic_tag;
 #[cfg(feature = "second-reader")]
 mod plain;
 mod robot;

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::ast::{DRAKE_JOINT, Draft, DraftLink, PassedOver};
-use super::{compiler, frame, joint_forces, joints, links, lost, unused, visual};
+use super::coupled::{self, Parts};
+use super::{compiler, frame, joint_forces, joints, links, unused, visual};
 use crate::Options;
 use crate::xml::element::Tag;
 use articulated_core::diagnostic::{Code, Diagnostics, Place, quote};
@@ -35,7 +36,8 @@ pub(crate) struct Context<'a> {
 pub(crate) fn draft(robot: &Tag<'_>, options: &Options, log: &mut Diagnostics) -> Draft {
     let name = robot.required_name("name", log).unwrap_or_default();
     unused::warn_of_blanks(robot, &name, log);
-    unused::rest(robot, &["link", "joint", DRAKE_JOINT, "transmission"], &["name", "version"], log);
+    let used: (&[&str], &[&str]) = (&["link", "joint", DRAKE_JOINT, "transmission"], &["name", "version"]);
+    unused::rest_beside(robot, &Parts::of(robot), used, log);
     let context = Context { options, version: version(robot, log), length: frame::longest(robot), materials: visual::materials(robot) };
     let mut draft = Draft { name, ..Draft::default() };
     for tag in robot.children() {
@@ -43,7 +45,7 @@ pub(crate) fn draft(robot: &Tag<'_>, options: &Options, log: &mut Diagnostics) -
             draft.links.push(links::link(&tag, &context, log));
         } else if tag.is("joint") || tag.is(DRAKE_JOINT) {
             draft.joints.push(joints::joint(&tag, &context, log));
-        } else if lost::is_joint(&tag) {
+        } else if coupled::is_joint(&tag) {
             let name = tag.name_for_messages();
             draft.passed_over.push(PassedOver { at: tag.at(), tag: tag.name(), name });
         }

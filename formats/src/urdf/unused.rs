@@ -4,6 +4,7 @@ use articulated_core::diagnostic::{Code, Diagnostics, Place, is_invisible, quote
 
 use articulated_core::suggest::Suggester;
 
+use super::coupled::Parts;
 use super::lost;
 use crate::xml::element::Tag;
 use crate::xml::markup;
@@ -44,30 +45,48 @@ const SHOWN: usize = 40;
 
 /// Reports the tags, the attributes and the text inside `tag` other than those that are used.
 pub(crate) fn rest(tag: &Tag<'_>, tags: &[&str], attributes: &[&str], log: &mut Diagnostics) {
+    rest_beside(tag, &Parts::default(), (tags, attributes), log);
+}
+
+/// As [`rest`], with the parts of the robot that the rest may refer to.
+pub(crate) fn rest_beside(tag: &Tag<'_>, parts: &Parts<'_>, (tags, attributes): (&[&str], &[&str]), log: &mut Diagnostics) {
     beside_tags(tag, attributes, log);
     for child in tag.children().filter(|child| !tags.iter().any(|name| child.is(name))) {
-        let name = child.name();
-        let parent = tag.name();
-        let why = KNOWN.iter().find(|(within, known, _)| *within == parent && *known == name);
-        match why {
-            Some((_, _, why)) => {
-                if lost::is_searched(&name) {
-                    lost::report(&child, log);
-                }
-                child.unused(log, name, *why);
+        child_of(tag, &child, parts, tags, log);
+    }
+}
+
+/// Reports a tag inside `tag` that is none of `tags`, which are used.
+pub(crate) fn child_of(tag: &Tag<'_>, child: &Tag<'_>, parts: &Parts<'_>, tags: &[&str], log: &mut Diagnostics) {
+    let name = child.name();
+    let parent = tag.name();
+    let why = KNOWN.iter().find(|(within, known, _)| *within == parent && *known == name);
+    // Links may hang on a joint of another program: directly inside the robot it closes no loop.
+    match why {
+        Some((_, _, why)) => {
+            if lost::is_searched(&name) {
+                lost::report(child, parts, log);
             }
-            None if name != "link" && name != "joint" && (lost::report(&child, log) || around_links(&child, &name, log)) => {
-                child.unused(log, name, "not known");
-            }
-            None if name == "link" || name == "joint" => misplaced(&child.place(&format!("<{name}>")), &name, &parent, log),
-            None => unknown(&child.place(&format!("<{name}>")), name.clone(), &name, tags, log),
+            child.unused(log, name, *why);
         }
+        None if name != "link" && name != "joint" && (lost::report(child, &Parts::default(), log) || around_links(child, &name, log)) => {
+            child.unused(log, name, "not known");
+        }
+        None if name == "link" || name == "joint" => misplaced(&child.place(&format!("<{name}>")), &name, &parent, log),
+        None => unknown(&child.place(&format!("<{name}>")), name.clone(), &name, tags, log),
     }
 }
 
 /// Reports the attributes other than those that are used, and the text.
 pub(crate) fn beside_tags(tag: &Tag<'_>, attributes: &[&str], log: &mut Diagnostics) {
-    rest_of_attributes(tag, attributes, log);
+    for attribute in tag.attributes().filter(|a| !attributes.contains(&a.name())) {
+        attribute_of(tag, &markup::as_written(attribute.name()), attributes, log);
+    }
+    text_of(tag, log);
+}
+
+/// Reports the text in a tag.
+pub(crate) fn text_of(tag: &Tag<'_>, log: &mut Diagnostics) {
     if let Some((text, at)) = tag.text() {
         let shown: String = text.chars().take(SHOWN).collect();
         let why = format!("text between tags says nothing of a robot: {}", quote(&markup::as_written(&shown)));
@@ -75,18 +94,16 @@ pub(crate) fn beside_tags(tag: &Tag<'_>, attributes: &[&str], log: &mut Diagnost
     }
 }
 
-fn rest_of_attributes(tag: &Tag<'_>, used: &[&str], log: &mut Diagnostics) {
-    for attribute in tag.attributes().filter(|a| !used.contains(&a.name())) {
-        let name = markup::as_written(attribute.name());
-        // Declarations of prefixes say nothing about the robot.
-        if name.starts_with("xmlns") {
-            continue;
-        }
-        let what = format!("{} {name}", tag.name());
-        match KNOWN.iter().find(|(within, known, _)| tag.is(within) && *known == name) {
-            Some((_, _, why)) => tag.unused(log, what, *why),
-            None => unknown(&tag.place(&what), what.clone(), &name, used, log),
-        }
+/// Reports an attribute that is none of `used`.
+pub(crate) fn attribute_of(tag: &Tag<'_>, name: &str, used: &[&str], log: &mut Diagnostics) {
+    // Declarations of prefixes say nothing about the robot.
+    if name.starts_with("xmlns") {
+        return;
+    }
+    let what = format!("{} {name}", tag.name());
+    match KNOWN.iter().find(|(within, known, _)| tag.is(within) && *known == name) {
+        Some((_, _, why)) => tag.unused(log, what, *why),
+        None => unknown(&tag.place(&what), what.clone(), name, used, log),
     }
 }
 

@@ -116,21 +116,24 @@ impl<'a> Tag<'a> {
     pub(crate) fn only(&self, name: &str, log: &mut Diagnostics) -> Option<Tag<'a>> {
         let mut all = self.children().filter(|tag| tag.is(name));
         let first = all.next()?;
-        for again in all {
-            let (place, kind, line) = (again.place(name), Code::DuplicateTag, first.at().line().unwrap_or_default());
-            let expected = format!("one <{name}> inside <{}>", self.name());
-            if again.says_the_same(&first) {
-                let found = format!("a second <{name}>, equal to the first in line {line}");
-                log.warning(place, kind, found, format!("{expected}; used once"));
-            } else {
-                let found = format!("a second <{name}> (the first is in line {line})");
-                match self.lines.first_of_duplicates {
-                    true => log.warning(place, kind, found, format!("{expected}; the first is used")),
-                    false => log.error(place, kind, found, format!("{expected}; {FIRST_OF_DUPLICATES} takes the first")),
-                }
-            }
-        }
+        let expected = format!("one <{name}> inside <{}>", self.name());
+        all.for_each(|again| again.report_again(&first, name, ("", &expected), log));
         Some(first)
+    }
+
+    /// Reports this tag, a second one of which `first` is the one that counts: an error, or a
+    /// warning where it says the same. `of`: what follows the tag's name in the message.
+    pub(crate) fn report_again(&self, first: &Tag<'a>, name: &str, (of, expected): (&str, &str), log: &mut Diagnostics) {
+        let (place, kind, line) = (self.place(name), Code::DuplicateTag, first.at().line().unwrap_or_default());
+        if self.says_the_same(first) {
+            let found = format!("a second <{name}>{of}, equal to the first in line {line}");
+            return log.warning(place, kind, found, format!("{expected}; used once"));
+        }
+        let found = format!("a second <{name}>{of} (the first is in line {line})");
+        match self.lines.first_of_duplicates {
+            true => log.warning(place, kind, found, format!("{expected}; the first is used")),
+            false => log.error(place, kind, found, format!("{expected}; {FIRST_OF_DUPLICATES} takes the first")),
+        }
     }
 
     /// Whether both have the same attributes, in any order, and the same tags and text inside.

@@ -3,7 +3,7 @@
 use articulated_core::description::{Base, Description, Joint};
 
 /// For each joint, whether it lets its child move: it is not fixed, not locked, and does not follow
-/// one that is. A chain of followers without an end lets it.
+/// joints that all are. A chain of followers without an end lets it.
 pub(crate) fn moving(description: &Description) -> Vec<bool> {
     let joints = &description.joints;
     let (mut moving, mut seen) = (vec![true; joints.len()], vec![false; joints.len()]);
@@ -20,12 +20,17 @@ pub(crate) fn moving(description: &Description) -> Vec<bool> {
             moving[at] &= leader(joints, at).is_none_or(|leader| moving[leader]);
         }
     }
+    // None of them leads another joint.
+    for (at, joint) in joints.iter().enumerate().filter(|(_, joint)| !joint.also.is_empty()) {
+        let mut leaders = joint.mimic.iter().chain(&joint.also);
+        moving[at] &= leaders.any(|mimic| moving.get(mimic.joint).is_none_or(|moves| *moves));
+    }
     moving
 }
 
-/// The joint that this one follows.
+/// The one joint that this one follows.
 fn leader(joints: &[Joint], at: usize) -> Option<usize> {
-    joints[at].mimic.map(|mimic| mimic.joint).filter(|leader| *leader < joints.len())
+    joints[at].mimic.filter(|_| joints[at].also.is_empty()).map(|mimic| mimic.joint).filter(|leader| *leader < joints.len())
 }
 
 /// For each link, whether it is fixed to the base.
@@ -75,5 +80,18 @@ mod tests {
         joints[count / 2].kind = JointKind::Revolute;
         (joints[count - 1].mimic, joints[7].mimic) = (follow(3), follow(count));
         assert_eq!(of(&joints), vec![true; count]);
+    }
+
+    #[test]
+    fn what_follows_several_joints_moves_while_one_of_them_does() {
+        let follow = |joint| Mimic { joint, multiplier: 1.0, offset: 0.0 };
+        let mut joints = vec![Joint { kind: JointKind::Revolute, ..Joint::default() }; 4];
+        (joints[0].mimic, joints[0].also) = (Some(follow(1)), vec![follow(2)]);
+        let of = |joints: &[Joint]| moving(&Description { joints: joints.to_vec(), ..Description::default() });
+        for (first, second) in [(false, false), (true, false), (false, true), (true, true)] {
+            joints[1].locked = first.then(|| vec![0.0]);
+            joints[2].locked = second.then(|| vec![0.0]);
+            assert_eq!(of(&joints), [!(first && second), !first, !second, true]);
+        }
     }
 }

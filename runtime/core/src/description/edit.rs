@@ -88,8 +88,10 @@ impl<'a> Editor<'a> {
         if found.kind.is_fixed() {
             return Err(EditError::LockedFixed { joint: name() });
         }
-        if let Some(leader) = found.mimic.and_then(|mimic| joints.get(mimic.joint)) {
-            return Err(EditError::LockedFollower { joint: name(), leader: leader.name.clone() });
+        let leaders = found.mimic.iter().chain(&found.also).filter_map(|mimic| Some(joints.get(mimic.joint)?.name.clone()));
+        let leaders: Vec<String> = leaders.collect();
+        if !leaders.is_empty() {
+            return Err(EditError::LockedFollower { joint: name(), leaders });
         }
         if found.locked.is_some() {
             return Err(EditError::LockedTwice { joint: name() });

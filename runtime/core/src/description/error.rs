@@ -41,8 +41,8 @@ pub enum EditError {
     LockedFollower {
         /// Its name.
         joint: String,
-        /// The name of the joint that it follows.
-        leader: String,
+        /// The names of the joints that it follows.
+        leaders: Vec<String>,
     },
     /// A locked joint was to be locked.
     LockedTwice {
@@ -126,7 +126,10 @@ impl fmt::Display for EditError {
             Self::NamesTaken { names } => taken(f, names),
             Self::LockedBase => f.write_str("the floating base cannot be locked: say that the base is fixed"),
             Self::LockedFixed { joint } => write!(f, "joint {joint:?} is fixed: there is nothing to lock"),
-            Self::LockedFollower { joint, leader } => write!(f, "joint {joint:?} follows {leader:?}: lock that one"),
+            Self::LockedFollower { joint, leaders } => {
+                let them = if leaders.len() == 1 { "that one" } else { "them" };
+                write!(f, "joint {joint:?} follows {}: lock {them}", listed(leaders.iter().map(|leader| format!("{leader:?}"))))
+            }
             Self::Coupling { joint, what } => write!(f, "joint {joint:?} cannot follow others: {what}"),
             Self::LockedTwice { joint } => write!(f, "joint {joint:?} is locked already"),
             Self::Coordinates { joint, kind, found } => {
