@@ -21,13 +21,14 @@ const COMMIT: &str = match option_env!("ARTICULATED_COMMIT") {
 
 /// Options that do not apply to motions: reading and editing of a robot, which a scene determines,
 /// and functions and states to measure.
-const OF_FUNCTIONS: [&str; 20] = [
+const OF_FUNCTIONS: [&str; 21] = [
     "floating",
     "fixed",
     "gravity",
     "allow_unphysical_inertia",
     "first_of_duplicates",
     "leave_out",
+    "allow_unknown_version",
     "snap_angles",
     "arg",
     "package",

@@ -48,6 +48,9 @@ pub(crate) struct RobotArguments {
     /// composite, plugin. Those of another kind are errors
     #[arg(long, value_name = "KINDS", value_delimiter = ',')]
     pub(crate) leave_out: Vec<LeaveOut>,
+    /// Read a URDF of a version other than 1.0, 1.1 and 1.2 as 1.0, with a warning
+    #[arg(long)]
+    pub(crate) allow_unknown_version: bool,
     /// Snap angles of the file within TOL rad of a multiple of π/2 to that multiple: above 0, at
     /// most 0.5 [default: off]
     #[arg(long, value_name = "TOL", value_parser = tolerance)]
@@ -108,6 +111,7 @@ impl RobotArguments {
             allow_unphysical_inertia: false,
             first_of_duplicates: false,
             leave_out: Vec::new(),
+            allow_unknown_version: false,
             snap_angles: None,
             arg: Vec::new(),
             package: Vec::new(),

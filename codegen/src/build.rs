@@ -178,6 +178,13 @@ impl Build {
         self
     }
 
+    /// A URDF of a version other than 1.0, 1.1 and 1.2 is read as 1.0, with a warning.
+    #[must_use]
+    pub fn allow_unknown_version(mut self) -> Self {
+        self.request.options.robot.allow_unknown_version = true;
+        self
+    }
+
     /// The constants of the joint or link `from` are called `to`, whatever was said of it before.
     #[must_use]
     pub fn rename(mut self, from: impl Into<String>, to: impl Into<String>) -> Self {

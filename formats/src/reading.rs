@@ -28,6 +28,9 @@ pub struct Options {
     /// Elements of an MJCF that change the motion and are not read, which are left out with a
     /// warning. Those of another kind are errors.
     pub leave_out: BTreeSet<LeaveOut>,
+    /// Reads a URDF of a version other than 1.0, 1.1 and 1.2 as 1.0, with a warning instead of an
+    /// error.
+    pub allow_unknown_version: bool,
     /// Replaces an angle of a frame that is within this many rad of a multiple of π/2 by that
     /// multiple: above 0, at most [`MOST_SNAPPED`](crate::MOST_SNAPPED); any other number is an
     /// error. `None` leaves every number as written.
@@ -49,6 +52,7 @@ impl Default for Options {
             allow_unphysical_inertia: false,
             first_of_duplicates: false,
             leave_out: BTreeSet::new(),
+            allow_unknown_version: false,
             snap_angles: None,
             formats: Formats::default(),
             arguments: BTreeMap::new(),

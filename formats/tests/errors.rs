@@ -408,6 +408,30 @@ fn an_inertia_may_be_unphysical_where_that_is_asked_for() {
     assert_eq!(reading.description.links[1].inertial.unwrap().inertia[5], -31.0);
 }
 
+/// What a later version changes is not known.
+#[test]
+fn another_version_is_an_error_unless_it_is_allowed() {
+    for version in ["7", "1.3", "1.0.0", "0.9", ""] {
+        let text = crane("<robot ", &format!("<robot version=\"{version}\" "));
+        let error = only_error(&text);
+        assert_eq!((error.code, error.line()), (Code::Version, Some(2)));
+        let (found, option) =
+            (format!("version: found the version \"{version}\", expected 1.0, 1.1 or 1.2; "), "`--allow-unknown-version` (key");
+        assert!(error.to_string().contains(&(found.clone() + option)), "{error}");
+        let allowed = Options { allow_unknown_version: true, ..options() };
+        let reading = read(text.as_bytes(), &allowed).unwrap();
+        assert_eq!(reading.description, corpus::described(CRANE));
+        assert!(
+            reading.warnings.len() == 1 && reading.warnings[0].to_string().contains(&(found + "read as 1.0")),
+            "{:?}",
+            reading.warnings
+        );
+    }
+    for version in ["1", "1.0", "1.1", "1.2", " 1.2 "] {
+        assert!(read(crane("<robot ", &format!("<robot version=\"{version}\" ")).as_bytes(), &options()).is_ok(), "{version}");
+    }
+}
+
 #[test]
 fn the_first_of_tags_that_contradict_each_other_counts_where_that_is_asked_for() {
     let text = crane("<mass value=\"40\"/>", "<mass value=\"40\"/><mass value=\"4\"/>");

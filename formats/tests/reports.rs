@@ -61,7 +61,6 @@ fn what_looks_wrong_is_a_warning_and_used_as_written() {
         ("<link name=\"hook\"/>", "<link name=\"hook\"><inertal/></link>", Code::Misspelt, "hook", 17),
         ("<link name=\"hook\"/>", "<link name=\"hook\"><joint name=\"swing\"/></link>", Code::Misplaced, "hook", 17),
         ("effort=\"100\"", "effort=\"100\" efort=\"1\"", Code::Misspelt, "travel", 29),
-        ("<robot ", "<robot version=\"7\" ", Code::Version, "", 2),
         ("<child link=\"hook\"/>", "<child link=\"hook\"/><origin rpy=\"0 -90 0\"/>", Code::MoreThanATurn, "swing", 33),
         ("<child link=\"hook\"/>", "<child link=\"hook\"/><origin xyz=\"0 0 -333\"/>", Code::Units, "swing", 33),
         ("value=\"40\"", "value=\"0.3\"", Code::Units, "boom", 5),

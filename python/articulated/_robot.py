@@ -470,15 +470,15 @@ def _pairs(what, given):
     return tuple((_name(what, name), value) for name, value in given.items())
 
 
-def _reading(allow_unphysical_inertia, first_of_duplicates, leave_out, snap_angles):
+def _reading(leave_out, snap_angles, **allowed):
     """How to read a file."""
-    for name, value in (("allow_unphysical_inertia", allow_unphysical_inertia), ("first_of_duplicates", first_of_duplicates)):
+    for name, value in allowed.items():
         if not isinstance(value, (bool, np.bool_)):
             raise TypeError(f"{name}: found {type(value).__name__}, expected True or False")
     if snap_angles is not None and (isinstance(snap_angles, bool) or not isinstance(snap_angles, (int, float, np.integer, np.floating))):
         raise TypeError(f"snap_angles: found {type(snap_angles).__name__}, expected a number, rad, or None")
     kinds = tuple(sorted(set(_names("leave_out", leave_out))))
-    return bool(allow_unphysical_inertia), bool(first_of_duplicates), kinds, None if snap_angles is None else float(snap_angles)
+    return tuple(bool(value) for value in allowed.values()), kinds, None if snap_angles is None else float(snap_angles)
 
 
 def _coupling(coupling):
@@ -512,6 +512,7 @@ def load(
     allow_unphysical_inertia=False,
     first_of_duplicates=False,
     leave_out=(),
+    allow_unknown_version=False,
     snap_angles=None,
 ):
     """The robot of a file.
@@ -528,9 +529,10 @@ def load(
             ``{"arm_description": "src/arm_description"}`` for ``$(find arm_description)``.
         coupling: "file" lets joints follow others as linear equations of the file say (MJCF).
         allow_unphysical_inertia: True accepts negative principal moments, with a warning.
-        first_of_duplicates: True takes the first of tags of a URDF that should be there once, with a warning.
+        first_of_duplicates: True takes the first of tags of a URDF or SDF that should be there once, with a warning.
         leave_out: Elements of an MJCF that change the motion and are not read, to leave out with a warning: any of
             "flex", "composite", "plugin". Those of another kind are errors.
+        allow_unknown_version: True reads a URDF of a version other than 1.0, 1.1 and 1.2 as 1.0, with a warning.
         snap_angles: Takes angles within so many rad of a multiple of π/2 as that multiple.
 
     Raises:
@@ -540,7 +542,13 @@ def load(
         RobotWarning: Something in the file looks wrong; the values are used as they are.
     """
     path = _path("path", path)
-    reading = _reading(allow_unphysical_inertia, first_of_duplicates, leave_out, snap_angles)
+    reading = _reading(
+        leave_out,
+        snap_angles,
+        allow_unphysical_inertia=allow_unphysical_inertia,
+        first_of_duplicates=first_of_duplicates,
+        allow_unknown_version=allow_unknown_version,
+    )
     given = {"args": _args(args), "packages": _packages(packages), "reading": reading, "coupling": _coupling(coupling)}
     return _robot(path, _native.read(path), base, gravity, frames, wrenches_in, True, **given)
 
@@ -558,6 +566,7 @@ def loads(
     allow_unphysical_inertia=False,
     first_of_duplicates=False,
     leave_out=(),
+    allow_unknown_version=False,
     snap_angles=None,
 ):
     """The robot of a text, str or bytes, which includes no files; ``name`` is the name of its file in messages. See ``load``."""
@@ -569,7 +578,13 @@ def loads(
         raise TypeError(f"text: found {type(text).__name__}, expected str or bytes")
     if not isinstance(name, str):
         raise TypeError(f"name: found {type(name).__name__}, expected str")
-    reading = _reading(allow_unphysical_inertia, first_of_duplicates, leave_out, snap_angles)
+    reading = _reading(
+        leave_out,
+        snap_angles,
+        allow_unphysical_inertia=allow_unphysical_inertia,
+        first_of_duplicates=first_of_duplicates,
+        allow_unknown_version=allow_unknown_version,
+    )
     given = {"args": _args(args), "reading": reading, "coupling": _coupling(coupling)}
     return _robot(name, text, base, gravity, frames, wrenches_in, False, **given)
 

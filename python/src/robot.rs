@@ -255,7 +255,7 @@ impl Robot {
         locks: Vec<(String, Vec<f64>)>,
         args: Vec<(String, String)>,
         packages: Vec<(String, PathBuf)>,
-        reading: (bool, bool, Vec<String>, Option<f64>),
+        reading: ((bool, bool, bool), Vec<String>, Option<f64>),
         coupling: (bool, Vec<(String, Vec<(String, f64)>, f64)>),
         like: Option<&Bound<'_, Self>>,
     ) -> PyResult<Self> {
@@ -294,8 +294,9 @@ impl Robot {
             |(link, mass, center_of_mass, inertia): PayloadRow| Payload { link, name: None, mass, center_of_mass, inertia }.into();
         options.payloads = payloads.into_iter().map(payload).collect();
         options.lock = locks.into_iter().map(Into::into).collect();
-        let leave_out;
-        (options.allow_unphysical_inertia, options.first_of_duplicates, leave_out, options.snap_angles) = reading;
+        let (allowed, leave_out, snap_angles) = reading;
+        options.snap_angles = snap_angles;
+        (options.allow_unphysical_inertia, options.first_of_duplicates, options.allow_unknown_version) = allowed;
         let kinds = leave_out.iter().map(|kind| kind.parse().map_err(|error| PyValueError::new_err(format!("leave_out: {error}"))));
         options.leave_out = kinds.collect::<PyResult<_>>()?;
         options.file_coupling = coupling.0;

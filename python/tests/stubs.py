@@ -105,6 +105,7 @@ def load(
     allow_unphysical_inertia: bool = False,
     first_of_duplicates: bool = False,
     leave_out: Iterable[str] = ...,
+    allow_unknown_version: bool = False,
     snap_angles: Optional[float] = None,
 ) -> Robot: ...
 def loads(
@@ -120,6 +121,7 @@ def loads(
     allow_unphysical_inertia: bool = False,
     first_of_duplicates: bool = False,
     leave_out: Iterable[str] = ...,
+    allow_unknown_version: bool = False,
     snap_angles: Optional[float] = None,
 ) -> Robot: ...
 def bundled(

@@ -147,7 +147,9 @@ def test_options_of_the_reader():
         return f'<robot name="r"><link name="base"/>{link.format("tip", second, ixx)}{joint}</robot>'
 
     plain, unphysical, twice = robot_of("", 1), robot_of("", -1), robot_of("<mass value='2'/>", 1)
-    for text, option in ((unphysical, "allow_unphysical_inertia"), (twice, "first_of_duplicates")):
+    newer = plain.replace("<robot ", '<robot version="1.7" ')
+    allowed = ((unphysical, "allow_unphysical_inertia"), (twice, "first_of_duplicates"), (newer, "allow_unknown_version"))
+    for text, option in allowed:
         with pytest.raises(articulated.RobotError, match=f"key `{option}`"):
             articulated.loads(text)
         with pytest.warns(articulated.RobotWarning):

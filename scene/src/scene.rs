@@ -99,6 +99,8 @@ pub struct CodeOptions {
     pub first_of_duplicates: Option<bool>,
     /// Elements of an MJCF that are not read, to leave out.
     pub leave_out: Option<BTreeSet<LeaveOut>>,
+    /// Read a URDF of an unknown version.
+    pub allow_unknown_version: Option<bool>,
     /// Take angles this near to a multiple of π/2 as that, rad.
     pub snap_angles: Option<f64>,
     /// Limbs that are alike at once.
@@ -411,6 +413,14 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         default: "none",
         what: "leave out elements of an MJCF that change the motion and are not read, with a warning; else they are errors",
         read: |s, spot, log| s.code.leave_out = left_out(spot, log),
+    },
+    Row {
+        name: "allow_unknown_version",
+        required: false,
+        value: "true or false",
+        default: "false",
+        what: "read a URDF of a version other than 1.0, 1.1 and 1.2 as 1.0, with a warning",
+        read: |s, spot, log| s.code.allow_unknown_version = spot.boolean(log),
     },
     Row {
         name: "snap_angles",

@@ -36,7 +36,7 @@ BOUND = 1e-12  # of the scale of each number; of forward dynamics also ten times
 STATES = 3
 FUNCTIONS = ["inverse_dynamics", "mass_matrix", "forward_dynamics"]
 # Options that errors name: each makes one kind of mistake a warning.
-OPTIONS = ["--allow-unphysical-inertia", "--first-of-duplicates"]
+OPTIONS = ["--allow-unphysical-inertia", "--first-of-duplicates", "--allow-unknown-version"]
 SINGULAR = 1e-13  # least ratio of pivots below which forward dynamics is not compared
 
 

@@ -75,6 +75,7 @@ fn each_choice_arrives_in_the_request() {
     (expected.robot.base, expected.robot.snap_angles, expected.robot.allow_unphysical_inertia) = (Base::Fixed, Some(1e-6), true);
     (expected.robot.first_of_duplicates, expected.robot.file_coupling) = (true, true);
     expected.robot.leave_out = [LeaveOut::Flex, LeaveOut::Plugin].into();
+    expected.robot.allow_unknown_version = true;
     expected.rename = vec![("a-b".to_owned(), "A_MINUS_B".to_owned()).into()];
     let all = build
         .clone()
@@ -85,6 +86,7 @@ fn each_choice_arrives_in_the_request() {
         .first_of_duplicates()
         .leave_out([LeaveOut::Plugin])
         .leave_out([LeaveOut::Flex])
+        .allow_unknown_version()
         .file_coupling()
         .rename("a-b", "A_MINUS_B");
     assert_eq!(of(all.clone()), expected);

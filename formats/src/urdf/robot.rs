@@ -38,7 +38,8 @@ pub(crate) fn draft(robot: &Tag<'_>, options: &Options, log: &mut Diagnostics) -
     unused::warn_of_blanks(robot, &name, log);
     let used: (&[&str], &[&str]) = (&["link", "joint", DRAKE_JOINT, "transmission"], &["name", "version"]);
     unused::rest_beside(robot, &Parts::of(robot), used, log);
-    let context = Context { options, version: version(robot, log), length: frame::longest(robot), materials: visual::materials(robot) };
+    let context =
+        Context { options, version: version(robot, options, log), length: frame::longest(robot), materials: visual::materials(robot) };
     let mut draft = Draft { name, ..Draft::default() };
     for tag in robot.children() {
         if tag.is("link") {
@@ -83,14 +84,22 @@ fn declare_world(draft: &mut Draft, log: &mut Diagnostics) {
     draft.links.push(DraftLink { name: Some(WORLD.to_owned()), at, inertial: None, collision: Vec::new(), visual: Vec::new() });
 }
 
-fn version(robot: &Tag<'_>, log: &mut Diagnostics) -> Version {
-    let Some((given, _)) = robot.attribute("version") else {
+/// The option that reads other versions, as the command, scenes and macro, and build scripts spell
+/// it.
+const ALLOW_UNKNOWN_VERSION: &str = "`--allow-unknown-version` (key `allow_unknown_version`, method `Build::allow_unknown_version`)";
+
+fn version(robot: &Tag<'_>, options: &Options, log: &mut Diagnostics) -> Version {
+    let Some((given, at)) = robot.attribute("version") else {
         return Version::V1_0;
     };
     let version = VERSIONS.iter().find(|(name, _)| *name == given.trim());
     if version.is_none() {
-        let expected = "1.0, 1.1 or 1.2; read as 1.0";
-        log.warning(robot.place("version"), Code::Version, quote(given.trim()), expected);
+        let place = Place { at, ..robot.place("version") };
+        let found = format!("the version {}", quote(given.trim()));
+        match options.allow_unknown_version {
+            true => log.warning(place, Code::Version, found, "1.0, 1.1 or 1.2; read as 1.0"),
+            false => log.error(place, Code::Version, found, format!("1.0, 1.1 or 1.2; {ALLOW_UNKNOWN_VERSION} reads it as 1.0")),
+        }
     }
     version.map_or(Version::V1_0, |(_, version)| *version)
 }

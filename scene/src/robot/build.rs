@@ -180,6 +180,7 @@ impl RobotRequest<'_> {
             allow_unphysical_inertia: self.options.allow_unphysical_inertia,
             first_of_duplicates: self.options.first_of_duplicates,
             leave_out: self.options.leave_out.clone(),
+            allow_unknown_version: self.options.allow_unknown_version,
             snap_angles: self.options.snap_angles.filter(|x| can_snap(*x)),
             formats: self.options.formats,
             arguments: self.options.arguments.clone(),

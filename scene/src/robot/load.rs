@@ -279,6 +279,7 @@ impl Scene {
         options.allow_unphysical_inertia = code.allow_unphysical_inertia.unwrap_or(options.allow_unphysical_inertia);
         options.first_of_duplicates = code.first_of_duplicates.unwrap_or(options.first_of_duplicates);
         options.leave_out = code.leave_out.unwrap_or_else(|| std::mem::take(&mut options.leave_out));
+        options.allow_unknown_version = code.allow_unknown_version.unwrap_or(options.allow_unknown_version);
         options.snap_angles = code.snap_angles;
         options.arguments.extend(code.args);
         let folder = folder_of(Path::new(&self.file));

@@ -54,6 +54,8 @@ pub struct RobotOptions {
     pub first_of_duplicates: bool,
     /// Elements of an MJCF that change the motion and are not read, to leave out with a warning.
     pub leave_out: BTreeSet<LeaveOut>,
+    /// Read a URDF of a version other than 1.0, 1.1 and 1.2 as 1.0, with a warning.
+    pub allow_unknown_version: bool,
     /// Take angles this near (rad, above 0, at most
     /// [`MOST_SNAPPED`](articulated_formats::MOST_SNAPPED)) to a multiple of π/2 as that multiple;
     /// every one is reported. `None`: never.
@@ -118,6 +120,7 @@ impl Default for RobotOptions {
             allow_unphysical_inertia: false,
             first_of_duplicates: false,
             leave_out: BTreeSet::new(),
+            allow_unknown_version: false,
             snap_angles: None,
             formats: Formats::default(),
             included: Included::default(),
