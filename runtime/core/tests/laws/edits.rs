@@ -3,11 +3,13 @@
 
 use articulated_core::description::{Base, Description, EditError, Inertial, JointKind, Link, Origin, Payload};
 use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
-use articulated_test_support::case::{Case, State, for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix, placements, read};
+use articulated_test_support::case::{Case, State, for_each_bundled, inverse_dynamics, mass_matrix, placements, read};
 use articulated_test_support::measure::{distance, scale, torque_scale};
 use articulated_test_support::random::Random;
 use articulated_test_support::random_tree::Flavour;
 use articulated_test_support::virtual_power::Motions;
+
+use crate::trees::for_each_tree;
 
 /// Errors allowed, in units of u times the magnitude of the terms.
 const FEW: f64 = 16.0;

@@ -2,14 +2,18 @@
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{self as dynamics, Workspace};
+use articulated_core::description::{Base, Origin};
 use articulated_core::dual::Dual;
 use articulated_core::effect::{self, Applied, BodyEffect, EffectId, Enters, JointEffect, On, effects};
 use articulated_core::model::Model;
-use articulated_core::spatial::Placement;
-use articulated_test_support::case::{Case, State, cast, for_each_tree};
+use articulated_core::spatial::{Placement, from_quaternion};
+use articulated_test_support::case::{Case, State, cast};
 use articulated_test_support::random::Random;
 use articulated_test_support::random_effects::random_effects;
 use articulated_test_support::random_tree::Flavour;
+use nalgebra::Vector3;
+
+use crate::trees::{for_each_tree, share};
 
 /// No followers: they have laws of their own, and the articulated-body algorithm does without.
 const FREE: Flavour = Flavour { mimic: false, ..Flavour::REGULAR };
@@ -85,15 +89,53 @@ fn what_torques_give_and_effects_take_is_the_change_of_energy() {
 #[test]
 fn effects_take_energy_and_never_give_any() {
     for effect in effects().iter().filter(|row| !row.conservative && row.enters != Enters::Drive).map(|row| row.id) {
-        let felt = std::cell::Cell::new(0);
+        let felt = std::cell::Cell::new(0_u64);
         for_each_tree(40, Flavour::ANY, |case, random| {
             let (model, State { q, v, .. }) = subject(case, random, |e| e == effect);
             let power = call(&model, "dissipation", &[&q, &v])[0];
             assert!(power <= 0.0 || power < 1e-15, "{}: {power} W by {}", case.name, effect.name());
-            felt.set(felt.get() + usize::from(power < 0.0));
+            felt.set(felt.get() + u64::from(power < 0.0));
         });
-        assert!(felt.get() > 5, "{}: felt {} times", effect.name(), felt.get());
+        assert!(felt.get() > share(5), "{}: felt {} times", effect.name(), felt.get());
     }
+}
+
+/// The cone of a contact is that of the force that presses, its damping included: across the normal
+/// a free body feels μ F v_t/√(v_t² + s²), against v_t, where F is what it feels along the normal.
+#[test]
+fn friction_of_a_contact_is_that_of_its_whole_normal_force() {
+    let pressed = std::cell::Cell::new(0_u64);
+    for_each_tree(80, Flavour { links: 1, ..Flavour::ANY }, |case, random| {
+        if case.base == Base::Fixed {
+            return;
+        }
+        let name = case.model.frames()[0].name.clone();
+        let (friction, smooth) = (0.7, 0.4);
+        let [radius, stiffness, damping] = [0.3, 50.0, 0.6];
+        let at = Origin { xyz: random.three(0.5), ..Origin::default() };
+        let normal = effect::unit(random.three(1.0)).expect("a direction");
+        let height = 3.0;
+        let parameters = [&[radius, stiffness, damping, friction, smooth][..], &normal, &[height]].concat();
+        let applied = Applied { effect: EffectId::contact, on: name, at: at.clone(), parameters };
+        let model = case.model.clone().with_effects(&[applied]).expect("a contact");
+        let State { q, v, .. } = case.state(random);
+        let wrench = call(&model, "effect_forces", &[&q, &v]);
+        // In world axes: the base's rotation times its force, and the velocity of the lowest point.
+        let turn = from_quaternion([q[3], q[4], q[5], q[6]]);
+        let [omega, linear, moment, force] =
+            [&v[..3], &v[3..6], &wrench[..3], &wrench[3..6]].map(|x| turn * Vector3::new(x[0], x[1], x[2]));
+        let normal = Vector3::from(normal);
+        let arm = turn * Vector3::from(at.xyz) - normal * radius;
+        let velocity = linear + omega.cross(&arm);
+        let sliding = velocity - normal * normal.dot(&velocity);
+        let press = normal.dot(&force);
+        let expected = sliding * (-friction * press / (sliding.norm_squared() + smooth * smooth).sqrt());
+        let across = force - normal * press;
+        assert!(press >= 0.0 && (across - expected).norm() <= 1e-13 * (1.0 + press), "{}: {across}, not {expected}", case.name);
+        assert!((moment - arm.cross(&force)).norm() <= 1e-12 * (1.0 + press), "{}: {moment}", case.name);
+        pressed.set(pressed.get() + u64::from(press > 0.0));
+    });
+    assert!(pressed.get() > share(20), "only {}", pressed.get());
 }
 
 #[test]

@@ -175,6 +175,37 @@ fn added_mass_turns_a_body_broadside_on() {
     assert_all_near(&found, &[0.0, -(w * x * u - u * z * w) / INERTIA, 0.0, 0.0, 0.0, -G * MASS / (MASS + z)]);
 }
 
+/// Kirchhoff's equations with a coupling: rows are moments, columns are accelerations.
+#[test]
+fn coupling_of_added_mass_takes_accelerations_to_moments() {
+    // [[A, C], [Cᵀ, L]], all different.
+    let a = [[9.0, 0.3, -0.2], [0.3, 8.0, 0.5], [-0.2, 0.5, 7.0]];
+    let l = [[6.0, -0.4, 0.1], [-0.4, 5.0, 0.7], [0.1, 0.7, 4.0]];
+    let c = [[0.11, -0.52, 0.33], [0.74, 0.25, -0.86], [0.47, -0.18, 0.69]];
+    let upper = |m: [[f64; 3]; 3]| [m[0][0], m[0][1], m[0][2], m[1][1], m[1][2], m[2][2]];
+    let added = on(EffectId::added_mass, "ball", &[&upper(a)[..], &upper(l), &c.concat()].concat());
+    let model = ball().with_effects(&[added]).expect("added mass on a ball");
+    let (v, rates) = ([0.4, -0.7, 0.2, 1.5, 0.3, -0.6], [0.9, 0.8, -0.5, 0.7, -1.1, 0.6]);
+    // Momentum of the body, and of body and fluid, of a twist.
+    let with = |x: [f64; 6], fluid: f64| {
+        let moment: [f64; 3] =
+            std::array::from_fn(|i| INERTIA * x[i] + fluid * (0..3).map(|k| a[i][k] * x[k] + c[i][k] * x[3 + k]).sum::<f64>());
+        let force: [f64; 3] =
+            std::array::from_fn(|i| MASS * x[3 + i] + fluid * (0..3).map(|k| c[k][i] * x[k] + l[i][k] * x[3 + k]).sum::<f64>());
+        (moment, force)
+    };
+    let cross = |a: [f64; 3], b: [f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let [angular, linear] = [[v[0], v[1], v[2]], [v[3], v[4], v[5]]];
+    let ((moment, force), (m, f)) = (with(rates, 1.0), with(v, 1.0));
+    let (turning, carried, pushed) = (cross(angular, m), cross(linear, f), cross(angular, f));
+    let expected: Vec<f64> = (0..3)
+        .map(|i| moment[i] + turning[i] + carried[i])
+        .chain((0..3).map(|i| force[i] + pushed[i] + if i == 2 { MASS * G } else { 0.0 }))
+        .collect();
+    let tau = call(&model, "inverse_dynamics", &[&[0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], &v, &rates]);
+    assert_all_near(&tau, &expected);
+}
+
 #[test]
 fn a_ball_on_the_ground_rests_where_its_weight_is_held() {
     let (radius, stiffness) = (0.1, 5e3);
@@ -187,6 +218,9 @@ fn a_ball_on_the_ground_rests_where_its_weight_is_held() {
     assert_all_near(&moves(&[ground(0.6)], rest, [0.0, 0.0, 0.0, 0.0, 0.0, -2.0]), &[0.0, 0.0, 0.0, 0.0, 0.0, G * 1.8 - G]);
     // Leaving faster than it springs back: nothing holds it.
     assert_all_near(&moves(&[ground(0.6)], rest, [0.0, 0.0, 0.0, 0.0, 0.0, 3.0]), &[0.0, 0.0, 0.0, 0.0, 0.0, -G]);
+    // Sliding while it falls: μ of the whole force, damping included.
+    let both = moves(&[ground(0.6)], rest, [0.0, 0.0, 0.0, 1.0, 0.0, -2.0]);
+    assert_all_near(&both, &[0.0, 0.6 * 1.8 * MASS * G * radius / INERTIA, 0.0, -0.6 * 1.8 * G, 0.0, 1.8 * G - G]);
     // Sliding: μ m g at the lowest point, which turns the ball.
     let sliding = moves(&[ground(0.6)], rest, [0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
     assert_all_near(&sliding, &[0.0, 0.6 * MASS * G * radius / INERTIA, 0.0, -0.6 * G, 0.0, 0.0]);

@@ -1,11 +1,12 @@
 //! Energy: what torques do is what motion and height gain.
 
-use articulated_test_support::case::{Case, State};
-use articulated_test_support::case::{for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix};
+use articulated_test_support::case::{Case, State, for_each_bundled, inverse_dynamics, mass_matrix};
 use articulated_test_support::measure::{U, torque_scale};
 use articulated_test_support::random::Random;
 use articulated_test_support::random_tree::Flavour;
 use nalgebra::DVector;
+
+use crate::trees::for_each_tree;
 
 /// Errors allowed, in units of u times the magnitude of the terms.
 const FEW: f64 = 32.0;

@@ -3,12 +3,14 @@
 use articulated_core::algorithm::{Dim, Needs, functions};
 use articulated_core::description::{Base, Description, Frame, Inertial, Joint, JointKind, Link, Origin, Rotation};
 use articulated_core::spatial::from_quaternion;
-use articulated_test_support::case::{Case, State, for_each_tree, inverse_dynamics};
+use articulated_test_support::case::{Case, State, inverse_dynamics};
 use articulated_test_support::measure::{distance, torque_scale};
 use articulated_test_support::random_tree::{Flavour, random_tree};
 use articulated_test_support::regressors::broken_laws;
 use articulated_test_support::{random::Random, rigid};
 use nalgebra::Vector3;
+
+use crate::trees::for_each_tree;
 
 /// Errors allowed, in units of u times the magnitude of the terms.
 const FEW: f64 = 16.0;

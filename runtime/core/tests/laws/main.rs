@@ -23,3 +23,4 @@ mod structure;
 mod table;
 mod textbook;
 mod traps;
+mod trees;

@@ -10,10 +10,12 @@ use articulated_core::model::{JointInfo, Model};
 use articulated_core::spatial::screw::Quaternion;
 use articulated_core::spatial::{Vector3, rotate};
 use articulated_reference::Big;
-use articulated_test_support::case::{Case, cast, for_each_bundled, for_each_tree};
+use articulated_test_support::case::{Case, cast, for_each_bundled};
 use articulated_test_support::measure::U;
 use articulated_test_support::random::Random;
 use articulated_test_support::random_tree::Flavour;
+
+use crate::trees::for_each_tree;
 
 /// Where a joint's quaternion is in q, and its angular rates in v.
 fn quaternion_of(joint: &JointInfo) -> Option<(usize, usize)> {

@@ -3,11 +3,12 @@
 use articulated_core::description::{Base, Coupling, Description, Origin};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::JointInfo;
-use articulated_test_support::case::{Case, State, for_each_tree, inverse_dynamics, placements, read};
+use articulated_test_support::case::{Case, State, inverse_dynamics, placements, read};
 use articulated_test_support::measure::{distance, scale, torque_scale};
 use articulated_test_support::random_tree::Flavour;
 
 use crate::effects::{assert_near, by_duals, call};
+use crate::trees::{for_each_tree, share};
 
 /// Errors allowed, in units of u times the magnitude of the terms.
 const FEW: f64 = 16.0;
@@ -43,7 +44,7 @@ fn torque_on_a_leader_is_that_of_equal_power() {
     for_each_tree(150, Flavour { locked: false, ..Flavour::ANY }, |case, random| {
         let mut tree = case.description.clone();
         tree.joints.iter_mut().for_each(|j| j.mimic = None);
-        met.set(met.get() + usize::from(tree != case.description));
+        met.set(met.get() + u64::from(tree != case.description));
         let free = Case::new("", tree, case.base);
         let rows = rows(case, &free);
         let state = case.state(random);
@@ -64,7 +65,7 @@ fn torque_on_a_leader_is_that_of_equal_power() {
         let far = distance(&placements(&case.model, &state.q), &placements(&free.model, &q), &scale(case, "placements", &state));
         assert!(far <= FEW, "placements: {far} units of roundoff");
     });
-    assert!(*met.get_mut() > 50, "only {} trees with followers", met.get());
+    assert!(*met.get_mut() > share(50), "only {} trees with followers", met.get());
 }
 
 /// Two joints of one axis that follow in opposite directions do not turn the tip.
@@ -165,7 +166,7 @@ fn torque_on_each_of_several_leaders_is_that_of_equal_power() {
         assert!(far <= FEW, "placements: {far} units of roundoff");
         crate::reference::textbook_holds(reduced, random);
     });
-    assert!(*met.get_mut() > 15, "only {} trees", met.get());
+    assert!(*met.get_mut() > share(15), "only {} trees", met.get());
 }
 
 /// Dampers, friction, springs and stops on the follower are those on its own coordinate, Σ cᵢ qᵢ +
@@ -216,7 +217,7 @@ fn effects_on_a_joint_that_follows_several_act_on_each_leader() {
             assert!(message.contains("follows"), "{message}");
         }
     });
-    assert!(*met.get_mut() > 10, "only {} trees", met.get());
+    assert!(*met.get_mut() > share(10), "only {} trees", met.get());
 }
 
 /// A differential drive, by hand: M = 1e-4 + 0.05²·0.01 on the diagonal, −0.05²·0.01 beside it.

@@ -4,10 +4,12 @@ use articulated_core::Scalar;
 use articulated_core::algorithm::textbook::Textbook;
 use articulated_core::algorithm::{Needs, Workspace, functions};
 use articulated_reference::Big;
-use articulated_test_support::case::{Case, State, cast, for_each_bundled, for_each_tree, placements};
+use articulated_test_support::case::{Case, State, cast, for_each_bundled, placements};
 use articulated_test_support::measure::{arguments, distance, distance_from, scale, torque_scale};
 use articulated_test_support::random::Random;
 use articulated_test_support::random_tree::Flavour;
+
+use crate::trees::for_each_tree;
 
 /// Errors allowed, in units of u times the magnitude of the terms. Seen: 8 on 60 random trees.
 const FEW: f64 = 16.0;

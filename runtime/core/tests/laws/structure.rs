@@ -2,10 +2,12 @@
 
 use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Origin};
 use articulated_core::model::Model;
-use articulated_test_support::case::{Case, State, for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix, read};
+use articulated_test_support::case::{Case, State, for_each_bundled, inverse_dynamics, mass_matrix, read};
 use articulated_test_support::measure::{arguments, distance, error, plus, scale, torque_scale};
 use articulated_test_support::random::Random;
 use articulated_test_support::random_tree::Flavour;
+
+use crate::trees::for_each_tree;
 
 /// Errors allowed, in units of u times the magnitude of the terms.
 const FEW: f64 = 16.0;

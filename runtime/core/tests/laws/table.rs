@@ -2,13 +2,15 @@
 //! functions are to each other, and with that those of the library, is held in [`super::textbook`].
 
 use articulated_core::Scalar;
-use articulated_core::algorithm::{Function, FunctionId, Workspace, functions};
+use articulated_core::algorithm::{Argument, Function, FunctionId, Workspace, functions};
 use articulated_core::model::Model;
 use articulated_core::spatial::Reference;
 use articulated_reference::Big;
-use articulated_test_support::case::{Case, cast, for_each_tree};
+use articulated_test_support::case::{Case, cast};
 use articulated_test_support::every_function::{difference, for_each_function, tolerance};
 use articulated_test_support::random_tree::Flavour;
+
+use crate::trees::for_each_tree;
 
 const SMALL: Flavour = Flavour { links: 7, ..Flavour::REGULAR };
 
@@ -28,6 +30,10 @@ fn every_function_in_every_way_is_the_textbooks() {
                 let model = case.model.clone().with_wrenches_in(reference).cast::<Big>();
                 let book = case.textbook::<Big>().with_wrenches_in(reference);
                 for_each_function(case, &model, &state, |row, given| {
+                    // Other functions do not depend on the reference: once is enough.
+                    if reference != Reference::Body && !row.takes.contains(&Argument::Wrenches) {
+                        return;
+                    }
                     let expected = book.call(row.name, given).expect("the textbook has every function").expect("as many numbers");
                     for (k, way) in row.ways.iter().enumerate().filter(|(_, way)| (way.applies)(&model)) {
                         let off = difference(&run(row, k, &model, given), &expected);

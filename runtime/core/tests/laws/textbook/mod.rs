@@ -10,9 +10,11 @@ use articulated_core::algorithm::textbook::Textbook;
 use articulated_core::algorithm::{Argument, Needs, functions};
 use articulated_core::spatial::Reference;
 use articulated_reference::Big;
-use articulated_test_support::case::{Case, State, cast, for_each_tree};
+use articulated_test_support::case::{Case, State, cast};
 use articulated_test_support::random_tree::Flavour;
 use num_traits::{One, Zero};
+
+use crate::trees::for_each_tree;
 
 /// Digits that rounding leaves: of 96, less what is lost where matrices are nearly singular.
 const EXACT: f64 = 1e-60;
