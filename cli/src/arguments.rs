@@ -41,7 +41,7 @@ pub(crate) struct RobotArguments {
     /// inequality always are)
     #[arg(long)]
     pub(crate) allow_unphysical_inertia: bool,
-    /// Take the first of tags of a URDF that should be there once, with a warning
+    /// Take the first of tags of a URDF or SDF that should be there once, with a warning
     #[arg(long)]
     pub(crate) first_of_duplicates: bool,
     /// Leave out elements of an MJCF that change the motion and are not read, with a warning: flex,

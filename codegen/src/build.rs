@@ -163,7 +163,7 @@ impl Build {
         self
     }
 
-    /// The first of tags of a URDF that should be there once is used, with a warning.
+    /// The first of tags of a URDF or SDF that should be there once is used, with a warning.
     #[must_use]
     pub fn first_of_duplicates(mut self) -> Self {
         self.request.options.robot.first_of_duplicates = true;

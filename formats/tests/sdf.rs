@@ -369,7 +369,7 @@ fn links_without_mass_properties_have_the_defaults_of_the_format() {
     assert_eq!((inertial.mass, inertial.inertia), (1.0, [1.0, 0.0, 0.0, 1.0, 0.0, 1.0]));
     assert_eq!(reading.warnings.iter().map(|warning| warning.code).collect::<Vec<_>>(), [Code::MissingTag]);
     let auto = error(&model("1.11", "<link name=\"a\"><inertial auto=\"true\"/></link>"));
-    assert_eq!((auto.0, auto.1), (Code::Unsupported, Some(3)));
+    assert_eq!((auto.0, auto.1), (Code::MissingTag, Some(3)));
 }
 
 #[test]
@@ -546,6 +546,205 @@ fn files_are_included_by_their_paths() {
     let ring =
         read_with(&bad, "<sdf version='1.9'><model name='y'><include><uri>arm.sdf</uri></include></model></sdf>".as_bytes(), &options());
     assert!(ring.unwrap_err().errors.iter().any(|error| error.code == Code::Ring));
+}
+
+/// A URDF with every type of joint that SDF has, turned frames, a follower and forces.
+const PARTS: &str = "<robot name='crane'>\
+  <link name='foot'><inertial><origin xyz='0.1 0 0.2'/><mass value='3'/><inertia ixx='0.3' ixy='0.01' ixz='0' iyy='0.4' iyz='-0.02' izz='0.2'/></inertial></link>\
+  <link name='boom'><inertial><origin xyz='0.4 0 0' rpy='0.3 -0.2 0.1'/><mass value='2'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.2' iyz='0' izz='0.25'/></inertial>\
+    <collision><origin xyz='0 0 1'/><geometry><capsule radius='0.1' length='0.5'/></geometry></collision></link>\
+  <link name='frame'/>\
+  <link name='hook'><inertial><origin xyz='0 0.2 0'/><mass value='1.5'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/></inertial></link>\
+  <link name='nut'><inertial><mass value='0.5'/><inertia ixx='0.01' ixy='0' ixz='0' iyy='0.02' iyz='0' izz='0.02'/></inertial></link>\
+  <joint name='boom' type='revolute'><parent link='foot'/><child link='boom'/><origin xyz='0.1 0.2 1' rpy='0.4 -0.3 0.2'/><axis xyz='0 2 1'/>\
+    <limit lower='-1' upper='2' effort='50' velocity='3'/><dynamics damping='0.4' friction='0.1'/></joint>\
+  <joint name='weld' type='fixed'><parent link='boom'/><child link='frame'/><origin xyz='1 0 0' rpy='0 0 1'/></joint>\
+  <joint name='swing' type='continuous'><parent link='frame'/><child link='hook'/><origin xyz='0 0.1 0'/><axis xyz='1 0 0'/><mimic joint='boom' multiplier='-0.5' offset='0.2'/></joint>\
+  <joint name='thread' type='helical'><parent link='hook'/><child link='nut'/><origin xyz='0 0 -0.3'/><axis xyz='0 0 1'/><thread pitch='0.02'/>\
+    <limit lower='-9' upper='9' effort='1' velocity='1'/></joint></robot>";
+
+#[test]
+fn a_urdf_in_an_include_is_read() {
+    let of = |include: &str, urdf: &str| {
+        let files = Files::of(&[("robots/crane/crane.urdf", urdf)]);
+        let text = model("1.9", &[link("cart", ""), include.to_owned()].concat());
+        read_with(&files, text.as_bytes(), &options())
+    };
+    let include = "<include><uri>model://crane/crane.urdf</uri><name>c</name><pose>1 2 3 0.1 0.2 0.3</pose></include>";
+    let reading = of(include, PARTS).unwrap();
+    let robot = &reading.description;
+    let alone = read(PARTS.as_bytes(), &Options { file: "crane.urdf".into(), ..Options::default() }).unwrap();
+    assert_eq!(
+        robot.links.iter().map(|l| l.name.as_str()).collect::<Vec<_>>(),
+        ["world", "cart", "c::foot", "c::boom", "c::frame", "c::hook", "c::nut"]
+    );
+    for joint in &alone.description.joints {
+        let own = &robot.joints[robot.joint(&format!("c::{}", joint.name)).unwrap()];
+        assert_eq!((own.kind, own.pitch, own.limit, own.dynamics), (joint.kind, joint.pitch, joint.limit, joint.dynamics));
+        assert!(own.axis == joint.axis || joint.kind == JointKind::Fixed);
+        assert!(
+            near(&own.origin.xyz, &joint.origin.xyz) && near(&own.origin.rotation.rpy(), &joint.origin.rotation.rpy()),
+            "{}",
+            joint.name
+        );
+        let law = |d: &Description, m: articulated_core::description::Mimic| {
+            (d.joints[m.joint].name.rsplit("::").next().unwrap().to_owned(), m.multiplier, m.offset)
+        };
+        assert_eq!(own.mimic.map(|m| law(robot, m)), joint.mimic.map(|m| law(&alone.description, m)));
+    }
+    for link in &alone.description.links {
+        let own = &robot.links[robot.link(&format!("c::{}", link.name)).unwrap()];
+        assert_eq!(&own.collision, &link.collision);
+        assert_eq!(own.inertial.map(|i| (i.mass, i.inertia, i.origin.xyz)), link.inertial.map(|i| (i.mass, i.inertia, i.origin.xyz)));
+        let turn = |link: &articulated_core::description::Link| link.inertial.map_or([0.0; 3], |i| i.origin.rotation.rpy());
+        assert!(near(&turn(own), &turn(link)), "{}", link.name);
+    }
+    // It floats, and starts where the tag says. The name that a link and a joint share is no news in a URDF.
+    let home = reading.world.home.unwrap();
+    assert_eq!((home.q[0].0.as_str(), &home.q[0].1[..3]), ("c::foot_free", &[1.0, 2.0, 3.0][..]));
+    assert!(reading.warnings.iter().all(|w| w.code != Code::DuplicateName && w.code != Code::MissingTag), "{:?}", reading.warnings);
+    // A URDF whose root is the world hangs on the world; mistakes have its name and line.
+    let held = of(
+        include,
+        "<robot name='r'><link name='world'/><link name='a'/><joint name='j' type='continuous'><parent link='world'/><child link='a'/></joint></robot>",
+    );
+    let held = held.unwrap().description;
+    assert_eq!(held.joints.iter().map(|j| (j.name.as_str(), j.parent)).collect::<Vec<_>>(), [("cart_free", 0), ("c::j", 0)]);
+    let wrong =
+        of(include, "<robot name='r'>\n<link name='a'><inertial><mass value='x'/></inertial></link></robot>").unwrap_err().to_string();
+    assert!(wrong.contains("robots/crane/crane.urdf:2: link \"a\": mass value: found \"x\""), "{wrong}");
+    let planar = of(include, &PARTS.replace("continuous", "planar").replace("<mimic joint='boom' multiplier='-0.5' offset='0.2'/>", ""));
+    let planar = planar.unwrap_err().to_string();
+    assert!(planar.contains("robots/crane/crane.urdf: joint \"swing\": type: found a planar joint"), "{planar}");
+}
+
+/// Closed forms of each shape, and the parallel axes of two by hand.
+#[test]
+fn inertias_are_computed_of_shapes_where_the_file_says_so() {
+    let shape = |pose: &str, density: &str, geometry: &str| {
+        format!("<collision name='c'>{pose}{density}<geometry>{geometry}</geometry></collision>")
+    };
+    let of = |inertial: &str, shapes: &str| model("1.11", &format!("<link name='a'>{inertial}{shapes}</link>"));
+    let own = |text: &str| accepted(text).description.links[1].inertial.unwrap();
+    let auto = "<inertial auto='true'/>";
+    let pi = std::f64::consts::PI;
+    // One shape of density 800 in its own frame: volume, squared radii of gyration, centre.
+    let alone: [(&str, f64, [f64; 3], f64); 6] = [
+        ("<box><size>1 2 3</size></box>", 6.0, [13.0 / 12.0, 10.0 / 12.0, 5.0 / 12.0], 0.0),
+        ("<sphere><radius>0.5</radius></sphere>", pi / 6.0, [0.1; 3], 0.0),
+        ("<cylinder><radius>0.2</radius><length>0.6</length></cylinder>", 0.024 * pi, [0.04, 0.04, 0.02], 0.0),
+        ("<ellipsoid><radii>1 2 3</radii></ellipsoid>", 8.0 * pi, [2.6, 2.0, 1.0], 0.0),
+        ("<cone><radius>0.2</radius><length>0.6</length></cone>", 0.008 * pi, [0.0195, 0.0195, 0.012], -0.15),
+        // ∫ over the cylinder and both half balls: (0.024 · 0.04 + (4/3) 0.008 (0.016 + 0.09 + 0.045)) / (0.024 + (4/3) 0.008).
+        (
+            "<capsule><radius>0.2</radius><length>0.6</length></capsule>",
+            (0.024 + 0.032 / 3.0) * pi,
+            {
+                let across = (0.024 * 0.04 + 0.032 / 3.0 * 0.151) / (0.024 + 0.032 / 3.0);
+                [across, across, (0.024 * 0.02 + 0.032 / 3.0 * 0.016) / (0.024 + 0.032 / 3.0)]
+            },
+            0.0,
+        ),
+    ];
+    for (geometry, volume, [x, y, z], centre) in alone {
+        let found = own(&of(auto, &shape("", "<density>800</density>", geometry)));
+        let mass = 800.0 * volume;
+        assert!((found.mass - mass).abs() < 1e-12 * mass && near(&found.origin.xyz, &[0.0, 0.0, centre]), "{geometry}: {found:?}");
+        let scaled = found.inertia.map(|moment| moment / mass);
+        assert!(near(&scaled, &[x, 0.0, 0.0, y, 0.0, z]), "{geometry}: {scaled:?}");
+    }
+    // A ball of 2 kg at (1, 0, 0) and a box of 1 kg, turned by 90° about x, at (-2, 0, 3).
+    let ball =
+        shape("<pose>1 0 0 0 0 0</pose>", &format!("<density>{}</density>", 2.0 / (pi / 6.0)), "<sphere><radius>0.5</radius></sphere>");
+    let boxed = shape("<pose degrees='true'>-2 0 3 90 0 0</pose>", "", "<box><size>1 2 0.5</size></box>");
+    let both = own(&of("<inertial auto='true'><density>1</density></inertial>", &(ball.clone() + &boxed)));
+    // About the centre (0, 0, 1): 0.2 of the ball itself and its 2 kg at (1, 0, -1), the box with y and z exchanged and 1 kg at (-2, 0, 2).
+    let turned = [0.2 + 4.25 / 12.0 + 2.0 + 4.0, 0.0, 2.0 + 4.0, 0.2 + 5.0 / 12.0 + 4.0 + 8.0, 0.0, 0.2 + 1.25 / 12.0 + 2.0 + 4.0];
+    assert!(near(&[both.mass], &[3.0]) && near(&both.origin.xyz, &[0.0, 0.0, 1.0]) && near(&both.inertia, &turned), "{both:?} {turned:?}");
+    // A mass in the file scales it; pose and inertia of the file are not used.
+    let scaled =
+        "<inertial auto='true'><mass>1.5</mass><pose>9 9 9 0 0 0</pose><inertia><ixx>7</ixx></inertia><density>1</density></inertial>";
+    let reading = accepted(&of(scaled, &(ball + &boxed)));
+    let half = reading.description.links[1].inertial.unwrap();
+    assert!(
+        near(&[half.mass], &[1.5]) && near(&half.inertia, &turned.map(|moment| moment / 2.0)) && near(&half.origin.xyz, &[0.0, 0.0, 1.0])
+    );
+    assert_eq!(reading.unused.iter().filter(|u| matches!(u.tag.as_str(), "pose" | "inertia")).count(), 2);
+    // Without a density, water's, with a warning.
+    let reading = accepted(&of(auto, &shape("", "", "<box><size>1 1 1</size></box>")));
+    assert_eq!(reading.description.links[1].inertial.unwrap().mass, 1000.0);
+    assert!(reading.warnings.len() == 1 && reading.warnings[0].to_string().contains("1000 kg/m³"), "{:?}", reading.warnings);
+    // What cannot be computed.
+    let mesh = shape("", "<density>1</density>", "<mesh><uri>a.stl</uri></mesh>");
+    let plane = shape("", "<density>1</density>", "<plane/>");
+    for (shapes, words) in [
+        (mesh.as_str(), "link \"a\": auto: found the mesh \"a.stl\", expected a box, capsule, cone, cylinder, ellipsoid or sphere"),
+        (&plane, "found <plane>, expected a box"),
+        ("", "found no shapes, expected <collision> with a shape"),
+        (&shape("", "<density>0</density>", "<box><size>1 1 1</size></box>"), "density: found 0, expected a density above 0 kg/m³"),
+        (&shape("", "<density>1</density>", "<box><size>1 1 0</size></box>"), "found shapes without volume"),
+    ] {
+        let (.., told) = error(&of(auto, shapes));
+        assert!(told.contains(words), "{told}");
+    }
+    // Nothing depends on the mass of what does not move.
+    let still = "<sdf version='1.11'><model name='m'><static>true</static><link name='a'><inertial auto='true'/><collision name='c'><geometry><plane/></geometry></collision></link></model></sdf>";
+    assert!(accepted(still).description.links[1].inertial.is_none());
+}
+
+/// A law that is not read is an error, and a plugin that couples joints is called so.
+#[test]
+fn couplings_that_are_not_read_are_named() {
+    let follower = |law: &str| {
+        let links = ["a", "b"].map(|name| link(name, "")).concat();
+        let leads = joint("j", "revolute", ["world", "a"], "<axis><xyz>1 0 0</xyz></axis>");
+        let mimic = format!("<axis><xyz>1 0 0</xyz><mimic joint=\"j\"{law}</mimic></axis>");
+        model("1.11", &[links, leads, joint("k", "revolute", ["a", "b"], &mimic)].concat())
+    };
+    for (law, name) in [(" square='2'>", "attribute"), ("><square>2</square>", "tag")] {
+        let (code, _, told) = error(&follower(law));
+        assert!(code == Code::Unknown && told.contains("joint \"k\"") && told.contains(name) && told.contains("square"), "{told}");
+    }
+    assert!(accepted(&follower("><multiplier>2</multiplier>")).warnings.is_empty());
+    let plugin = |file: &str| {
+        let content = link("a", "") + &format!("<plugin name='p' filename='{file}'/>");
+        accepted(&model("1.11", &content)).warnings.into_iter().map(|w| (w.code, w.found)).collect::<Vec<_>>()
+    };
+    assert_eq!(plugin("libgazebo_mimic_joint_plugin.so"), [(Code::LostDynamics, "a coupling of joints by the plugin \"p\"".to_owned())]);
+    assert_eq!(plugin("libcamera.so"), []);
+}
+
+#[test]
+fn a_name_of_a_link_and_a_joint_is_a_warning() {
+    let text = model("1.9", &[link("a", ""), joint("a", "revolute", ["world", "a"], "<axis><xyz>0 0 1</xyz></axis>")].concat());
+    let warnings = accepted(&text).warnings;
+    assert_eq!(warnings.iter().map(|w| w.code).collect::<Vec<_>>(), [Code::DuplicateName]);
+    let told = warnings[0].to_string();
+    assert!(
+        told.contains("found a joint with the name of the link of line 3, \"a\"") && told.contains("references mean the link"),
+        "{told}"
+    );
+}
+
+#[test]
+fn the_pose_of_home_has_quaternions_of_norm_one() {
+    let text = model("1.9", &link("a", "<pose rotation_format='quat_xyzw'>1 2 3 0.6 0 0 0.9</pose>"));
+    let home = accepted(&text).world.home.unwrap();
+    let norm = 0.6_f64.hypot(0.9);
+    assert!(near(&home.q[0].1, &[1.0, 2.0, 3.0, 0.6 / norm, 0.0, 0.0, 0.9 / norm]), "{:?}", home.q);
+}
+
+#[test]
+fn the_first_of_tags_that_contradict_each_other_counts_where_that_is_asked_for() {
+    let of = |again: &str| model("1.9", &link("a", "").replace("<mass>1</mass>", &format!("<mass>1</mass>\n<mass>{again}</mass>")));
+    let (code, _, told) = error(&of("2"));
+    assert!(code == Code::DuplicateTag && told.contains("`--first-of-duplicates` (key `first_of_duplicates`"), "{told}");
+    let first = Options { first_of_duplicates: true, ..options() };
+    for (text, options, word) in [(of("2"), first, "the first is used"), (of("1"), options(), "used once")] {
+        let reading = read(text.as_bytes(), &options).unwrap();
+        assert_eq!(reading.description.links[1].inertial.unwrap().mass, 1.0);
+        assert!(reading.warnings.len() == 1 && reading.warnings[0].expected.ends_with(word), "{:?}", reading.warnings);
+    }
 }
 
 #[test]

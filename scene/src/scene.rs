@@ -403,7 +403,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         required: false,
         value: "true or false",
         default: "false",
-        what: "take the first of tags of a URDF that should be there once, with a warning",
+        what: "take the first of tags of a URDF or SDF that should be there once, with a warning",
         read: |s, spot, log| s.code.first_of_duplicates = spot.boolean(log),
     },
     Row {

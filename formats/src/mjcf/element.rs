@@ -36,7 +36,7 @@ impl<'a> Loader<'a> {
     /// The root of a document, with the included files in the place of their tags.
     pub(crate) fn root(&mut self, bytes: &[u8], file: &str, log: &mut Diagnostics) -> Option<Element> {
         let mut own = Diagnostics::new(file);
-        let root = self.document(bytes, &Rc::new(File { name: file.to_owned(), included: false }), 0, &mut own);
+        let root = self.document(bytes, &Rc::new(File { name: file.to_owned(), ..File::default() }), 0, &mut own);
         log.take(own);
         root
     }
@@ -94,7 +94,7 @@ impl<'a> Loader<'a> {
             match self.sources.read(&path) {
                 Ok(bytes) => {
                     self.included.insert(path.clone());
-                    let file = File { name: path.to_string_lossy().into_owned(), included: true };
+                    let file = File { name: path.to_string_lossy().into_owned(), included: true, ..File::default() };
                     let mut own = Diagnostics::new(&file.name);
                     let root = self.document(&bytes, &Rc::new(file), depth + 1, &mut own);
                     log.take(own);

@@ -8,7 +8,7 @@ use articulated_core::suggest::Suggester;
 
 use super::load::ROOT;
 use super::values::text;
-use crate::xml::tree::Element;
+use crate::xml::tree::{Attribute, Element};
 
 /// Names between blanks.
 type Names = &'static str;
@@ -44,7 +44,8 @@ const FORCES: [(&str, &str); 4] = [
 
 pub(crate) const DYNAMICS: &str = "kept for scenes that turn on such forces; no part of the rigid-body dynamics";
 const STOP: &str = "the stops of joints are given by the scene";
-const AUTO: &str = "densities count where inertias are computed of shapes, which is not done";
+pub(crate) const AUTO: &str = "densities count where inertias are computed of shapes: `auto` of <inertial>";
+const MESHES: &str = "parameters for meshes, of which no inertia is computed";
 const MEDIUM: &str = "forces of the medium are given by the scene";
 const FOREIGN: &str = "an extension of another program";
 
@@ -101,16 +102,16 @@ const ROWS: &[Row] = &[
         names: "inertial",
         within: "",
         attributes: "auto",
-        tags: "mass pose inertia fluid_added_mass",
-        unused: &[("density auto_inertia_params", AUTO)],
+        tags: "mass pose inertia fluid_added_mass density",
+        unused: &[("auto_inertia_params", MESHES)],
     },
     Row { names: "inertia", within: "", attributes: "", tags: "ixx ixy ixz iyy iyz izz", unused: &[] },
     Row {
         names: "collision",
         within: "",
         attributes: "",
-        tags: "pose geometry",
-        unused: &[("name", ""), ("laser_retro", SENSOR), ("max_contacts surface", CONTACT), ("density auto_inertia_params", AUTO)],
+        tags: "pose geometry density",
+        unused: &[("name", ""), ("laser_retro", SENSOR), ("max_contacts surface", CONTACT), ("auto_inertia_params", MESHES)],
     },
     Row {
         names: "visual",
@@ -213,7 +214,11 @@ pub(crate) fn check(root: &Element, log: &mut Diagnostics) {
 /// Reports a tag that is not used.
 fn tag(child: &Element, element: &Element, row: &Row, subject: &Subject, suggester: &mut Suggester, log: &mut Diagnostics) {
     if let Some(why) = reason(row, &child.name) {
+        warn_of_coupling(child, subject, log);
         return child.unused(subject, None, why, log);
+    }
+    if element.is("mimic") {
+        return law(child, None, subject, log);
     }
     if child.name.contains(':') {
         // Joints that Drake adds to the format.
@@ -227,6 +232,29 @@ fn tag(child: &Element, element: &Element, row: &Row, subject: &Subject, suggest
     let (code, expected) = expected(&child.name, known, suggester, "tag", &element.name);
     child.warning((subject, &child.name), code, format!("the tag <{}>", child.name), expected, log);
     child.unused(subject, None, "not known", log);
+}
+
+/// Reports an attribute or a tag of `<mimic>` that the format does not have: it may stand for another
+/// law.
+fn law(element: &Element, attribute: Option<&Attribute>, subject: &Subject, log: &mut Diagnostics) {
+    let found = match attribute {
+        Some(own) => format!("the attribute {} = {} of <mimic>", own.name, quote(&own.value)),
+        None => format!("the tag <{}> inside <mimic>", element.name),
+    };
+    let expected = "joint, axis, multiplier, offset and reference: q = multiplier · (q of the joint - reference) + offset is the one law \
+                    that is read; remove what does not change it";
+    let field = attribute.map_or(element.name.as_str(), |own| own.name.as_str());
+    element.error((subject, field), Code::Unknown, found, expected, log);
+}
+
+/// Warns of a plugin that lets joints follow others.
+fn warn_of_coupling(plugin: &Element, subject: &Subject, log: &mut Diagnostics) {
+    let says = |name: &str| plugin.text(name).is_some_and(|text| text.to_ascii_lowercase().contains("mimic"));
+    if plugin.is("plugin") && (says("filename") || says("name")) {
+        let found = format!("a coupling of joints by the plugin {}", quote(plugin.text("name").unwrap_or_default()));
+        let expected = "<mimic> inside <axis>: it is not read, and the joint moves by itself";
+        plugin.warning((subject, "plugin"), Code::LostDynamics, found, expected, log);
+    }
 }
 
 fn expected<'a>(
@@ -253,6 +281,7 @@ fn attributes(element: &Element, row: &Row, subject: &Subject, suggester: &mut S
             // The name of what is not used says nothing more.
             Some("") => {}
             Some(why) => element.unused(subject, Some(attribute), why, log),
+            None if element.is("mimic") => law(element, Some(attribute), subject, log),
             None if name.contains(':') => element.unused(subject, Some(attribute), FOREIGN, log),
             None => {
                 let (code, expected) = expected(name, row.attributes.split_ascii_whitespace(), suggester, "attribute", &element.name);

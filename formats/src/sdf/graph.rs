@@ -61,6 +61,19 @@ pub(crate) enum What {
     Frame,
 }
 
+impl What {
+    /// As in messages.
+    fn word(self) -> &'static str {
+        match self {
+            Self::World => "world",
+            Self::Model => "model",
+            Self::Link => "link",
+            Self::Joint => "joint",
+            Self::Frame => "frame",
+        }
+    }
+}
+
 pub(crate) struct Node<'a> {
     pub(crate) what: What,
     pub(crate) element: &'a Element,
@@ -83,6 +96,8 @@ pub(crate) struct Graph<'a> {
     pub(crate) joints: Vec<Joint<'a>>,
     /// Nodes by their names with the models around them.
     keys: HashMap<String, usize>,
+    /// Nodes of joints with the name of a link, which is what the name means elsewhere.
+    shadowed: HashMap<String, usize>,
     /// For each node, the node that it is placed in, and its pose there.
     edges: Vec<(usize, Pose)>,
     depths: Vec<u32>,
@@ -151,6 +166,7 @@ impl<'a> Graph<'a> {
             links: Vec::new(),
             joints: Vec::new(),
             keys: HashMap::new(),
+            shadowed: HashMap::new(),
             edges: Vec::new(),
             depths: Vec::new(),
             bodies: Vec::new(),
@@ -197,9 +213,10 @@ impl<'a> Graph<'a> {
         is_good
     }
 
-    /// The node of a name, if there is one.
-    pub(crate) fn find(&self, reference: &Reference<'_>) -> Option<usize> {
-        self.keys.get(&format!("{}{}", self.scopes[reference.scope].prefix, reference.name)).copied()
+    /// The node of the name of a joint, if there is one.
+    pub(crate) fn find_joint(&self, reference: &Reference<'_>) -> Option<usize> {
+        let key = format!("{}{}", self.scopes[reference.scope].prefix, reference.name);
+        self.shadowed.get(&key).or_else(|| self.keys.get(&key)).copied()
     }
 
     fn to(&self, to: &To<'_>, log: &mut Diagnostics) -> Option<usize> {
@@ -447,9 +464,15 @@ impl<'a> Build<'a, '_> {
                 }
                 // Older versions let a joint have the name of a link.
                 Some(first) if is_joint(first) != is_joint(&node) => {
-                    if is_joint(first) {
-                        self.graph.keys.insert(key, index);
-                    }
+                    let (line, [a, b]) = (first.element.at.line().unwrap_or_default(), [first.what, node.what].map(What::word));
+                    let found = format!("a {b} with the name of the {a} of line {line}, {}", quote(&node.name));
+                    let other = if is_joint(first) { b } else { a };
+                    let expected = format!("a name of its own: sdformat refuses this from version 1.7 on; references mean the {other}");
+                    element.warning((&about, "name"), Code::DuplicateName, found, expected, log);
+                    match is_joint(first) {
+                        true => self.graph.keys.insert(key.clone(), index).and_then(|joint| self.graph.shadowed.insert(key, joint)),
+                        false => self.graph.shadowed.insert(key, index),
+                    };
                 }
                 Some(first) => {
                     let line = first.element.at.line().unwrap_or_default();

@@ -3,7 +3,7 @@
 use articulated_core::description::{Inertial, PrincipalMoments};
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
-use super::grammar::subject;
+use super::grammar::{AUTO, subject};
 use super::names::relative_to;
 use super::values::{self, flag, number, only, yes};
 use crate::Options;
@@ -39,10 +39,14 @@ pub(crate) fn inertial(link: &Element, is_static: bool, options: &Options, log: 
         of_default(link, "inertial", "1 kg and moments of inertia of 1 kg·m²", log);
         return Some(Inertial { origin: Pose::default().origin(), mass: DEFAULT, inertia: [DEFAULT, 0.0, 0.0, DEFAULT, 0.0, DEFAULT] });
     };
+    medium(tag, about, log);
     if flag(tag, "auto", about, log) {
-        let expected = "<mass> and <inertia>: inertias are not computed of shapes";
-        tag.error((about, "auto"), Code::Unsupported, "an inertia that the simulator computes", expected, log);
+        // Computed when the poses of shapes are known.
         return None;
+    }
+    let shapes = link.children.iter().filter(|child| child.is("collision"));
+    for density in shapes.chain([tag]).flat_map(|within| within.all("density")) {
+        density.unused(about, None, AUTO, log);
     }
     let pose = only(tag, "pose", about, log);
     if let Some(reference) = pose.and_then(|pose| relative_to(pose, 0)) {
@@ -67,12 +71,18 @@ pub(crate) fn inertial(link: &Element, is_static: bool, options: &Options, log: 
             [DEFAULT, 0.0, 0.0, DEFAULT, 0.0, DEFAULT]
         }
     };
-    if let Some(added) = only(tag, "fluid_added_mass", about, log) {
+    if !tag.file.converted {
+        check(tag, mass, inertia, options, about, log);
+    }
+    (mass != 0.0 || inertia != [0.0; 6]).then_some(Inertial { origin: pose.origin(), mass, inertia })
+}
+
+/// Reports the mass of a medium.
+fn medium(inertial: &Element, about: &Subject, log: &mut Diagnostics) {
+    if let Some(added) = only(inertial, "fluid_added_mass", about, log) {
         let expected = "no added mass: the dynamics are those without the medium";
         added.warning((about, "fluid_added_mass"), Code::LostDynamics, "the mass of a medium", expected, log);
     }
-    check(tag, mass, inertia, options, about, log);
-    (mass != 0.0 || inertia != [0.0; 6]).then_some(Inertial { origin: pose.origin(), mass, inertia })
 }
 
 fn check(tag: &Element, mass: f64, inertia: [f64; 6], options: &Options, about: &Subject, log: &mut Diagnostics) {

@@ -1,15 +1,20 @@
 //! Files and the files that they include, as one tree of tags.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
+use articulated_core::description::Base;
 use articulated_core::diagnostic::{Code, Diagnostics, Place, Subject, quote};
 
-use crate::Sources;
+use super::convert;
+use crate::urdf::Urdf;
 use crate::xml::document;
 use crate::xml::element::Tag;
 use crate::xml::lines::Lines;
+use crate::xml::markup;
 use crate::xml::tree::{Element, File};
+use crate::{Format, Input, Options};
 
 /// Tags may be nested so deeply, included ones in those that include them.
 const MOST_DEPTH: usize = 256;
@@ -22,7 +27,7 @@ pub(crate) const ROOT: &str = "sdf";
 
 /// Reads a file and the files that it includes.
 pub(crate) struct Loader<'a> {
-    sources: &'a dyn Sources,
+    input: &'a Input<'a>,
     files: usize,
     tags: usize,
     /// The files that are being read, one inside the other.
@@ -30,14 +35,20 @@ pub(crate) struct Loader<'a> {
 }
 
 impl<'a> Loader<'a> {
-    pub(crate) fn new(sources: &'a dyn Sources) -> Self {
-        Self { sources, files: 0, tags: 0, open: Vec::new() }
+    pub(crate) fn new(input: &'a Input<'a>) -> Self {
+        Self { input, files: 0, tags: 0, open: Vec::new() }
+    }
+
+    fn file(&self, name: &str, included: bool) -> Rc<File> {
+        let first_of_duplicates = self.input.options.first_of_duplicates;
+        Rc::new(File { name: name.to_owned(), included, first_of_duplicates, converted: false })
     }
 
     /// The root of a document. The root of an included file is a child of its `<include>`.
-    pub(crate) fn root(&mut self, bytes: &[u8], file: &str, log: &mut Diagnostics) -> Option<Element> {
+    pub(crate) fn root(&mut self, log: &mut Diagnostics) -> Option<Element> {
+        let file = &self.input.options.file;
         self.open.push(file.into());
-        self.document(bytes, &Rc::new(File { name: file.to_owned(), included: false }), 0, log)
+        self.document(self.input.bytes, &self.file(file, false), 0, log)
     }
 
     fn document(&mut self, bytes: &[u8], file: &Rc<File>, depth: usize, log: &mut Diagnostics) -> Option<Element> {
@@ -115,9 +126,12 @@ impl<'a> Loader<'a> {
                 }
                 Ok((path, bytes)) => {
                     self.files += 1;
-                    let file = File { name: path.to_string_lossy().into_owned(), included: true };
+                    let file = self.file(&path.to_string_lossy(), true);
+                    if markup::root(&bytes) == Some(b"robot") {
+                        return self.urdf(&bytes, &file, log);
+                    }
                     self.open.push(path);
-                    let root = self.document(&bytes, &Rc::new(file), depth + 1, log);
+                    let root = self.document(&bytes, &file, depth + 1, log);
                     self.open.pop();
                     return root;
                 }
@@ -131,16 +145,30 @@ impl<'a> Loader<'a> {
         None
     }
 
+    /// A URDF, as the root of a document with its model.
+    fn urdf(&mut self, bytes: &[u8], file: &Rc<File>, log: &mut Diagnostics) -> Option<Element> {
+        let asked = self.input.options.clone();
+        // What its base carries is said of the whole model; arguments are those of the main file.
+        let options = Options { file: file.name.clone(), base: Base::Floating, arguments: BTreeMap::new(), ..asked };
+        let mut own = Diagnostics::new(&file.name);
+        let read = Urdf.read(&Input { bytes, options: &options, sources: self.input.sources }, &mut own);
+        own.unused.iter_mut().for_each(|unused| unused.why = format!("{} ({})", unused.why, file.name));
+        let file = Rc::new(File { name: file.name.clone(), included: true, first_of_duplicates: false, converted: true });
+        let root = read.filter(|_| own.is_ok()).map(|read| convert::document(&read.description, &file, &mut own));
+        log.take(own);
+        root
+    }
+
     /// The file of this path, or that of the model in the folder of this path.
     fn find(&self, path: &Path) -> std::io::Result<(PathBuf, Vec<u8>)> {
-        let error = match self.sources.read(path) {
+        let error = match self.input.sources.read(path) {
             Ok(bytes) => return Ok((path.to_owned(), bytes)),
             Err(error) => error,
         };
-        let listed = self.sources.read(&path.join("model.config")).ok().and_then(|bytes| newest(&bytes));
+        let listed = self.input.sources.read(&path.join("model.config")).ok().and_then(|bytes| newest(&bytes));
         for name in listed.iter().map(String::as_str).chain(["model.sdf"]) {
             let path = path.join(name);
-            if let Ok(bytes) = self.sources.read(&path) {
+            if let Ok(bytes) = self.input.sources.read(&path) {
                 return Ok((path, bytes));
             }
         }

@@ -6,6 +6,7 @@ use articulated_core::description::{Base, Description, Frame, Joint, JointKind, 
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 use articulated_core::listed;
 
+use super::auto;
 use super::grammar::subject;
 use super::graph::{Graph, WORLD, What};
 use super::joints::{self, Axis, Type};
@@ -13,7 +14,7 @@ use super::names::WORLD_NAME;
 use super::shapes;
 use crate::Options;
 use crate::cycles::{around, cycles};
-use crate::pose::{Pose, Vector, cross, rotate, scale};
+use crate::pose::{Pose, Vector, cross, rotate, scalar_last, scale};
 use crate::reading::HELD;
 use crate::taken::Taken;
 use crate::world::{Document, Keyframe, Plane, World};
@@ -35,7 +36,7 @@ pub(crate) fn lower(graph: &Graph<'_>, options: &Options, log: &mut Diagnostics)
         frames: Vec::new(),
         start: Vec::new(),
         planes: Vec::new(),
-        leaders: graph.joints.iter().flat_map(|joint| &joint.axes).filter_map(|axis| graph.find(&axis.mimic?.leader)).collect(),
+        leaders: graph.joints.iter().flat_map(|joint| &joint.axes).filter_map(|axis| graph.find_joint(&axis.mimic?.leader)).collect(),
     };
     lower.links(options, log);
     lower.hang_on_the_world(&tree);
@@ -228,7 +229,8 @@ impl Lower<'_, '_> {
             let name = self.links.free(self.graph.nodes[link.node].name.clone());
             let collision = shapes::collisions(link, self.graph, options, &mut self.planes, log);
             let visual = shapes::visuals(link, self.graph, options, log);
-            self.description.links.push(Link { name, inertial: link.inertial, collision, visual, intermediate: false });
+            let inertial = link.inertial.or_else(|| auto::inertial(link, self.graph, options, log));
+            self.description.links.push(Link { name, inertial, collision, visual, intermediate: false });
         }
         let frames = self.graph.nodes.iter().filter(|node| node.what == What::Frame);
         self.frames = frames.map(|frame| self.links.free(frame.name.clone())).collect();
@@ -252,7 +254,7 @@ impl Lower<'_, '_> {
             };
             let name = self.joints.free(format!("{name}_{word}"));
             if kind == JointKind::Floating && pose != Pose::default() {
-                let ([w, x, y, z], [px, py, pz]) = (pose.rotation, pose.position);
+                let ([x, y, z, w], [px, py, pz]) = (scalar_last(pose.rotation), pose.position);
                 self.start.push((name.clone(), vec![px, py, pz, x, y, z, w]));
             }
             self.description.joints.push(Joint { name, kind, parent: 0, child: body, origin, ..Joint::default() });
@@ -376,7 +378,7 @@ impl Lower<'_, '_> {
             for (k, axis) in joint.axes.iter().enumerate() {
                 let Some(mimic) = axis.mimic else { continue };
                 let element = mimic.leader.element;
-                let Some(leader) = graph.find(&mimic.leader).and_then(|node| by_node.get(&node).copied()) else {
+                let Some(leader) = graph.find_joint(&mimic.leader).and_then(|node| by_node.get(&node).copied()) else {
                     element.error(
                         (&about, "joint"),
                         Code::UnknownLeader,

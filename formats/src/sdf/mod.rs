@@ -19,10 +19,13 @@
 //! * A link that is reached from the child of a joint hangs on that joint in reverse: the axis
 //!   changes its sign, so that the coordinate stays that of the file.
 //! * A joint that closes a loop is an error, unless `must_be_loop_joint` cuts it.
+//! * A URDF in an `<include>` is a model: its tags are made of the description.
 //! * Links of nested models are called `model::link`, as in the file. A `<frame>` is a frame.
 //!
 //! The rest of the file is listed as unused, with its line. An unknown tag is a warning.
 
+mod auto;
+mod convert;
 mod grammar;
 mod graph;
 mod joints;
@@ -62,7 +65,7 @@ impl Format for Sdf {
     }
 
     fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<world::Document> {
-        let root = load::Loader::new(input.sources).root(input.bytes, &input.options.file, diagnostics)?;
+        let root = load::Loader::new(input).root(diagnostics)?;
         grammar::check(&root, diagnostics);
         let graph = graph::Graph::of(&root, input.options, diagnostics)?;
         lower::lower(&graph, input.options, diagnostics)

@@ -34,7 +34,10 @@ pub(crate) fn collisions(
         }
         let (pose, shape) = placed_shape(tag, link, graph, options, &mut own);
         let why = own.errors.first().map(ToString::to_string).unwrap_or_default();
-        log.take_as_warnings(own, "; the shape makes no contact");
+        // The reader of another format has told it.
+        if !tag.file.converted {
+            log.take_as_warnings(own, "; the shape makes no contact");
+        }
         all.push(Collision { origin: pose.origin(), shape: shape.unwrap_or(CollisionShape::Unread { why }) });
     }
     all
@@ -112,7 +115,7 @@ fn placed_shape(
 }
 
 /// The pose of a shape in its link.
-fn pose(tag: &Element, link: &Link<'_>, graph: &Graph<'_>, options: &Options, log: &mut Diagnostics) -> Pose {
+pub(crate) fn pose(tag: &Element, link: &Link<'_>, graph: &Graph<'_>, options: &Options, log: &mut Diagnostics) -> Pose {
     let about = &subject(link.element);
     let Some(element) = only(tag, "pose", about, log) else { return Pose::default() };
     let pose = values::pose(element, options.snap_angles, about, log);
@@ -156,6 +159,10 @@ fn shape(geometry: &Element, about: &Subject, log: &mut Diagnostics) -> Option<C
             let (_, file) = values::name(tag, "uri", about, log)?;
             let scale = only(tag, "scale", about, log).and_then(|scale| exactly::<3>(scale, about, &mut log.apart()));
             Some(CollisionShape::Mesh { file: file.to_owned(), scale: scale.unwrap_or([1.0; 3]) })
+        }
+        _ if tag.file.converted => {
+            tag.error((about, "geometry"), Code::Unsupported, values::text(tag), EXPECTED, log);
+            None
         }
         _ => {
             let found = format!("<{}>", tag.name);

@@ -4,19 +4,30 @@ use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
 use crate::pose::{IDENTITY, Pose, Quaternion, about, multiply, radians};
 use crate::urdf::right_angle;
+use crate::xml::element::FIRST_OF_DUPLICATES;
 use crate::xml::number::{self, Fault};
 use crate::xml::tree::Element;
 
 /// A limit of so much, or more, is none: the default of older versions.
 const UNLIMITED: f64 = 1e16;
 
-/// The one child of this name. A second one is an error.
+/// The one child of this name. A second one is an error, or a warning where it says the same.
 pub(crate) fn only<'a>(parent: &'a Element, name: &str, subject: &Subject, log: &mut Diagnostics) -> Option<&'a Element> {
     let mut all = parent.children.iter().filter(|child| child.is(name));
     let first = all.next()?;
     for again in all {
-        let found = format!("a second <{name}> (the first is in line {})", first.at.line().unwrap_or_default());
-        again.error((subject, name), Code::DuplicateTag, found, format!("one <{name}> inside <{}>", parent.name), log);
+        let (code, line) = (Code::DuplicateTag, first.at.line().unwrap_or_default());
+        let expected = format!("one <{name}> inside <{}>", parent.name);
+        if again.says_the_same(first) {
+            let found = format!("a second <{name}>, equal to the first in line {line}");
+            again.warning((subject, name), code, found, format!("{expected}; used once"), log);
+            continue;
+        }
+        let found = format!("a second <{name}> (the first is in line {line})");
+        match again.file.first_of_duplicates {
+            true => again.warning((subject, name), code, found, format!("{expected}; the first is used"), log),
+            false => again.error((subject, name), code, found, format!("{expected}; {FIRST_OF_DUPLICATES} takes the first"), log),
+        }
     }
     Some(first)
 }

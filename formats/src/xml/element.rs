@@ -18,7 +18,7 @@ pub(crate) struct Tag<'a> {
 
 /// The option that takes the first of tags that should be there once, as the command, scenes and
 /// macro, and build scripts spell it.
-const FIRST_OF_DUPLICATES: &str = "`--first-of-duplicates` (key `first_of_duplicates`, method `Build::first_of_duplicates`)";
+pub(crate) const FIRST_OF_DUPLICATES: &str = "`--first-of-duplicates` (key `first_of_duplicates`, method `Build::first_of_duplicates`)";
 
 impl<'a> Tag<'a> {
     pub(crate) fn new(node: Node<'a, 'a>, lines: &'a Lines<'a>, subject: &'a Subject) -> Self {

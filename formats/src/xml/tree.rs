@@ -28,12 +28,16 @@ pub(crate) struct Attribute {
 }
 
 /// A file that was read.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct File {
     /// As in messages.
     pub(crate) name: String,
     /// Whether another file includes it.
     pub(crate) included: bool,
+    /// Whether the first counts of tags that should be there once.
+    pub(crate) first_of_duplicates: bool,
+    /// Whether its tags are made from a file of another format, of which the warnings are told.
+    pub(crate) converted: bool,
 }
 
 impl Element {
@@ -57,6 +61,21 @@ impl Element {
 
     pub(crate) fn is(&self, name: &str) -> bool {
         self.name == name
+    }
+
+    /// Whether both have the same attributes, in any order, and the same tags and text inside.
+    pub(crate) fn says_the_same(&self, other: &Element) -> bool {
+        let attributes = |element: &Element| {
+            let mut all: Vec<(String, String)> =
+                element.attributes.iter().map(|own| (own.name.clone(), own.value.trim().to_owned())).collect();
+            all.sort_unstable();
+            all
+        };
+        self.name == other.name
+            && self.content == other.content
+            && attributes(self) == attributes(other)
+            && self.children.len() == other.children.len()
+            && self.children.iter().zip(&other.children).all(|(a, b)| a.says_the_same(b))
     }
 
     /// The children of this name.
@@ -89,6 +108,9 @@ impl Element {
         expected: impl Into<String>,
         log: &mut Diagnostics,
     ) {
+        if self.file.converted {
+            return;
+        }
         log.push(self.diagnostic(self.at_of(field), subject, field, code, found.into(), expected.into()).into_warning());
     }
 
@@ -104,6 +126,9 @@ impl Element {
 
     /// As [`Self::unused`], under a name of its own.
     pub(crate) fn unused_part(&self, subject: &Subject, (attribute, what): (Option<&Attribute>, String), why: &str, log: &mut Diagnostics) {
+        if self.file.converted {
+            return;
+        }
         let why = if self.file.included { format!("{why} ({})", self.file.name) } else { why.to_owned() };
         let line = attribute.map_or(self.at, |attribute| attribute.at).line();
         log.push_unused(Unused { line, subject: subject.clone(), tag: what, why });

@@ -50,7 +50,7 @@ pub struct RobotOptions {
     /// Accept negative principal moments, with a warning. (Moments that violate the triangle
     /// inequality are always accepted with a warning.)
     pub allow_unphysical_inertia: bool,
-    /// Take the first of tags of a URDF that should be there once, with a warning.
+    /// Take the first of tags of a URDF or SDF that should be there once, with a warning.
     pub first_of_duplicates: bool,
     /// Elements of an MJCF that change the motion and are not read, to leave out with a warning.
     pub leave_out: BTreeSet<LeaveOut>,
