@@ -2,7 +2,8 @@
 
 use articulated_core::diagnostic::{self, Code, Diagnostics};
 use articulated_motion::{Fault, MotionErrors};
-use serde::Serialize;
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
 
 use crate::diagnostic::Diagnostic;
 
@@ -32,14 +33,24 @@ Exit status:
   5  a motion ended, but outside its own tolerance: its balance of energy is not kept
   130  interrupted (Ctrl-C; 129, 131 and 143 by SIGHUP, SIGQUIT and SIGTERM)";
 
-/// A status and what to say, an error for each thing that is wrong.
-#[derive(Clone, Debug, Serialize)]
+/// The exit status of a command and its errors.
+#[derive(Clone, Debug)]
 pub(crate) struct Failure {
     pub(crate) status: u8,
     pub(crate) errors: Vec<Diagnostic>,
     /// Whether a report was printed: as JSON it is all there is to print.
-    #[serde(skip)]
     pub(crate) reported: bool,
+}
+
+impl Serialize for Failure {
+    /// `status` is a word here, as in the reports of motions; the number is `exit_status`.
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let mut object = to.serialize_struct("Failure", 3)?;
+        object.serialize_field("status", "error")?;
+        object.serialize_field("exit_status", &self.status)?;
+        object.serialize_field("errors", &self.errors)?;
+        object.end()
+    }
 }
 
 impl Failure {

@@ -1,4 +1,4 @@
-//! The robot that a command is about: a bundled one by its name, a URDF by its path, or that of a
+//! The robot that a command is about: a bundled one by its name, a file by its path, or that of a
 //! scene, with its edits and effects.
 
 use std::collections::BTreeMap;
@@ -267,7 +267,7 @@ fn is_standard_input(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// The bytes of a regular file, no more than a URDF may have; `-` is the standard input, which one
+/// The bytes of a regular file, no more than a robot's file may have; `-` is the standard input, which one
 /// file alone can come by.
 pub(crate) fn read_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     static TAKEN: AtomicBool = AtomicBool::new(false);

@@ -419,7 +419,7 @@ impl Build {
         let (mut request, mut log, mut loader) = (self.request.clone(), self.findings.clone(), loader());
         match (&request.scene, request.file.as_str()) {
             (Some(scene), "") => log.push(
-                scene.without_robot("no URDF", "urdf; a bundled robot is known to the command line alone: give its URDF with Build::urdf"),
+                scene.without_robot("no robot", "file; a bundled robot is known to the command line alone: give its file with Build::urdf"),
             ),
             (None, "") => {}
             (_, file) => {

@@ -209,7 +209,7 @@ mod tests {
         assert_eq!(used("[effects]\nfriction = { shoulder = { from = 'urdf', speed = 0.1 } }"), ["dynamics friction"]);
         assert_eq!(used("[effects]\nlimit = { from = 'urdf', stiffness = 100 }"), ["limit lower", "limit upper"]);
         assert_eq!(used("[effects]\nmotor = 'urdf'"), ["limit effort", "limit velocity"]);
-        // Numbers of its own: those of the URDF are not used.
+        // Numbers of its own: those of the file are not used.
         assert_eq!(used("[effects]\ndamping = 0.5"), [""; 0]);
     }
 

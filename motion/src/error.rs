@@ -208,7 +208,7 @@ impl fmt::Display for Fault {
             Self::Dynamics { apart, largest } => write!(
                 f,
                 "robot: found accelerations that take torques {apart:.3e} N·m or N from those of the scene's robot, of {largest:.3e}, expected a robot with the scene's \
-                 gravity, effects and edits (made from the scene, not from its URDF); `Session::motion` moves another all the same"
+                 gravity, effects and edits (made from the scene, not from its robot's file); `Session::motion` moves another all the same"
             ),
             Self::Function(error) => error.fmt(f),
             Self::State(error) => error.fmt(f),

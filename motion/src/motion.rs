@@ -86,7 +86,7 @@ impl Session {
     /// Runs the scene on a robot from its start to its end, with the scene's settings and control.
     /// Errors: those of [`Session::settings`], [`Session::motion`] and [`Session::initial_state`],
     /// all at once; then a robot whose accelerations differ from the scene's, as those of a robot
-    /// generated from the URDF alone, without the scene's gravity and effects (use
+    /// generated from the robot's file alone, without the scene's gravity and effects (use
     /// [`Session::motion`] to run such a robot). An error during the run is in [`Outcome::error`].
     pub fn run<R: Dynamics<f64>, S: AsRef<str>>(&self, robot: &R, frames: &[S]) -> Result<Outcome, MotionErrors> {
         let (mut motion, initial) = self.ready(robot, frames)?;

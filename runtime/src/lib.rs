@@ -41,7 +41,7 @@
 //! implement the trait [`Dynamics`], so a function over that trait accepts both.
 //!
 //! Conventions: SI units and radians. Vectors of six are (angular; linear). Joints are ordered
-//! depth-first in the URDF's order; names are in [`Model::joints`]. A floating base comes first: of
+//! depth-first in the file's order; names are in [`Model::joints`]. A floating base comes first: of
 //! q its position and quaternion (x, y, z, w); of v, a and τ its [ω; v], their rates, and [m; f],
 //! all in its own axes. Matrices are written row by row. Gravity is (0, 0, −9.81) m/s² in the world
 //! frame unless [`Model::with_gravity`] changes it.

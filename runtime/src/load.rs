@@ -36,7 +36,7 @@ impl fmt::Display for LoadError {
 
 impl std::error::Error for LoadError {}
 
-/// The generic model of the URDF at `path`, with standard gravity.
+/// The generic model of the robot's file at `path`, with standard gravity.
 ///
 /// Every mistake of the file is an error. This function does not return warnings (an inertia that
 /// no body has, and so on): [`formats::read`](crate::formats::read) does, and has options.
@@ -57,12 +57,12 @@ pub fn load(path: impl AsRef<Path>, base: Base) -> Result<Model<f64>, LoadError>
     Model::new(&describe(path)?, base).map_err(LoadError::Model)
 }
 
-/// As [`load`], of a URDF in memory; `file` is its name in messages.
+/// As [`load`], of a file in memory; `file` is its name in messages.
 pub fn load_bytes(file: &str, bytes: &[u8], base: Base) -> Result<Model<f64>, LoadError> {
     Model::new(&describe_bytes(file, bytes)?, base).map_err(LoadError::Model)
 }
 
-/// What the URDF at `path` says, to be edited and made a model of:
+/// What the robot's file at `path` says, to be edited and made a model of:
 ///
 /// ```
 /// # fn arm() -> Result<(), Box<dyn std::error::Error>> {
@@ -83,7 +83,7 @@ pub fn describe(path: impl AsRef<Path>) -> Result<Description, LoadError> {
     describe_bytes(&path.display().to_string(), &bytes)
 }
 
-/// As [`describe`], of a URDF in memory; `file` is its name in messages.
+/// As [`describe`], of a file in memory; `file` is its name in messages.
 pub fn describe_bytes(file: &str, bytes: &[u8]) -> Result<Description, LoadError> {
     let options = Options { file: file.into(), ..Options::default() };
     Ok(read_with(&Disk, bytes, &options).map_err(LoadError::Diagnostics)?.description)

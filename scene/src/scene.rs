@@ -61,7 +61,7 @@ pub enum Robot {
     Given,
     /// A bundled robot, by its name.
     Bundled(String),
-    /// A URDF, relative to the scene's folder.
+    /// A robot's file, relative to the scene's folder.
     File(String),
 }
 
@@ -87,7 +87,7 @@ pub struct CodeOptions {
     pub payload: Vec<Load>,
     /// Robots to append.
     pub append: Vec<Append>,
-    /// Rust names to use: (name in the URDF, name in Rust).
+    /// Rust names to use: (name in the robot's file, name in Rust).
     pub rename: Vec<(String, String)>,
     /// Arguments of the robot's file: (name, value).
     pub args: Vec<(String, String)>,
@@ -121,7 +121,7 @@ pub struct CodeOptions {
 /// each of its items.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Places {
-    /// A bundled robot, or a URDF.
+    /// A bundled robot, or a robot's file.
     pub robot: At,
     /// Of [`CodeOptions::functions`].
     pub functions: Vec<At>,
@@ -512,7 +512,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
     },
 ];
 
-/// The bound is that of the reader of URDFs.
+/// The bound is that of the readers.
 fn snap_angles(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<f64> {
     match spot.node.value {
         Value::Number(x) if can_snap(x) => return Some(x),

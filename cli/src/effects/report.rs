@@ -18,7 +18,7 @@ pub(super) struct Report {
     pub(super) degrees_of_freedom: usize,
     pub(super) on: Vec<On>,
     pub(super) off: Vec<Off>,
-    /// What the URDF says and nothing uses.
+    /// What the robot's file says and nothing uses.
     pub(super) ignored: Vec<Ignored>,
     /// How many limbs the generated code computes at once.
     pub(super) limbs: usize,
@@ -48,7 +48,7 @@ pub(super) struct Number {
     pub(super) name: &'static str,
     pub(super) values: Vec<f64>,
     pub(super) unit: &'static str,
-    /// The tag of the URDF that it is from.
+    /// The tag of the robot's file that it is from.
     pub(super) from: Option<&'static str>,
 }
 
@@ -58,14 +58,14 @@ pub(super) struct Off {
     pub(super) why: String,
 }
 
-/// Something of the URDF.
+/// Something of the robot's file.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Ignored {
     /// The link or joint.
     pub(super) of: String,
     pub(super) tag: String,
     pub(super) why: String,
-    /// In the URDF.
+    /// In the robot's file.
     pub(super) line: Option<u32>,
 }
 

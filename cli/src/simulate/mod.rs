@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     if arguments.print_scene {
         if !named_scene::is_robot(scene) {
             return Err(Failure::input([format!(
-                "{}: --print-scene: found no file of a robot, expected a URDF, MJCF or SDF",
+                "{}: --print-scene: found no file of a robot, expected a URDF, xacro, MJCF or SDF",
                 scene.display()
             )]));
         }

@@ -140,7 +140,7 @@ fn a_wrong_command_line_is_status_2() {
 fn a_failure_is_json_too_where_that_was_asked_for() {
     let failed = run(&["eval", "no_such_robot", "--function", "mass_matrix", "--states", "-", "--format", "json"]);
     let (json, status) = (failed.json(), failed.status);
-    assert_eq!((json["status"].as_i64(), status), (Some(1), 1));
+    assert_eq!((json["status"].as_str(), json["exit_status"].as_i64(), status), (Some("error"), Some(1), 1));
     let told = json["errors"][0]["message"].as_str().unwrap();
     assert!(told.contains("no_such_robot") && failed.err.contains(told), "{}", failed.err);
     assert_eq!(run(&["eval", "no_such_robot", "--function", "mass_matrix", "--states", "-"]).out, "");
@@ -153,7 +153,7 @@ fn a_command_line_that_cannot_be_read_is_told_as_data_too() {
     {
         let ended = run(words);
         let told = ended.json();
-        assert_eq!((ended.status, told["status"].as_u64()), (2, Some(2)), "{}", ended.out);
+        assert_eq!((ended.status, told["status"].as_str(), told["exit_status"].as_u64()), (2, Some("error"), Some(2)), "{}", ended.out);
         let error = told["errors"][0]["message"].as_str().unwrap();
         assert!(error.starts_with("invalid value '") && ended.err.contains(error), "{error}");
     }

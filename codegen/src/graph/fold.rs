@@ -1,4 +1,4 @@
-//! Folding where nodes are born: a URDF's zeros and ones never become nodes.
+//! Folding where nodes are born: zeros and ones of a robot's file never become nodes.
 //!
 //! Each rule is exact in real arithmetic for finite values; those that are not exact in floating
 //! point only leave out a rounding.

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! payload(link)      ten numbers, added to what the link has; nothing at first
-//! inertia(link)      ten numbers in the place of the link's own; the URDF's at first
-//! origin(joint)      three numbers in the place of the joint's origin xyz, m; the URDF's at first
+//! inertia(link)      ten numbers in the place of the link's own; those of the robot's file at first
+//! origin(joint)      three numbers in the place of the joint's origin xyz, m; those of the robot's file at first
 //! gravity            three numbers in the world frame, m/s²; those of the request at first
 //! damping(joint)     the numbers of an effect on a joint, any of those that are on; those of the request at first
 //! contact(link)      the same of an effect on a link, which is the only one of its kind there
@@ -52,7 +52,7 @@ pub struct Parameter {
     pub name: String,
     /// First index among all numbers.
     pub at: usize,
-    /// What the URDF says.
+    /// What the robot's file says.
     pub nominal: Vec<f64>,
     kind: Kind,
     /// The body that it changes, and the frame that it is given in, in that body or, for an origin,

@@ -2,6 +2,7 @@
 //! intermediate representation, and a row here.
 
 pub(crate) mod c;
+mod heads;
 pub(crate) mod rust;
 
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Unused};

@@ -1,4 +1,4 @@
-//! Contact of the collision geometry of a URDF.
+//! Contact of the collision geometry of a robot's file.
 
 use articulated_core::description::{Collision, CollisionShape, Link, Origin};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Subject};

@@ -61,7 +61,7 @@ pub enum Selector {
 /// The given numbers of an effect.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Numbers {
-    /// What is left out is taken from the URDF, where that has it.
+    /// What is left out is taken from the robot's file, where that has it.
     pub from_urdf: bool,
     /// Points and radii are those of the link's collision geometry.
     pub from_collision: bool,
@@ -260,7 +260,7 @@ fn number(field: &Field, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<f64> 
     spot.within(log, field.range)
 }
 
-/// Checks the joint constraint of the numbers. Where one still comes from the URDF or from `*`, the
+/// Checks the joint constraint of the numbers. Where one still comes from the file or from `*`, the
 /// model checks it.
 fn check(row: &'static Effect, numbers: &Numbers, spot: &Spot<'_>, log: &mut Diagnostics) {
     let given = |(i, field): (usize, &'static Field)| numbers.fields[i].as_deref().or(field.default);

@@ -1,5 +1,5 @@
 //! Effects against a robot: names looked up, `*` spread over joints and links, numbers taken from
-//! the URDF, defaults filled in.
+//! the robot's file, defaults filled in.
 
 use crate::table::bare;
 use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Subject, Unused};
@@ -24,7 +24,7 @@ pub struct Edited<'a> {
     pub description: &'a Description,
     /// Its base.
     pub base: Base,
-    /// What the reader of the URDF could not use.
+    /// What the reader of the robot's file could not use.
     pub unused: &'a [Unused],
     /// What the robot's file says beside the robot: its planes.
     pub world: &'a World,
@@ -81,11 +81,11 @@ pub(super) struct Resolving<'a> {
     moving: Vec<bool>,
     index: Index<'a>,
     pub(super) resolved: Resolved,
-    /// (joint or link, tag) of the URDF that is used.
+    /// (joint or link, tag) of the robot's file that is used.
     used: HashSet<(&'a str, &'static str)>,
 }
 
-/// A field's numbers, and the tag of the URDF that they are from.
+/// A field's numbers, and the tag of the robot's file that they are from.
 pub(super) type Filled = (Vec<f64>, Option<&'static str>);
 
 impl<'a> Resolving<'a> {
@@ -203,7 +203,7 @@ impl<'a> Resolving<'a> {
                     urdf::before_the_gear(row.id, &mut filled);
                     self.put_filled(row, &joint.name, Origin::default(), one, &filled);
                 }
-                // Not every joint has what all are to have from the URDF.
+                // Not every joint has what all are to have from the file.
                 Err(field) if named.is_none() && urdf::tag(row.id, field).is_some() => {}
                 Err(field) => missing(row, field, one, &format!("joint {:?}", joint.name), log),
             }
@@ -282,7 +282,7 @@ impl<'a> Resolving<'a> {
         self.resolved.keys.push(key);
     }
 
-    /// Unused content of the URDF: what the reader could not use, except for numbers that effects
+    /// Unused content of the robot's file: what the reader could not use, except for numbers that effects
     /// use, and bounds without an effect that keeps them.
     fn ignored(&mut self) {
         if self.scene.shafts.is_empty() {
@@ -351,9 +351,9 @@ fn count(numbers: usize) -> String {
     if numbers == 1 { "1 number".into() } else { format!("{numbers} numbers") }
 }
 
-/// All numbers: of the first layer that says or takes them from the URDF, otherwise the defaults.
+/// All numbers: of the first layer that says or takes them from the file, otherwise the defaults.
 /// The name of a field for which there are none. `layers`: what is said of a joint by its name, and
-/// of all; what is to be had from the URDF by name is not left out, so that no other says it.
+/// of all; what is to be had from the file by name is not left out, so that no other says it.
 pub(super) fn fill(
     (row, fields): (&'static Effect, &'static [Field]),
     layers: &[Option<&Numbers>],

@@ -17,7 +17,7 @@ pub(super) fn source(word: &str) -> &str {
     if word == "file" { "urdf" } else { word }
 }
 
-/// The words for what an effect may take from the URDF.
+/// The words for what an effect may take from the robot's file.
 pub(crate) fn sources(row: &Effect) -> impl Iterator<Item = &'static str> {
     let urdf = Some("urdf").filter(|_| offers(row));
     let collision = Some(collision::WORD).filter(|_| collision::offers(row));

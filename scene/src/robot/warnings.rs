@@ -178,7 +178,7 @@ impl Editing<'_> {
         unused.retain(|u| u.tag != "collision" || !matches!(&u.subject, Subject::Link(name) if used.contains(name.as_str())));
     }
 
-    /// Numbers of the URDF that an effect has taken are used.
+    /// Numbers of the file that an effect has taken are used.
     fn leave_what_is_used(&mut self, effects: &[Applied]) {
         self.leave_geometry_that_is_used(effects);
         let Reading { description, unused, .. } = &mut self.reading;

@@ -16,7 +16,7 @@ use crate::joint::with_pose;
 use crate::joint::{Coordinates, Follow, Joint, JointLaw};
 use crate::spatial::{Placement, Reference, SpatialInertia, nearest_rotation, to_z_axis};
 
-/// Why a description is not a model. Of a description that the URDF reader accepted: numbers that
+/// Why a description is not a model. Of a description that a reader accepted: numbers that
 /// are too large together ([`Self::TooLarge`]), and a joint of the name of a floating base's.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ModelError {

@@ -184,7 +184,7 @@ impl Precision {
         }
         lines.push("NaN and ∞ in an argument that a result depends on give NaN or ∞ there, and never a panic.".into());
         lines.push(
-            "The constants are those of the model in f64: each is off by some 2⁻⁵³ of what the URDF's decimals say, at every level.".into(),
+            "The constants are those of the model in f64: each is off by some 2⁻⁵³ of what the decimals of the robot's file say, at every level.".into(),
         );
         lines
     }

@@ -17,7 +17,7 @@ pub(super) fn text(report: &Report) -> String {
         });
     }
     let reference = match report.reference {
-        Against::Textbook => "the textbook's formulas on the URDF's numbers",
+        Against::Textbook => "the textbook's formulas on the numbers of the robot's file",
         Against::Library => "the generic library on the model's numbers",
     };
     let backward = if report.functions.iter().flat_map(|f| &f.points).any(|p| p.backward.is_some()) { BACKWARD } else { "" };

@@ -55,7 +55,7 @@ fn doubled(seen: &Seen) -> Option<String> {
         ));
     }
     Some(format!(
-        "double_double takes {:.0} times as long; what it computes is off by {:.1e} from its own formulas, but by {:.1e} from the URDF's numbers, where f64 is off by {:.1e}: \
+        "double_double takes {:.0} times as long; what it computes is off by {:.1e} from its own formulas, but by {:.1e} from the numbers of the robot's file, where f64 is off by {:.1e}: \
          the constants of the model are doubles at every level, and that is what is left.",
         seen.times(p),
         off(p),

@@ -32,7 +32,7 @@ pub(super) struct Errors {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Against {
-    /// The textbook's form, on the numbers of the URDF.
+    /// The textbook's form, on the numbers of the robot's file.
     Textbook,
     /// The generic library, on those of the model: the textbook's form knows no effects.
     Library,

@@ -8,12 +8,13 @@ use articulated_core::effect::{Applied, Field};
 use articulated_core::spatial::Reference;
 
 use crate::Precision;
+use crate::target::heads::{self, printable};
 use crate::target::Module;
 use crate::target::rust::RustOptions;
 
-/// Origin, contract, and unused content of the URDF, as comments.
+/// Origin, warnings, contract, and unused content of the robot's file, as comments.
 pub(crate) fn header(out: &mut String, module: &Module<'_>, rust: &RustOptions) {
-    let Module { request, model, unused, snapped, .. } = module;
+    let Module { request, model, unused, snapped, warnings, .. } = module;
     let o = &request.options;
     let [x, y, z]: [f64; 3] = model.gravity().into();
     let base = if o.robot.base == Base::Fixed { "fixed" } else { "floating" };
@@ -28,6 +29,7 @@ pub(crate) fn header(out: &mut String, module: &Module<'_>, rust: &RustOptions) 
     ));
     line(&format!("Robot {:?}, {base} base, gravity ({x:?}, {y:?}, {z:?}) m/s² in the world frame.", model.name()));
     edits(module).iter().for_each(|edit| line(edit));
+    heads::of_warnings(warnings).iter().for_each(|text| line(text));
     first_of(&mut line, "Angles snapped to multiples of π/2:", &summary(*snapped), ".");
     line(&format!("Functions: {}. To generate another one, add it to `functions`.", values(&o.functions).join(", ")));
     if o.level == Precision::default() {
@@ -41,7 +43,7 @@ pub(crate) fn header(out: &mut String, module: &Module<'_>, rust: &RustOptions) 
     if rust.no_std {
         line("For crates without std: square roots, arctangents and sines of large angles are those of the crate libm.");
     }
-    first_of(&mut line, "Elements of the URDF that are not used:", &summary_of_unused(*unused), ": `articulated check` lists them all.");
+    first_of(&mut line, "Elements of the robot's file that are not used:", &summary_of_unused(*unused), ": `articulated check` lists them all.");
     out.push('\n');
 }
 
@@ -110,22 +112,7 @@ fn numbers(applied: &Applied) -> String {
 /// How much of the unused content a header lists.
 const LISTED: usize = 40;
 
-/// Text that stays inside its comment and shows what it is: what cannot be printed is escaped.
-fn printable(text: &str) -> String {
-    text.chars().map(|c| if matches!(c, '"' | '\'' | '\\') { c.to_string() } else { c.escape_debug().to_string() }).collect()
-}
-
 /// FNV-1a, 64 bits: names the input, nothing more.
 fn fnv(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::printable;
-
-    #[test]
-    fn nothing_gets_out_of_a_comment() {
-        assert_eq!(printable("a\nfn b() {}\r \u{202e}\"é\""), "a\\nfn b() {}\\r \\u{202e}\"é\"");
-    }
 }
