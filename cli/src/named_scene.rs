@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use articulated_codegen::nearest;
 use articulated_codegen::scene::{self, Bundled, Prepared, Scene};
-use articulated_formats::{FORMATS, Formats, MOST_BYTES, read_file};
+use articulated_formats::{FORMATS, Formats, MOST_BYTES, nearest_file, read_file};
 use articulated_lab::session::Session;
 use articulated_scene::folder_of;
 
@@ -31,7 +31,7 @@ pub(crate) fn open(path: &Path) -> Result<(Prepared, PathBuf), Failure> {
     }
     if is_robot(path) {
         let folder = folder_of(path);
-        let scene = Scene::read(name, &robot_scene::text(path)?)?;
+        let scene = Scene::made_for(name, &robot_scene::text(path)?)?;
         return Ok((scene::open_in(scene, folder, &robots())?, folder.to_owned()));
     }
     Ok((scene::open(path, &robots())?, path.parent().map(Path::to_owned).unwrap_or_default()))
@@ -73,7 +73,8 @@ fn robots() -> Vec<Bundled<'static>> {
 
 fn unknown(name: &str) -> Failure {
     let names = || articulated_models::SCENES.iter().map(|s| s.name);
-    let near = nearest(name.strip_suffix(".toml").unwrap_or(name), names()).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
+    let bundled = || nearest(name.strip_suffix(".toml").unwrap_or(name), names());
+    let near = nearest_file(name.as_ref()).or_else(bundled).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
     let robot = if articulated_models::robot(name).is_some() { "; that is a robot, and a scene says what to do with it" } else { "" };
     let known = names().collect::<Vec<_>>().join(", ");
     Failure::input([format!("{name}: found neither a file nor a bundled scene{robot}{near} (bundled: {known})")])

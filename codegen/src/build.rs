@@ -11,7 +11,7 @@ use articulated_scene::{Loader, Robot, beside};
 
 use crate::cache::Cache;
 use crate::{
-    Appended, Base, Coupling, Generated, Origin, Payload, Real, Reference, Request, RobotOptions, Target, check_words, generate, scene,
+    Appended, Base, Coupling, Generated, Origin, Payload, Real, Reference, Request, RobotOptions, Target, generate, scene,
 };
 
 /// Generates a robot's code from a build script.
@@ -417,13 +417,16 @@ impl Build {
     /// The request, with the files read.
     fn request(&self) -> Result<Request, Diagnostics> {
         let (mut request, mut log, mut loader) = (self.request.clone(), self.findings.clone(), loader());
+        let mut is_complete = !request.file.is_empty();
         match (&request.scene, request.file.as_str()) {
-            (Some(scene), "") => log.push(
+            (Some(scene), "") if !scene.doubts_robot() => log.push(
                 scene.without_robot("no robot", "file; a bundled robot is known to the command line alone: give its file with Build::urdf"),
             ),
-            (None, "") => {}
+            (_, "") => {}
             (_, file) => {
-                request.document = loader.read(file.as_ref(), &self.robot, "urdf", &mut log).unwrap_or_default();
+                let document = loader.read(file.as_ref(), &self.robot, "urdf", &mut log);
+                is_complete = document.is_some();
+                request.document = document.unwrap_or_default();
                 loader.include(file, &request.document, &request.options.robot);
             }
         }
@@ -432,14 +435,16 @@ impl Build {
         let own = RobotOptions { arguments: BTreeMap::new(), ..request.options.robot.clone() };
         for other in &mut append {
             let span = other.file.span.clone().unwrap_or_default();
-            other.document = loader.read(other.file.value.as_ref(), &span, "append.urdf", &mut log).unwrap_or_default();
+            let document = loader.read(other.file.value.as_ref(), &span, "append.urdf", &mut log);
+            is_complete &= document.is_some();
+            other.document = document.unwrap_or_default();
             loader.include(&other.file.value, &other.document, &own);
         }
         request.options.robot.append = append;
         request.options.robot.included = loader.included.clone();
         if !log.is_ok() {
-            // Mistakes in the words of the request are mistakes without the robot too.
-            check_words(&request, &mut log);
+            // What else is wrong with the request; without the robot its words.
+            scene::check_rest(&request, is_complete, &mut log);
         }
         log.result(request)
     }

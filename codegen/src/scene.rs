@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use articulated_core::description::Base;
 use articulated_core::diagnostic::{At, Code, Diagnostics};
-use articulated_scene::{BuiltRobot, Opened, open as open_files, open_in as open_files_in};
+use articulated_scene::{BuiltRobot, Opened, RobotInWorld, folder_of, open_in_into, open_into, open_table};
 
 pub use articulated_scene::{self, Bundled, Loader, Scene, beside};
 
-use crate::{Options, Request, Target, check_names};
+use crate::{Options, Request, Target, check_names, check_words};
 
 /// A scene and its request.
 #[derive(Clone, Debug)]
@@ -27,9 +27,12 @@ pub struct Prepared {
 /// names are seen from its folder.
 ///
 /// # Errors
-/// All findings about the files, or else about the robot and what of the scene does not fit it.
+/// All findings about the files, about the robot, and about what of the scene does not fit it, as
+/// far as they can be read.
 pub fn open(path: &Path, bundled: &[Bundled<'_>]) -> Result<Prepared, Diagnostics> {
-    prepared(open_files(path, bundled)?)
+    let mut log = Diagnostics::new(&path.display().to_string());
+    let opened = open_into(path, bundled, &mut log);
+    whole(opened, folder_of(path), log)
 }
 
 /// A scene that was read, with its robot; `bundled` are those that it may call by name. Files that
@@ -39,7 +42,25 @@ pub fn open(path: &Path, bundled: &[Bundled<'_>]) -> Result<Prepared, Diagnostic
 /// # Errors
 /// As [`open`].
 pub fn open_in(scene: Scene, folder: &Path, bundled: &[Bundled<'_>]) -> Result<Prepared, Diagnostics> {
-    prepared(open_files_in(scene, folder, bundled)?)
+    let mut log = Diagnostics::new(&scene.file);
+    let opened = open_in_into(scene, folder, bundled, &mut log);
+    whole(opened, folder, log)
+}
+
+/// The request of what was opened, or what is wrong with it and with the rest of the scene.
+fn whole(opened: Result<Opened, Option<Scene>>, folder: &Path, mut log: Diagnostics) -> Result<Prepared, Diagnostics> {
+    match opened {
+        Ok(opened) => prepared(opened, Some(folder), log),
+        Err(scene) => {
+            if let Some(scene) = scene {
+                let mut request = Request::new("", []);
+                fill(&mut request.options, &scene);
+                check_words(&request, &mut log);
+                scene.check_table(None, &mut |name| open_table(folder, name), &mut log);
+            }
+            Err(log.result(()).err().unwrap_or_default())
+        }
+    }
 }
 
 /// The request of a scene for the robot in `document`; `append` are the documents that it appends.
@@ -50,26 +71,50 @@ pub fn open_in(scene: Scene, folder: &Path, bundled: &[Bundled<'_>]) -> Result<P
 /// the
 /// robot, tables of control in files apart.
 pub fn prepare(scene: Scene, file: &str, document: Vec<u8>, base: Base, append: Vec<Vec<u8>>) -> Result<Prepared, Diagnostics> {
-    prepared(Opened::new(scene, file, document, base, append))
+    let log = Diagnostics::new(&scene.file);
+    prepared(Opened::new(scene, file, document, base, append), None, log)
 }
 
-fn prepared(opened: Opened) -> Result<Prepared, Diagnostics> {
-    let mut log = Diagnostics::new(&opened.scene.file);
+/// `folder`: that of the scene's files; a table of control that one of them has is looked at where
+/// the scene has other mistakes.
+fn prepared(opened: Opened, folder: Option<&Path>, mut log: Diagnostics) -> Result<Prepared, Diagnostics> {
     let robot = opened.robot().build_into(&mut log);
     let Opened { scene, file, document, options, files } = opened;
     let mut request = Request { scene: Some(scene.clone()), ..Request::new(file, document) };
     fill(&mut request.options, &scene);
     request.options.robot = options;
-    if let Some(robot) = &robot {
-        let mut names = log.apart();
-        check_names(&request, robot, &mut names);
-        // Default names that clash concern only the targets that use them.
-        names.errors.retain(|error| error.code != Code::NameClash || error.span.at != At::Nowhere);
-        log.take(names);
+    match &robot {
+        Some(robot) => check_names_of(&scene, &request, robot, &mut log),
+        None => check_words(&request, &mut log),
+    }
+    if let Some(folder) = folder.filter(|_| !log.is_ok()) {
+        let in_world = robot.as_ref().map(|robot| RobotInWorld { model: &robot.model, world: &robot.reading.world });
+        scene.check_table(in_world, &mut |name| open_table(folder, name), &mut log);
     }
     match robot {
         Some(robot) => log.result(Prepared { scene, request, robot, files }),
         None => Err(log.result(()).err().unwrap_or_default()),
+    }
+}
+
+/// Reports the names of a scene's request that its robot does not have.
+fn check_names_of(scene: &Scene, request: &Request, robot: &BuiltRobot, log: &mut Diagnostics) {
+    let mut names = log.apart();
+    check_names(request, robot, &mut names);
+    // Default names that clash concern only the targets that use them.
+    names.errors.retain(|error| error.code != Code::NameClash || error.span.at != At::Nowhere);
+    scene.keep_certain(&mut names);
+    log.take(names);
+}
+
+/// Reports what is wrong with a request beside the mistakes of its scene's text, which were left
+/// out. `is_complete`: its documents are there.
+pub fn check_rest(request: &Request, is_complete: bool, log: &mut Diagnostics) {
+    let robot = if is_complete { request.robot().build_into(log) } else { None };
+    match (&request.scene, &robot) {
+        (Some(scene), Some(robot)) => check_names_of(scene, request, robot, log),
+        (None, Some(robot)) => check_names(request, robot, log),
+        (_, None) => check_words(request, log),
     }
 }
 

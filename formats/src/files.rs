@@ -9,7 +9,7 @@ use std::io::{Error, ErrorKind, Read, Result};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use articulated_core::suggest::nearest;
+use articulated_core::suggest::{Suggester, nearest};
 
 /// Where documents come from. Only the implementations of this trait open files of a robot or a
 /// scene.
@@ -260,19 +260,27 @@ impl Sources for Recorder<'_> {
     }
 }
 
-/// The name in the folder of `path` that is most like that of `path` and has the same ending, if
-/// there is no such file; none in a folder of very many.
+/// The name of the file in the folder of `path` that is most like that of `path`, if there is no
+/// such file; none in a folder of very many. Files of the same ending come first; of the others one
+/// whose whole name is misspelt.
 #[must_use]
 pub fn nearest_file(path: &Path) -> Option<String> {
     if path.exists() {
         return None;
     }
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    let files = std::fs::read_dir(folder).ok()?.take(MOST_FILES).filter_map(|entry| Some(PathBuf::from(entry.ok()?.file_name())));
-    let alike = files.filter(|file| file.extension() == path.extension());
-    let stems: Vec<String> = alike.filter_map(|file| Some(file.file_stem()?.to_str()?.to_owned())).collect();
-    let stem = nearest(path.file_stem()?.to_str()?, stems.iter().map(String::as_str))?;
-    Some(path.extension().and_then(|ending| ending.to_str()).map_or(stem.clone(), |ending| format!("{stem}.{ending}")))
+    let entries = std::fs::read_dir(folder).ok()?.take(MOST_FILES).filter_map(|entry| entry.ok());
+    let files = entries.filter(|entry| !entry.file_type().is_ok_and(|kind| kind.is_dir()));
+    let mut names: Vec<String> = files.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    // Folders have no order of their own.
+    names.sort_unstable();
+    let alike = names.iter().map(Path::new).filter(|file| file.extension() == path.extension());
+    let stem = nearest(path.file_stem()?.to_str()?, alike.filter_map(|file| file.file_stem()?.to_str()));
+    let same = stem.map(|stem| path.extension().and_then(|ending| ending.to_str()).map_or(stem.clone(), |ending| format!("{stem}.{ending}")));
+    same.or_else(|| {
+        let wrong = path.file_name()?.to_str()?;
+        Suggester::default().misspelt(wrong, names.iter().map(String::as_str)).map(str::to_owned)
+    })
 }
 
 /// No robot file is larger, bytes: one of 100 000 links stays well below.

@@ -340,3 +340,36 @@ fn content_of_links_and_joints_that_is_not_used_is_reported() {
         assert!(tags.contains(&expected), "{expected} in {tags:#?}");
     }
 }
+
+/// A thousand tonnes are no link's: most often the mass is in grams, or a placeholder.
+#[test]
+fn a_mass_beyond_any_link_is_a_warning_in_every_format() {
+    let moments = "ixx='1e7' ixy='0' ixz='0' iyy='1e7' iyz='0' izz='1e7'";
+    let urdf = |mass: &str| {
+        format!(
+            "<robot name='r'><link name='base'/>\n<link name='tip'><inertial><mass value='{mass}'/><inertia {moments}/></inertial></link>
+            <joint name='j' type='continuous'><parent link='base'/><child link='tip'/><axis xyz='0 0 1'/></joint></robot>"
+        )
+    };
+    let mjcf = |mass: &str| {
+        format!("<mujoco><worldbody>\n<body name='tip'><joint/><geom name='ball' size='1' mass='{mass}'/></body></worldbody></mujoco>")
+    };
+    let tags = ["ixx", "iyy", "izz"].map(|tag| format!("<{tag}>1e7</{tag}>")).concat();
+    let sdf = |mass: &str| {
+        format!("<sdf version='1.7'><model name='m'>\n<link name='tip'><inertial><mass>{mass}</mass><inertia>{tags}</inertia></inertial></link></model></sdf>")
+    };
+    let told = |text: String| {
+        let reading = read(text.as_bytes(), &Options { base: Base::Floating, ..options() }).unwrap_or_else(|e| panic!("{e}"));
+        let heavy = reading.warnings.into_iter().filter(|warning| warning.code == Code::Units && warning.field == "mass");
+        heavy.map(|warning| (warning.line(), warning.subject, warning.found)).collect::<Vec<_>>()
+    };
+    for text in [&urdf as &dyn Fn(&str) -> String, &mjcf, &sdf] {
+        assert_eq!(told(text("1e6")), []);
+        let found = told(text("1000001"));
+        let expected = (Subject::Link("tip".into()), "a mass of 1000001 kg, more than any link has");
+        assert!(found.len() == 1 && found[0].0 == Some(2) && (found[0].1.clone(), found[0].2.as_str()) == expected, "{found:?}");
+    }
+    // The masses that `settotalmass` makes are those of the robot.
+    let total = mjcf("1").replace("<worldbody>", "<compiler settotalmass='2e6'/><worldbody>");
+    assert_eq!(told(total).len(), 1);
+}

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use articulated_codegen::diagnostic::{At, Code, Diagnostic, Diagnostics, Span, summary};
 use articulated_codegen::scene::articulated_scene::{Loader, Robot, Scene, beside, folder_of};
-use articulated_codegen::{FunctionSpec, Generated, Request, check_words, scene};
+use articulated_codegen::{FunctionSpec, Generated, Request, scene};
 use proc_macro2::{Delimiter, Group, Span as Word, TokenStream, TokenTree};
 use quote::{quote, quote_spanned};
 
@@ -99,12 +99,13 @@ impl Reader<'_> {
             Some((name, at)) => self.loader.scene(name.as_ref(), &Span { file: name.clone(), at: *at }, &mut self.log),
             None => Some(Scene::default()),
         };
-        let is_whole = from_file.is_some();
+        let is_read = from_file.is_some();
+        let is_whole = from_file.as_ref().is_some_and(|scene| scene.left_out.is_empty());
         let (scene, wrong) = from_file.unwrap_or_default().overlaid(&settings.rest, &Settings::own_names());
         self.log.extend(wrong);
         let mut options = settings.macro_keys.options();
         scene::fill(&mut options, &scene);
-        if !is_whole {
+        if !is_read {
             return (scene, None);
         }
         let robot = self.robot(folder, &scene);
@@ -113,11 +114,11 @@ impl Reader<'_> {
         let is_complete = robot.is_some() && appended;
         let (file, document) = robot.unwrap_or_default();
         let request = Request { document, file, scene: Some(scene.clone()), options };
-        if !is_complete {
-            // Mistakes in the words of the invocation are mistakes without the robot too.
-            check_words(&request, &mut self.log);
+        if !is_complete || !is_whole {
+            // What else is wrong with the invocation; without the robot its words.
+            scene::check_rest(&request, is_complete, &mut self.log);
         }
-        (scene, is_complete.then_some(request))
+        (scene, (is_complete && is_whole).then_some(request))
     }
 
     /// The name of the robot's file and its bytes.
@@ -127,7 +128,7 @@ impl Reader<'_> {
             return self.loader.robot(folder, scene, &mut self.log).map(|(file, document, _)| (file, document));
         }
         // A value that is wrong is reported already.
-        if !settings.has("urdf") && !settings.has("file") {
+        if !settings.has("urdf") && !settings.has("file") && !scene.doubts_robot() {
             self.log.push(match &settings.macro_keys.scene {
                 Some(_) => scene.without_robot("no robot", "urdf, here or in the scene"),
                 None if settings.has("scene") => return None,

@@ -1,6 +1,6 @@
 //! A scene with its robot.
 
-use std::io::{BufRead, BufReader};
+use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
 use articulated_core::description::Description;
@@ -8,11 +8,8 @@ use articulated_core::diagnostic::{Diagnostic, Diagnostics};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
 use articulated_formats::world::World;
-use articulated_formats::{Reading, open_file};
-use articulated_scene::{BuiltRobot, Opened, Report, Scene};
-
-/// No table of control is larger, bytes: ten million rows, of which none has more, of 400 each.
-const MOST_OF_TABLE: u64 = 4 << 30;
+use articulated_formats::Reading;
+use articulated_scene::{BuiltRobot, Opened, Report, Scene, open_table};
 
 /// A scene with its robot after the scene's edits.
 #[derive(Clone, Debug)]
@@ -36,8 +33,8 @@ pub struct Session {
 
 /// Constructors.
 impl Session {
-    /// Opens the scene at `path` and the robot that it names. Errors: all findings about the scene,
-    /// else about the robot, else about the scene on the robot.
+    /// Opens the scene at `path` and the robot that it names. Errors: all findings about the scene
+    /// and its files, and about the scene on the robot, as far as they can be read.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Diagnostics> {
         let path = path.as_ref();
         let folder = path.parent().unwrap_or(Path::new(""));
@@ -88,9 +85,7 @@ impl Session {
     /// Opens a file that the scene names, a table over time, to be read line by line. Errors: a
     /// file that is unreadable, not regular, or larger than any table (4 GiB).
     pub fn file(&self, name: &str) -> Result<Box<dyn BufRead>, String> {
-        let path = self.folder.join(name);
-        let file = open_file(&path, MOST_OF_TABLE).map_err(|e| format!("{}: {e}", path.display()))?;
-        Ok(Box::new(BufReader::new(file)))
+        open_table(&self.folder, name)
     }
 
     /// The effects of one kind.

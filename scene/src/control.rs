@@ -8,7 +8,7 @@ use articulated_core::model::{FLOATING_BASE, Model};
 use crate::edits::{name, places};
 use crate::initial::{Coordinates, Named, counted, fill, neutral, no_joint, normalise, values};
 use crate::scene::Scene;
-use crate::series::{Reader, Source};
+use crate::series::{Reader, Source, unreadable};
 use crate::simulation::set;
 use crate::slots::{Side, Slots};
 use crate::table::{Row, Spot};
@@ -24,6 +24,8 @@ pub struct Control {
     pub period: Option<f64>,
     /// Where the scene says so.
     pub place: At,
+    /// The file of its table and where the scene names it, also where other keys are wrong.
+    pub table: Option<(String, At)>,
 }
 
 /// Kinds of control.
@@ -249,8 +251,10 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Control {
     if right.contains(&"kind") && spot.get("kind").is_some() {
         check(&keys, spot, &right, log);
     }
+    let file = keys.source.file.clone().filter(|file| !file.is_empty());
+    let table = file.zip(spot.get("file").map(|file| file.at));
     if log.count() > before {
-        return Control::default();
+        return Control { table, ..Control::default() };
     }
     let Keys { kind, torque, target, kp, kd, source, period, ctrl, keyframe } = keys;
     let moving = source.file.is_some() || !source.rows.is_empty();
@@ -263,7 +267,7 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Control {
         Sort::Actuators if moving => Drive::Actuators(Controls::Moving(source)),
         Sort::Actuators => Drive::Actuators(Controls::Still { keyframe, control: ctrl.unwrap_or_default() }),
     };
-    Control { drive, period, place: spot.at }
+    Control { drive, period, place: spot.at, table }
 }
 
 /// Checks that the keys are those of the kind; `right`: the accepted keys of a table.
@@ -394,6 +398,30 @@ impl Scene {
         self.started(robot, &mut log);
         self.controlled(robot, None, &mut log);
         log.result(())
+    }
+
+    /// Reports what is wrong with the table of the control, which is in a file: without the robot
+    /// only that it cannot be opened. For a scene that has other mistakes; [`Scene::controller`]
+    /// reports the same.
+    pub fn check_table(&self, robot: Option<RobotInWorld<'_>>, read: &mut Reader<'_>, log: &mut Diagnostics) {
+        let Some((file, place)) = &self.control.table else { return };
+        let mut own = Diagnostics::new(&self.file);
+        let table = robot.and_then(|robot| match &self.control.drive {
+            Drive::Table(source) => Some((source, Slots::of_joints(robot.model, Side::V))),
+            Drive::Pd { target: Target::Moving(source), .. } => Some((source, Slots::of_joints(robot.model, Side::Q))),
+            Drive::Actuators(Controls::Moving(source)) => Some((source, Slots::of_actuators(&robot.world.actuators))),
+            _ => None,
+        });
+        match table {
+            Some((source, slots)) => drop(source.series(&slots, Some(read), &mut own)),
+            None => {
+                if let Err(reason) = read(file) {
+                    unreadable(file, *place, &reason, &mut own);
+                }
+            }
+        }
+        self.keep_certain(&mut own);
+        log.take(own);
     }
 
     /// The actuators of the robot's file, with the scene's controls.

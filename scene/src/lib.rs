@@ -38,6 +38,7 @@ mod calls;
 mod control;
 mod csv;
 mod document;
+mod doubt;
 mod edits;
 mod effects;
 mod impact;
@@ -64,10 +65,10 @@ pub use impact::{Impact, When};
 pub use initial::{BaseState, Coordinates, Initial, Named};
 pub use report::{EffectOff, EffectOn, Number, Report, Why};
 pub use robot::{
-    Appended, BuiltRobot, Bundled, Loader, Opened, RobotOptions, RobotRequest, beside, beyond_sense, folder_of, open, open_in,
+    Appended, BuiltRobot, Bundled, Loader, Opened, RobotOptions, RobotRequest, beside, beyond_sense, folder_of, open, open_in, open_in_into, open_into,
 };
 pub use scene::{CodeOptions, Places, Robot, Scene};
-pub use series::{Reader, Source};
+pub use series::{Reader, Source, open_table};
 pub use shaft::ShaftRequest;
 pub use simulation::{EventClass, Simulation};
 pub use tree::{Entry, Node, Value};

@@ -51,6 +51,9 @@ pub struct Scene {
     pub control: Control,
     /// A ball to be hit.
     pub impact: Option<Impact>,
+    /// Paths of the keys that are wrong in its text and were left out: see
+    /// [`Scene::keep_certain`]. Empty for a scene without mistakes.
+    pub left_out: Vec<String>,
 }
 
 /// Where the robot is to be had.
@@ -140,23 +143,56 @@ impl Scene {
     /// or an error; all errors at once.
     pub fn read(file: &str, text: &str) -> Result<Self, Diagnostics> {
         let mut log = Diagnostics::new(file);
-        let mut scene = Self { file: file.to_owned(), ..Self::default() };
-        if let Some(root) = document::parse(text, &mut log) {
-            scene.fill(&root, &mut log);
-        }
+        let scene = Self::read_into(file, text, &mut log).unwrap_or_default();
         log.result(scene)
+    }
+
+    /// As [`Scene::read`], and reports to a collector. What is wrong is left out: the rest of the
+    /// scene can be looked at further. `None`: the text is not TOML.
+    pub fn read_into(file: &str, text: &str, log: &mut Diagnostics) -> Option<Self> {
+        let mut own = Diagnostics::new(file);
+        let root = document::parse(text, &mut own);
+        let scene = root.map(|root| Self::of(file, &root, &mut own));
+        log.take(own);
+        scene
+    }
+
+    /// The scene in a text that no file has, for the robot in `file`: findings name that file and no
+    /// place in it.
+    ///
+    /// # Errors
+    /// As [`Scene::read`].
+    pub fn made_for(file: &str, text: &str) -> Result<Self, Diagnostics> {
+        let mut log = Diagnostics::new(file);
+        let root = document::parse(text, &mut log);
+        let scene = root.map(|root| Self::of(file, &root.without_places(), &mut log)).unwrap_or_default();
+        log.result(scene)
+    }
+
+    fn of(file: &str, root: &Node, log: &mut Diagnostics) -> Self {
+        let mut scene = Self { file: file.to_owned(), ..Self::default() };
+        scene.fill(root, log);
+        scene.left_out = log.errors.iter().map(|error| error.field.clone()).collect();
+        scene
     }
 
     /// As [`Scene::read`], of bytes that may not even be text.
     pub fn read_bytes(file: &str, bytes: &[u8]) -> Result<Self, Diagnostics> {
+        let mut log = Diagnostics::new(file);
+        let scene = Self::read_bytes_into(file, bytes, &mut log).unwrap_or_default();
+        log.result(scene)
+    }
+
+    /// As [`Scene::read_into`], of bytes that may not even be text.
+    pub fn read_bytes_into(file: &str, bytes: &[u8], log: &mut Diagnostics) -> Option<Self> {
         match std::str::from_utf8(bytes) {
-            Ok(text) => Self::read(file, text),
+            Ok(text) => Self::read_into(file, text, log),
             Err(error) => {
                 let lines = bytes[..error.valid_up_to()].iter().filter(|b| **b == b'\n').count();
                 let at = At::line_of(u32::try_from(lines + 1).unwrap_or(u32::MAX));
-                let mut log = Diagnostics::new(file);
-                log.error((at, ""), Code::Syntax, "bytes that are not UTF-8", "a TOML file");
-                log.result(Self::default())
+                let found = "bytes that are not UTF-8";
+                log.push(Diagnostic::error(file, (at, ""), Code::Syntax, found, "a TOML file"));
+                None
             }
         }
     }

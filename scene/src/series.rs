@@ -2,10 +2,11 @@
 
 use articulated_core::diagnostic::{At, Code, Diagnostics, quote};
 use std::collections::{HashMap, HashSet};
-use std::io::BufRead;
+use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use articulated_core::control::Series;
+use articulated_formats::{nearest_file, open_file};
 
 use crate::csv;
 use crate::initial::counted;
@@ -115,8 +116,7 @@ impl Source {
         match read(file) {
             Ok(from) => self.parsed(file, from, slots, log),
             Err(reason) => {
-                let found = format!("{}, which cannot be read ({reason})", quote(file));
-                log.error((self.place, "control.file"), Code::UnknownName, found, "a CSV with a first line that names its columns");
+                unreadable(file, self.place, &reason, log);
                 Series::default()
             }
         }
@@ -169,6 +169,29 @@ impl Source {
         Series { times: self.rows.iter().map(|r| r[0]).collect(), rows, hold: self.hold }
     }
 }
+
+/// Reports a file of a table that cannot be read.
+pub(crate) fn unreadable(file: &str, place: At, reason: &str, log: &mut Diagnostics) {
+    let found = format!("{}, which cannot be read ({reason})", quote(file));
+    log.error((place, "control.file"), Code::UnknownName, found, "a CSV with a first line that names its columns");
+}
+
+/// Opens the file of a table, seen from `folder`, to be read line by line.
+///
+/// # Errors
+/// A file that is unreadable, not regular, or larger than any table (4 GiB); of one that is not
+/// there the name that was meant.
+pub fn open_table(folder: &Path, name: &str) -> Result<Box<dyn BufRead>, String> {
+    let path = folder.join(name);
+    let file = open_file(&path, MOST_OF_TABLE).map_err(|error| {
+        let near = nearest_file(&path).map(|near| format!("; did you mean {near:?}?")).unwrap_or_default();
+        format!("{}: {error}{near}", path.display())
+    })?;
+    Ok(Box::new(BufReader::new(file)))
+}
+
+/// No table of control is larger, bytes: ten million rows, of which none has more, of 400 each.
+const MOST_OF_TABLE: u64 = 4 << 30;
 
 /// Where in a row the number of each column goes; nowhere if no number has such a name.
 pub(crate) struct Places(Vec<Option<usize>>);

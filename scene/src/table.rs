@@ -23,7 +23,7 @@ pub(crate) struct Row<T> {
 }
 
 /// Keys that other programs have, and the one that is meant.
-const MEANT: [(&str, &str); 5] = [
+pub(crate) const MEANT: [(&str, &str); 5] = [
     ("floating", "base = \"floating\""),
     ("floating_base", "base = \"floating\""),
     ("free_flyer", "base = \"floating\""),

@@ -40,6 +40,21 @@ pub struct Entry {
     pub node: Node,
 }
 
+impl Node {
+    /// The same without its places.
+    pub(crate) fn without_places(self) -> Self {
+        let value = match self.value {
+            Value::List(list) => Value::List(list.into_iter().map(Self::without_places).collect()),
+            Value::Table(entries) => {
+                let entries = entries.into_iter().map(|entry| Entry { at: At::Nowhere, node: entry.node.without_places(), ..entry });
+                Value::Table(entries.collect())
+            }
+            value => value,
+        };
+        Self { at: At::Nowhere, value }
+    }
+}
+
 impl Value {
     /// What it is, for a message.
     pub fn describe(&self) -> String {

@@ -9,6 +9,7 @@ use std::path::Path;
 
 use articulated_core::algorithm::{Function, Workspace, function};
 use articulated_core::model::Model;
+use articulated_formats::nearest_file;
 use articulated_reference::{scales, scales_of_generated, where_suspect};
 
 use crate::arguments::{EvalArguments, Format};
@@ -74,7 +75,8 @@ fn functions(names: &[String]) -> Vec<&'static Function<f64>> {
 fn read_states(path: &Path, model: &Model<f64>, functions: &[&'static Function<f64>]) -> Result<states::States, Failure> {
     let file = path.display();
     let wrong = |lines: Vec<String>| Failure::input(lines.into_iter().map(|line| format!("{file}: {line}")));
-    let bytes = read_bytes(path).map_err(|e| wrong(vec![e.to_string()]))?;
+    let near = || nearest_file(path).map(|near| format!("; did you mean {near:?}?")).unwrap_or_default();
+    let bytes = read_bytes(path).map_err(|e| wrong(vec![format!("{e}{}", near())]))?;
     let states = states::read(&bytes, model).map_err(wrong)?;
     let missing = missing(&states.states, model, functions);
     if missing.is_empty() { Ok(states) } else { Err(wrong(states::listed(missing))) }

@@ -8,6 +8,7 @@ use super::bodies::{Body, Explicit};
 use super::grammar::subject;
 use super::mesh::Meshes;
 use super::settings::{Compiler, InertiaFromGeom};
+use crate::mass::beyond_any_mass;
 use crate::pose::{IDENTITY, Pose, Quaternion, Symmetric, add, diagonal, of_point, scale, subtract, turned};
 
 /// MuJoCo refuses bodies that move and have less mass, kg, or moments of inertia, kg·m².
@@ -50,7 +51,17 @@ pub(crate) fn of_bodies(bodies: &[Body<'_>], meshes: &mut Meshes<'_>, log: &mut 
     }
     refuse_points(bodies, &all, &points, log);
     set_total_mass(bodies, &mut all);
+    warn_of_masses(bodies, &all, log);
     all
+}
+
+/// Warns of masses that no body has.
+fn warn_of_masses(bodies: &[Body<'_>], all: &[Option<Own>], log: &mut Diagnostics) {
+    for (body, own) in bodies.iter().zip(all) {
+        if let Some((found, expected)) = own.and_then(|own| beyond_any_mass(own.mass)) {
+            body.element.warning((&subject(body.element), "mass"), Code::Units, found, expected, log);
+        }
+    }
 }
 
 /// Refuses masses without inertia of what moves as one, unless another body of it has inertia.

@@ -7,6 +7,7 @@ use super::grammar::{AUTO, subject};
 use super::names::relative_to;
 use super::values::{self, flag, number, only, yes};
 use crate::Options;
+use crate::mass::beyond_any_mass;
 use crate::pose::Pose;
 use crate::urdf::ALLOW_UNPHYSICAL_INERTIA;
 use crate::xml::tree::Element;
@@ -89,6 +90,9 @@ fn check(tag: &Element, mass: f64, inertia: [f64; 6], options: &Options, about: 
     const EXPECTED: &str = "an inertia that is positive semi-definite";
     if mass < 0.0 {
         tag.error((about, "mass"), Code::NegativeMass, format!("a negative mass, {mass} kg"), "a mass of zero or more", log);
+    }
+    if let Some((found, expected)) = beyond_any_mass(mass) {
+        tag.warning((about, "mass"), Code::Units, found, expected, log);
     }
     if mass == 0.0 && inertia != [0.0; 6] {
         let found = "a mass of zero with a rotational inertia that is not";

@@ -4,12 +4,16 @@ use articulated_core::description::PrincipalMoments;
 use articulated_core::diagnostic::{Code, Diagnostics, Place};
 
 use super::robot::Context;
+use crate::mass::beyond_any_mass;
 
 /// Reports a mass or an inertia that is impossible or looks wrong.
 pub(crate) fn check(mass: Option<f64>, inertia: Option<[f64; 6]>, context: &Context<'_>, place: &Place<'_>, log: &mut Diagnostics) {
     let place = |field| Place { field, ..*place };
     if let Some(mass) = mass.filter(|mass| *mass < 0.0) {
         log.error(place("mass"), Code::NegativeMass, format!("a negative mass, {mass} kg"), "a mass of zero or more");
+    }
+    if let Some((found, expected)) = mass.and_then(beyond_any_mass) {
+        log.warning(place("mass"), Code::Units, found, expected);
     }
     let Some(inertia) = inertia else { return };
     if mass == Some(0.0) && inertia.iter().any(|i| *i != 0.0) {

@@ -5,16 +5,18 @@
 //! A refused edit is reported and left out; the others are made.
 
 use std::collections::HashSet;
+use std::path::Path;
 
 use articulated_core::description::{Base, EditError, Editor};
-use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Span, Spanned, Subject, Unused};
-use articulated_core::effect::Applied;
+use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Span, Spanned, Subject, Unused};
+use articulated_core::effect::{Applied, EffectError, Fault};
 use articulated_core::model::{Model, ModelError};
 use articulated_core::suggest::Suggester;
 use articulated_formats::{Options, Reading, SNAP_EXPECTED, can_snap, read_with};
 
 use super::options::{Appended, RobotOptions, RobotRequest};
 use crate::effects::{Edited, Resolved};
+use crate::series::open_table;
 use crate::world::RobotInWorld;
 
 /// A robot as requested.
@@ -60,6 +62,25 @@ impl RobotRequest<'_> {
     /// As [`build`](Self::build), and reports to a collector. `None`: there is no robot, and an
     /// error says why. What is refused is left out.
     pub fn build_into(&self, log: &mut Diagnostics) -> Option<BuiltRobot> {
+        let mut own = log.apart();
+        let robot = self.build_all(&mut own);
+        self.scene.iter().for_each(|scene| scene.keep_certain(&mut own));
+        log.take(own);
+        robot
+    }
+
+    /// As [`build_into`](Self::build_into), and reports what is wrong with the file of the scene's
+    /// table, which is seen from `folder`: for a scene that has other mistakes.
+    pub fn check_with_table(&self, folder: &Path, log: &mut Diagnostics) -> Option<BuiltRobot> {
+        let robot = self.build_into(log);
+        if let Some(scene) = self.scene {
+            let in_world = robot.as_ref().map(|robot| RobotInWorld { model: &robot.model, world: &robot.reading.world });
+            scene.check_table(in_world, &mut |name| open_table(folder, name), log);
+        }
+        robot
+    }
+
+    fn build_all(&self, log: &mut Diagnostics) -> Option<BuiltRobot> {
         self.check_numbers(log);
         let mut editing = self.edit(log)?;
         let model = self.bare_model(&editing, log)?;
@@ -163,6 +184,10 @@ impl RobotRequest<'_> {
             Err(errors) => (model, errors.0),
         };
         for error in &refused {
+            if let Some(finding) = self.number_of_the_file(error, &resolved, &editing.reading.unused) {
+                own.push(finding);
+                continue;
+            }
             let (file, place) = match (self.scene, error.index < scenes) {
                 (Some(scene), true) => (scene.file.as_str(), (resolved.places[error.index], resolved.keys[error.index].as_str())),
                 _ => (self.file, Default::default()),
@@ -171,6 +196,27 @@ impl RobotRequest<'_> {
         }
         log.take(own);
         (resolved, model, effects)
+    }
+
+    /// A finding about a number of the robot's file that an effect takes, where that stands. `None`:
+    /// the number is not of the file, or the scene has a place of its own.
+    fn number_of_the_file(&self, error: &EffectError, resolved: &Resolved, unused: &[Unused]) -> Option<Diagnostic> {
+        let Fault::Number { field, found, expected } = &error.fault else { return None };
+        let numbers = resolved.places.get(error.index).filter(|place| **place == At::Nowhere);
+        let effect = numbers.and_then(|_| resolved.report.on.get(error.index))?;
+        let tag = effect.numbers.iter().find(|number| number.name == *field)?.from?;
+        let subject = Subject::Joint(error.on.clone());
+        // Numbers that scenes may use are reported with their places.
+        let of_tag = |one: &&Unused| one.subject == subject && one.tag.strip_prefix(tag).is_some_and(|rest| rest.is_empty() || rest.starts_with(" of "));
+        let (file, line) = match unused.iter().find(of_tag) {
+            Some(one) => (one.tag[tag.len()..].strip_prefix(" of ").unwrap_or(self.file), one.line),
+            None => (self.file, None),
+        };
+        // The last word of a tag is the attribute.
+        let attribute = tag.rsplit(' ').next().unwrap_or(tag);
+        let place = Place { at: line.map_or(At::Nowhere, At::line_of), subject: &subject, field: attribute };
+        let found = found.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
+        Some(Diagnostic::error(file, place, Code::Effect, found, expected))
     }
 
     fn reader_options(&self) -> Options {

@@ -13,6 +13,7 @@ use articulated_formats::{Disk, Environment, Included, Options, Sources, include
 use super::build::BuiltRobot;
 use super::options::{Appended, RobotOptions, RobotRequest};
 use crate::scene::{Robot, Scene};
+use crate::series::open_table;
 
 /// A robot that scenes may call by its name.
 #[derive(Clone, Copy, Debug)]
@@ -61,13 +62,40 @@ pub struct Opened {
 /// name. Files that it names are seen from its folder.
 ///
 /// # Errors
-/// All findings, if one of them is an error.
+/// All findings, if one of them is an error; then also those about the scene on its robot, as far
+/// as both can be read.
 pub fn open(path: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, Diagnostics> {
     let mut log = Diagnostics::new(&path.display().to_string());
+    let opened = open_into(path, bundled, &mut log);
+    whole(opened, folder_of(path), log)
+}
+
+/// As [`open`], and reports to a collector.
+///
+/// # Errors
+/// A document is missing: the scene, if that could be read. A collector without errors means that
+/// nothing is wrong with the files; what is wrong was left out of the scene.
+pub fn open_into(path: &Path, bundled: &[Bundled<'_>], log: &mut Diagnostics) -> Result<Opened, Option<Scene>> {
     let mut loader = Loader { sources: &Environment, bundled, ..Loader::default() };
-    let scene = loader.scene(path, &Span::default(), &mut log);
-    let opened = scene.and_then(|scene| loader.open(folder_of(path), scene, &mut log));
-    opened.ok_or_else(|| log.result(()).err().unwrap_or_default())
+    let scene = loader.scene(path, &Span::default(), log).ok_or(None)?;
+    loader.open(folder_of(path), scene.clone(), log).ok_or(Some(scene))
+}
+
+/// What was opened if nothing is wrong. Otherwise what is wrong, with what else is wrong with the
+/// scene.
+fn whole(opened: Result<Opened, Option<Scene>>, folder: &Path, mut log: Diagnostics) -> Result<Opened, Diagnostics> {
+    let scene = match opened {
+        Ok(opened) if log.is_ok() => return Ok(opened),
+        Ok(opened) => {
+            opened.robot().check_with_table(folder, &mut log);
+            None
+        }
+        Err(scene) => scene,
+    };
+    if let Some(scene) = scene {
+        scene.check_table(None, &mut |name| open_table(folder, name), &mut log);
+    }
+    Err(log.result(()).err().unwrap_or_default())
 }
 
 /// A scene that was read, with its robot's documents; `bundled` are the robots that it may call by
@@ -77,9 +105,17 @@ pub fn open(path: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, Diagnostics>
 /// All findings, if one of them is an error.
 pub fn open_in(scene: Scene, folder: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, Diagnostics> {
     let mut log = Diagnostics::new(&scene.file);
+    let opened = open_in_into(scene, folder, bundled, &mut log);
+    whole(opened, folder, log)
+}
+
+/// As [`open_in`], and reports to a collector.
+///
+/// # Errors
+/// As [`open_into`].
+pub fn open_in_into(scene: Scene, folder: &Path, bundled: &[Bundled<'_>], log: &mut Diagnostics) -> Result<Opened, Option<Scene>> {
     let mut loader = Loader { sources: &Environment, bundled, ..Loader::default() };
-    let opened = loader.open(folder, scene, &mut log);
-    opened.ok_or_else(|| log.result(()).err().unwrap_or_default())
+    loader.open(folder, scene.clone(), log).ok_or(Some(scene))
 }
 
 impl Default for Loader<'_> {
@@ -128,10 +164,11 @@ impl Loader<'_> {
         self.included.extend(found);
     }
 
-    /// The scene of this name, which `span` names.
+    /// The scene of this name, which `span` names. Its mistakes are reported and left out. `None`:
+    /// there is no such file, or it is not TOML.
     pub fn scene(&mut self, name: &Path, span: &Span, log: &mut Diagnostics) -> Option<Scene> {
         let bytes = self.read(name, span, "scene", log)?;
-        Scene::read_bytes(&name.display().to_string(), &bytes).map_err(|findings| log.take(findings)).ok()
+        Scene::read_bytes_into(&name.display().to_string(), &bytes, log)
     }
 
     /// The documents that a scene names, seen from its folder. `None`: one of them is missing, and
@@ -167,7 +204,9 @@ impl Loader<'_> {
                 }
             },
             Robot::Given => {
-                log.push(scene.without_robot("no robot", "robot, or urdf"));
+                if !scene.doubts_robot() {
+                    log.push(scene.without_robot("no robot", "robot, or urdf"));
+                }
                 None
             }
         }
@@ -299,6 +338,12 @@ impl Scene {
     pub fn spanned<T>(&self, values: Vec<T>, places: &[At]) -> Vec<Spanned<T>> {
         let at = |i: usize| places.get(i).copied().unwrap_or_default();
         values.into_iter().enumerate().map(|(i, value)| self.span(value, at(i))).collect()
+    }
+
+    /// Whether the key that names the robot was left out.
+    #[must_use]
+    pub fn doubts_robot(&self) -> bool {
+        ["robot", "urdf", "file"].iter().any(|key| self.doubts(key))
     }
 
     /// The finding that the scene has no robot.

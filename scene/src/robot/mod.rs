@@ -10,6 +10,6 @@ mod options;
 mod warnings;
 
 pub use build::BuiltRobot;
-pub use load::{Bundled, Loader, Opened, beside, folder_of, open, open_in};
+pub use load::{Bundled, Loader, Opened, beside, folder_of, open, open_in, open_in_into, open_into};
 pub use options::{Appended, RobotOptions, RobotRequest};
 pub use warnings::beyond_sense;

@@ -7,7 +7,7 @@ use articulated_core::description::{Collision, ContactSphere, PrincipalMoments};
 use articulated_core::diagnostic::{At, Code, Diagnostic, Place, Subject, Unused};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
-use articulated_formats::Reading;
+use articulated_formats::{Reading, beyond_any_mass};
 
 use super::build::Editing;
 use crate::control::Drive;
@@ -47,6 +47,7 @@ impl Editing<'_> {
         self.warn_of_limits();
         self.warn_of_loads();
         self.warn_of_moments();
+        self.warn_of_masses();
         self.leave_what_is_used(effects);
         self.report_world();
     }
@@ -145,6 +146,16 @@ impl Editing<'_> {
             )
         });
         self.reading.warnings.extend(loads.collect::<Vec<_>>());
+    }
+
+    /// Warns of a load whose mass no link has.
+    fn warn_of_masses(&mut self) {
+        let odd = self.request.options.payloads.iter().filter_map(|load| {
+            let (found, expected) = beyond_any_mass(load.mass)?;
+            let place = Place { at: At::Nowhere, subject: &Subject::Link(load.link.clone()), field: "payload" };
+            Some(warning(self.request.file, &place, Code::Units, found, expected))
+        });
+        self.reading.warnings.extend(odd);
     }
 
     /// An inertia of a load that no body has is odd, and used, as that of a link is.

@@ -1,0 +1,18 @@
+//! Masses that no link has.
+
+use articulated_core::Plain;
+
+/// The greatest mass of a link that is not reported, kg: a thousand tonnes.
+const MOST: f64 = 1e6;
+
+/// What is found and what is expected where a mass, kg, is beyond that of any link; `None` for
+/// another mass.
+///
+/// ```
+/// assert!(articulated_formats::beyond_any_mass(1e6).is_none());
+/// assert!(articulated_formats::beyond_any_mass(2e6).unwrap().0.starts_with("a mass of 2000000 kg"));
+/// ```
+#[must_use]
+pub fn beyond_any_mass(mass: f64) -> Option<(String, &'static str)> {
+    (mass > MOST).then(|| (format!("a mass of {} kg, more than any link has", Plain(mass)), "kg, of which 1 g is 1e-3; used as written"))
+}
