@@ -335,3 +335,26 @@ fn of_what_cannot_be_read_each_is_told_and_the_rest_is_read() {
         assert!(words.iter().all(|word| told.contains(word)) && !told.contains("is missing"), "{keys}: {words:?} in {told}");
     }
 }
+
+/// Mistakes of a scene's text do not hide names that its robot does not have, nor the invocation's.
+#[test]
+fn mistakes_of_a_scene_and_of_the_invocation_come_together() {
+    let folder = std::env::temp_dir().join(format!("articulated-macro-mistakes-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let scene = folder.join("three.toml");
+    let urdf = std::path::absolute("../tests/ui/urdf/three.urdf").unwrap().display().to_string();
+    let told = |file: &str| {
+        std::fs::write(&scene, format!("file = {file:?}\nsumary = ''\nframes = ['tol']\neffects = {{ damping = {{ elbw = 1 }} }}")).unwrap();
+        let file = scene.display().to_string();
+        expand(quote!(mod arm { scene = #file, functions = [mass_matrx] })).to_string()
+    };
+    let all = told(&urdf);
+    for part in ["three.toml:2: sumary", "three.toml:3: frames", "three.toml:4: effects.damping.elbw", "mass_matrx"] {
+        assert!(all.contains(part), "{part}: {all}");
+    }
+    let without = told(&urdf.replace("three.urdf", "tree.urdf"));
+    for part in ["three.toml:1: urdf", "did you mean", "three.toml:2: sumary", "mass_matrx"] {
+        assert!(without.contains(part), "{part}: {without}");
+    }
+    std::fs::remove_dir_all(folder).unwrap();
+}

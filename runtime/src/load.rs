@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use articulated_core::description::{Base, Description};
 use articulated_core::diagnostic::Diagnostics;
 use articulated_core::model::{Model, ModelError};
-use articulated_formats::{Disk, MOST_BYTES, Options, read_file, read_with};
+use articulated_formats::{Disk, MOST_BYTES, Options, nearest_file, read_file, read_with};
 
 /// Why a file is not a robot.
 #[derive(Debug)]
@@ -79,8 +79,16 @@ pub fn load_bytes(file: &str, bytes: &[u8], base: Base) -> Result<Model<f64>, Lo
 /// Warnings are not returned, as for [`load`].
 pub fn describe(path: impl AsRef<Path>) -> Result<Description, LoadError> {
     let path = path.as_ref();
-    let bytes = read_file(path, MOST_BYTES).map_err(|error| LoadError::Io { file: path.to_owned(), error })?;
+    let bytes = read_file(path, MOST_BYTES).map_err(|error| LoadError::Io { file: path.to_owned(), error: with_nearest(path, error) })?;
     describe_bytes(&path.display().to_string(), &bytes)
+}
+
+/// The error with the name of the file that was meant, if there is one.
+fn with_nearest(path: &Path, error: std::io::Error) -> std::io::Error {
+    match nearest_file(path) {
+        Some(near) => std::io::Error::new(error.kind(), format!("{error}; did you mean {near:?}?")),
+        None => error,
+    }
 }
 
 /// As [`describe`], of a file in memory; `file` is its name in messages.
@@ -97,6 +105,12 @@ mod tests {
     fn a_file_that_is_not_there_is_named() {
         let error = load("/no/such/arm.urdf", Base::Fixed).unwrap_err().to_string();
         assert!(error.starts_with("/no/such/arm.urdf: ") && error.len() > "/no/such/arm.urdf: ".len(), "{error}");
+        let folder = std::env::temp_dir().join(format!("articulated-near-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::write(folder.join("walker.urdf"), "").unwrap();
+        let error = load(folder.join("walker.ursf"), Base::Fixed).unwrap_err().to_string();
+        std::fs::remove_dir_all(&folder).unwrap();
+        assert!(error.ends_with("; did you mean \"walker.urdf\"?"), "{error}");
     }
 
     #[test]

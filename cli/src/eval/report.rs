@@ -7,6 +7,7 @@ use articulated_reference::ROUNDOFF;
 use serde::Serialize;
 
 use super::BOUND;
+use super::backward::Backward;
 use super::layout::{Labelled, labelled};
 use crate::effects::sorts;
 use crate::robot::Robot;
@@ -31,6 +32,8 @@ pub(super) struct FunctionReport {
     pub(super) function: &'static Function<f64>,
     pub(super) outcomes: Vec<Outcome>,
     pub(super) largest: Option<Difference>,
+    /// Of the states in which the result is judged by its torques.
+    pub(super) backward: Option<Backward>,
 }
 
 /// One state's results.
@@ -83,7 +86,7 @@ impl Difference {
 impl FunctionReport {
     /// Whether the results are further apart than rounding explains.
     pub(super) fn exceeded(&self) -> bool {
-        self.largest.is_some_and(|d| d.exceeded())
+        self.largest.is_some_and(|d| d.exceeded()) || self.backward.is_some_and(|b| b.exceeded())
     }
 
     fn json(&self, model: &Model<f64>) -> FunctionInJson {
@@ -99,6 +102,13 @@ impl FunctionReport {
                 state: d.state,
                 absolute: d.absolute,
                 in_units_of_roundoff: d.units,
+                bound: BOUND,
+            }),
+            largest_backward_error: self.backward.map(|b| BackwardInJson {
+                states: b.states,
+                state: b.state,
+                torque: b.residual.torque,
+                in_units_of_roundoff: b.residual.units,
                 bound: BOUND,
             }),
         }
@@ -126,6 +136,7 @@ struct FunctionInJson {
     unit: &'static str,
     states: Vec<OutcomeInJson>,
     largest_difference: Option<DifferenceInJson>,
+    largest_backward_error: Option<BackwardInJson>,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -140,6 +151,17 @@ struct OutcomeInJson {
 struct DifferenceInJson {
     state: usize,
     absolute: f64,
+    in_units_of_roundoff: f64,
+    bound: f64,
+}
+
+#[derive(Clone, Copy, Debug, Serialize)]
+struct BackwardInJson {
+    /// How many states are judged by it.
+    states: usize,
+    state: usize,
+    /// N·m or N.
+    torque: f64,
     in_units_of_roundoff: f64,
     bound: f64,
 }

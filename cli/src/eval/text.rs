@@ -6,10 +6,11 @@ use articulated_core::Plain;
 use articulated_core::model::Model;
 
 use super::BOUND;
+use super::backward::LOOSE;
 use super::layout::Grid;
 use super::report::{FunctionReport, Outcome, Report};
 use crate::robot::named;
-use crate::table::{Table, plain};
+use crate::table::{Table, counted, plain};
 
 pub(super) fn text(report: &Report, model: &Model<f64>) -> String {
     let [x, y, z] = report.gravity.map(Plain);
@@ -40,6 +41,17 @@ fn function(out: &mut String, f: &FunctionReport, model: &Model<f64>) {
             out,
             "\nlargest difference of generic and generated results: {:e}; in units of 2⁻⁵³ of the magnitude of the terms {:.2} (states[{}], bound {BOUND})",
             d.absolute, d.units, d.state
+        );
+    }
+    if let Some(b) = f.backward {
+        let _ = writeln!(
+            out,
+            "\none unit of rounding is more than {LOOSE:e} of the result in {}: there the torque that the result needs, less the applied one, is at most\n\
+             {:e} N·m|N; in units of 2⁻⁵³ of the magnitude of its terms {:.2} (states[{}], bound {BOUND})",
+            counted(b.states, "state"),
+            b.residual.torque,
+            b.residual.units,
+            b.state
         );
     }
 }

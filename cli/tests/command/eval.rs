@@ -386,3 +386,52 @@ fn robots_of_shipped_files_have_the_values_of_closed_forms() {
     near(value("1.1", &turned, "gravity_torque"), 2.0 * 9.81 * 0.3);
     near(value("1.1", &turned, "mass_matrix"), 0.01 + 2.0 * 0.3 * 0.3);
 }
+
+/// A light ball on a stiff plane, a kilometre below the joint: a rounding of its height is a
+/// thousandth of its acceleration. The torque that the acceleration needs has a closed form.
+#[test]
+fn where_rounding_moves_the_result_it_is_judged_by_its_torques() {
+    const MASS: f64 = 1e-3;
+    const STIFFNESS: f64 = 1e9;
+    let inertia = "<inertia ixx='1e-6' ixy='0' ixz='0' iyy='1e-6' iyz='0' izz='1e-6'/>";
+    let urdf = format!(
+        "<robot name='drop'><link name='top'/><link name='ball'><inertial><mass value='{MASS}'/>{inertia}</inertial></link>
+        <joint name='fall' type='prismatic'><parent link='top'/><child link='ball'/><origin xyz='0 0 1000'/><axis xyz='0 0 1'/>
+        <limit lower='-2000' upper='0' effort='1' velocity='1'/></joint></robot>"
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str, text: &str| {
+        std::fs::write(folder.path().join(name), text).unwrap();
+        folder.path().join(name).display().to_string()
+    };
+    at("drop.urdf", &urdf);
+    let contact = |stiffness: f64| format!("file = 'drop.urdf'\neffects = {{ contact = {{ ball = {{ radius = 0.1, stiffness = {stiffness}, damping = 0, friction = 0 }} }} }}");
+    let (steep, soft) = (at("steep.toml", &contact(STIFFNESS)), at("soft.toml", &contact(1e3)));
+    let q = -999.900_000_000_01;
+    let states = at("states.json", &format!("[{{\"q\": [{q:?}], \"v\": [0], \"tau\": [0.001]}}]"));
+    let words = |scene: &str, way: &[&str]| {
+        let eval = ["eval", scene, "--function", "forward_dynamics", "--states", &states, "--format", "json"];
+        let ended = run(&[&eval[..], way].concat());
+        assert_eq!(ended.status, 0, "{}", ended.err);
+        ended.json()["functions"][0].clone()
+    };
+    // 1000 + q and the depth are exact.
+    let applied = 0.001 + STIFFNESS * (0.1 - (1000.0 + q));
+    let found = words(&steep, &[]);
+    let torque = |side: &str| (MASS * (found["states"][0][side]["fall"].as_f64().unwrap() + 9.81) - applied).abs();
+    let told = &found["largest_backward_error"];
+    let expected = torque("generic").max(torque("generated"));
+    assert!((told["torque"].as_f64().unwrap() - expected).abs() < 1e-12, "{told} {expected}");
+    let units = told["in_units_of_roundoff"].as_f64().unwrap();
+    // The height of the ball is a difference of numbers of 1000 m.
+    let size = STIFFNESS * 2000.0 / 2.0_f64.powi(53);
+    assert!(units <= 8.0 && expected <= 2.0 * units.max(f64::MIN_POSITIVE) * size, "{told}");
+    assert_eq!((told["states"].as_u64(), told["state"].as_u64(), told["bound"].as_f64()), (Some(1), Some(0), Some(128.0)));
+    assert!(found["largest_difference"].is_null(), "{found}");
+    assert_eq!(words(&steep, &["--generic"])["largest_backward_error"]["states"], 1);
+    // A soft contact is judged by its acceleration.
+    let found = words(&soft, &[]);
+    assert!(found["largest_backward_error"].is_null() && found["largest_difference"]["bound"] == 128.0, "{found}");
+    let text = run(&["eval", &steep, "--function", "forward_dynamics", "--states", &states]).out;
+    assert!(text.contains("one unit of rounding is more than 1e-3 of the result in 1 state: there the torque that"), "{text}");
+}

@@ -12,6 +12,7 @@ mod events;
 mod functions;
 mod generate;
 mod inputs;
+mod mistakes;
 mod new;
 mod scaling;
 mod scenes;

@@ -191,3 +191,24 @@ fn an_unchanged_request_generates_nothing_and_warns_all_the_same() {
     assert!(!again(&build).generated);
     fs::remove_dir_all(folder).unwrap();
 }
+
+/// Keys, names and files of a scene are wrong in one run, with the calls.
+#[test]
+fn mistakes_of_a_scene_and_names_that_its_robot_does_not_have_come_together() {
+    let folder = folder("mistakes");
+    let told = |robot: &str| {
+        let text = format!("file = '{robot}'\nsumary = 'an arm'\nframes = ['tipp']\neffects = {{ damping = {{ hinje = 1 }} }}");
+        fs::write(folder.join("arm.toml"), text).unwrap();
+        Build::scene(folder.join("arm.toml")).functions(["mass_matrx"]).generate().unwrap_err()
+    };
+    let fields = |told: &Diagnostics| told.errors.iter().map(|error| (error.line(), error.field.clone())).collect::<Vec<_>>();
+    let is = |line: u32, field: &str| (Some(line), field.to_owned());
+    let all = told("arm.urdf");
+    let of_scene = [is(2, "sumary"), is(3, "frames"), is(4, "effects.damping.hinje")];
+    assert!(of_scene.iter().all(|one| fields(&all).contains(one)) && all.errors.len() == 4, "{all}");
+    assert!(all.to_string().contains("did you mean `mass_matrix`?"), "{all}");
+    let without = told("amr.urdf");
+    assert!([is(1, "urdf"), is(2, "sumary")].iter().all(|one| fields(&without).contains(one)) && without.errors.len() == 3, "{without}");
+    assert!(without.to_string().contains("did you mean \"arm.urdf\"?") && without.to_string().contains("mass_matrix"), "{without}");
+    fs::remove_dir_all(folder).unwrap();
+}

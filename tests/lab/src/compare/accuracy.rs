@@ -170,9 +170,63 @@ fn both([a, b]: [Option<f64>; 2]) -> Option<[f64; 2]> {
 /// (q, v, τ, …) and accelerations that were found; τ is what the motors deliver when commanded that
 /// of the state.
 pub(crate) fn backward(reference: &Exact, model: &Model<f64>, inverse: &str, state: &[&[f64]], found: &[f64]) -> Option<f64> {
+    residual(reference, model, inverse, state, found).map(|residual| residual.units)
+}
+
+/// The torques that a result needs, less those that were applied.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Residual {
+    /// The largest, N·m or N.
+    pub torque: f64,
+    /// The largest over the sum of the magnitudes of its terms, in units of 2⁻⁵³.
+    pub units: f64,
+}
+
+impl Residual {
+    /// Whether it is the larger one in units; what is not a number is the largest.
+    #[must_use]
+    pub fn is_larger(&self, other: &Self) -> bool {
+        worse(self.units, other.units).to_bits() == self.units.to_bits()
+    }
+
+    fn of(exact: &[Big], found: &[f64], scale: &[f64]) -> Self {
+        let torque = exact.iter().zip(found).map(|(e, f)| e.error_of(*f, 1.0)).fold(0.0, worse);
+        Self { torque, units: largest(exact, found, scale) }
+    }
+}
+
+/// That of a solution with the mass matrix, against the generic library in 320 bits; `None` for
+/// another function.
+#[must_use]
+pub fn residual_of(model: &Model<f64>, function: &Function<f64>, state: &[&[f64]], found: &[f64]) -> Option<Residual> {
+    let inverse = inverse_of(function);
+    if inverse.is_none() && function.id != FunctionId::solve_mass_matrix {
+        return None;
+    }
+    Big::scope(|| {
+        let exact = Exact::library(model);
+        match inverse {
+            Some(inverse) => residual(&exact, model, inverse, state, found),
+            None => residual_of_product(&exact, model, state, found),
+        }
+    })
+}
+
+/// M x − r for the state (q, r) and the solution x.
+fn residual_of_product(reference: &Exact, model: &Model<f64>, state: &[&[f64]], found: &[f64]) -> Option<Residual> {
+    let [q, applied] = *state else { return None };
+    let (name, n) = (FunctionId::mass_matrix.name(), found.len());
+    let (mass, terms) = (exact(reference, model, name, &[q])?, scales(model, name, &[q]).ok()?);
+    let row = |i: usize| mass[i * n..][..n].iter().zip(found).fold(Big::from_f64(0.0), |sum, (m, x)| sum + *m * Big::from_f64(*x));
+    let needed: Vec<Big> = (0..n).map(row).collect();
+    let size = |i: usize| terms[i * n..][..n].iter().zip(found).map(|(m, x)| m * x.abs()).sum::<f64>() + applied[i].abs();
+    Some(Residual::of(&needed, applied, &(0..n).map(size).collect::<Vec<_>>()))
+}
+
+fn residual(reference: &Exact, model: &Model<f64>, inverse: &str, state: &[&[f64]], found: &[f64]) -> Option<Residual> {
     let asked = [*state.get(1)?, *state.get(2)?];
     if found.iter().any(|x| !x.is_finite()) {
-        return Some(f64::NAN);
+        return Some(Residual { torque: f64::NAN, units: f64::NAN });
     }
     let mut state = state.to_vec();
     state[2] = found;
@@ -180,7 +234,7 @@ pub(crate) fn backward(reference: &Exact, model: &Model<f64>, inverse: &str, sta
     let (mut tau, terms) = (vec![0.0; model.nv()], scales(model, motors.name(), &asked).ok()?);
     motors.row().call(model, &mut Workspace::new(model), &asked, &mut tau).ok()?;
     let scale: Vec<f64> = scales(model, inverse, &state).ok()?.iter().zip(terms).map(|(s, t)| s + t).collect();
-    Some(largest(&exact(reference, model, inverse, &state)?, &tau, &scale))
+    Some(Residual::of(&exact(reference, model, inverse, &state)?, &tau, &scale))
 }
 
 /// What the reference gives. A double's quaternion has a norm of one to 16 digits only, and what
