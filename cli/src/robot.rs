@@ -267,8 +267,8 @@ fn is_standard_input(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// The bytes of a regular file, no more than a robot's file may have; `-` is the standard input, which one
-/// file alone can come by.
+/// The bytes of a regular file, no more than a robot's file may have; `-` is the standard input,
+/// which one file alone can come by.
 pub(crate) fn read_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     static TAKEN: AtomicBool = AtomicBool::new(false);
     if !is_standard_input(path) {

@@ -10,9 +10,7 @@ use articulated_formats::LeaveOut;
 use articulated_scene::{Loader, Robot, beside};
 
 use crate::cache::Cache;
-use crate::{
-    Appended, Base, Coupling, Generated, Origin, Payload, Real, Reference, Request, RobotOptions, Target, generate, scene,
-};
+use crate::{Appended, Base, Coupling, Generated, Origin, Payload, Real, Reference, Request, RobotOptions, Target, generate, scene};
 
 /// Generates a robot's code from a build script.
 ///

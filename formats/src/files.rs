@@ -276,7 +276,8 @@ pub fn nearest_file(path: &Path) -> Option<String> {
     names.sort_unstable();
     let alike = names.iter().map(Path::new).filter(|file| file.extension() == path.extension());
     let stem = nearest(path.file_stem()?.to_str()?, alike.filter_map(|file| file.file_stem()?.to_str()));
-    let same = stem.map(|stem| path.extension().and_then(|ending| ending.to_str()).map_or(stem.clone(), |ending| format!("{stem}.{ending}")));
+    let same =
+        stem.map(|stem| path.extension().and_then(|ending| ending.to_str()).map_or(stem.clone(), |ending| format!("{stem}.{ending}")));
     same.or_else(|| {
         let wrong = path.file_name()?.to_str()?;
         Suggester::default().misspelt(wrong, names.iter().map(String::as_str)).map(str::to_owned)

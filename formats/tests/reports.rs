@@ -356,7 +356,9 @@ fn a_mass_beyond_any_link_is_a_warning_in_every_format() {
     };
     let tags = ["ixx", "iyy", "izz"].map(|tag| format!("<{tag}>1e7</{tag}>")).concat();
     let sdf = |mass: &str| {
-        format!("<sdf version='1.7'><model name='m'>\n<link name='tip'><inertial><mass>{mass}</mass><inertia>{tags}</inertia></inertial></link></model></sdf>")
+        format!(
+            "<sdf version='1.7'><model name='m'>\n<link name='tip'><inertial><mass>{mass}</mass><inertia>{tags}</inertia></inertial></link></model></sdf>"
+        )
     };
     let told = |text: String| {
         let reading = read(text.as_bytes(), &Options { base: Base::Floating, ..options() }).unwrap_or_else(|e| panic!("{e}"));

@@ -344,7 +344,8 @@ fn mistakes_of_a_scene_and_of_the_invocation_come_together() {
     let scene = folder.join("three.toml");
     let urdf = std::path::absolute("../tests/ui/urdf/three.urdf").unwrap().display().to_string();
     let told = |file: &str| {
-        std::fs::write(&scene, format!("file = {file:?}\nsumary = ''\nframes = ['tol']\neffects = {{ damping = {{ elbw = 1 }} }}")).unwrap();
+        std::fs::write(&scene, format!("file = {file:?}\nsumary = ''\nframes = ['tol']\neffects = {{ damping = {{ elbw = 1 }} }}"))
+            .unwrap();
         let file = scene.display().to_string();
         expand(quote!(mod arm { scene = #file, functions = [mass_matrx] })).to_string()
     };

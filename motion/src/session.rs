@@ -7,8 +7,8 @@ use articulated_core::description::Description;
 use articulated_core::diagnostic::{Diagnostic, Diagnostics};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
-use articulated_formats::world::World;
 use articulated_formats::Reading;
+use articulated_formats::world::World;
 use articulated_scene::{BuiltRobot, Opened, Report, Scene, open_table};
 
 /// A scene with its robot after the scene's edits.

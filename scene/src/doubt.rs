@@ -1,5 +1,5 @@
-//! What may follow from a mistake of a scene: a scene with mistakes is looked at further without the
-//! keys that are wrong, and findings that may come from their absence are left out.
+//! What may follow from a mistake of a scene: a scene with mistakes is looked at further without
+//! the keys that are wrong, and findings that may come from their absence are left out.
 
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::model::FLOATING_BASE;
@@ -34,7 +34,8 @@ const HARMLESS: [&str; 17] = [
 const OF_KNOWN_NAMES: [&str; 3] = ["base", "lock", "coupling"];
 
 impl Scene {
-    /// Whether a key at the top of the text, or one below it, is wrong or misspelt and was left out.
+    /// Whether a key at the top of the text, or one below it, is wrong or misspelt and was left
+    /// out.
     #[must_use]
     pub fn doubts(&self, key: &str) -> bool {
         self.doubted().any(|doubted| doubted == key)
@@ -47,8 +48,8 @@ impl Scene {
         }
     }
 
-    /// The keys at the top that were left out, in whole or in part: of a misspelt one that which was
-    /// meant. Shafts, which bring joints, are a key of their own.
+    /// The keys at the top that were left out, in whole or in part: of a misspelt one that which
+    /// was meant. Shafts, which bring joints, are a key of their own.
     fn doubted(&self) -> impl Iterator<Item = &str> {
         self.left_out.iter().filter_map(|path| {
             let mut parts = path.split(['.', '[']);
@@ -111,7 +112,7 @@ mod tests {
     #[test]
     fn mistakes_of_the_text_and_names_of_the_robot_are_told_together() {
         let scene = "frames = ['leef']\nsumary = 'a door'\n[effects]\ndamping = { hinje = 1, hinge = -1 }\n[initial]\nq = { hing = 1 }";
-        assert_eq!(told(scene), ["1: frames", "2: sumary", "4: effects.damping.hinje", "4: effects.damping.hinge", "6: initial.q.hing"]);
+        assert_eq!(told(scene), ["1: frames", "2: sumary", "4: effects.damping.hinge", "4: effects.damping.hinje", "6: initial.q.hing"]);
     }
 
     #[test]
@@ -121,7 +122,9 @@ mod tests {
         assert_eq!(told(&format!("floating = true\n{base}")), ["1: floating", "4: initial.q.hing"]);
         assert_eq!(told(&format!("summary = ''\n{base}")), ["3: initial.base", "4: initial.q.hing", "4: initial.q.__floating_base__"]);
         let names = "frames = ['left_leaf']\neffects = { damping = { left_hinge = 1 } }";
-        for append in ["append = { file = 3, at = 'leaf', prefix = 'left_' }", "apend = { file = 'door.urdf', at = 'leaf', prefix = 'left_' }"] {
+        for append in
+            ["append = { file = 3, at = 'leaf', prefix = 'left_' }", "apend = { file = 'door.urdf', at = 'leaf', prefix = 'left_' }"]
+        {
             assert_eq!(told(&format!("{append}\n{names}")).len(), 1, "{append}");
         }
         assert_eq!(told(names).len(), 2);

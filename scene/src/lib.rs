@@ -65,7 +65,8 @@ pub use impact::{Impact, When};
 pub use initial::{BaseState, Coordinates, Initial, Named};
 pub use report::{EffectOff, EffectOn, Number, Report, Why};
 pub use robot::{
-    Appended, BuiltRobot, Bundled, Loader, Opened, RobotOptions, RobotRequest, beside, beyond_sense, folder_of, open, open_in, open_in_into, open_into,
+    Appended, BuiltRobot, Bundled, Loader, Opened, RobotOptions, RobotRequest, beside, beyond_sense, folder_of, open, open_in,
+    open_in_into, open_into,
 };
 pub use scene::{CodeOptions, Places, Robot, Scene};
 pub use series::{Reader, Source, open_table};

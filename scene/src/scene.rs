@@ -157,8 +157,8 @@ impl Scene {
         scene
     }
 
-    /// The scene in a text that no file has, for the robot in `file`: findings name that file and no
-    /// place in it.
+    /// The scene in a text that no file has, for the robot in `file`: findings name that file and
+    /// no place in it.
     ///
     /// # Errors
     /// As [`Scene::read`].

@@ -38,7 +38,8 @@ impl Backward {
     }
 }
 
-/// Whether one unit of the bound is more than [`LOOSE`] of the result; `scale`: that of each number.
+/// Whether one unit of the bound is more than [`LOOSE`] of the result. `scale`: that of each
+/// number.
 pub(super) fn is_loose(scale: &[f64], result: &[f64]) -> bool {
     let largest = |numbers: &[f64]| numbers.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     ROUNDOFF * largest(scale) > LOOSE * largest(result)

@@ -405,7 +405,11 @@ fn where_rounding_moves_the_result_it_is_judged_by_its_torques() {
         folder.path().join(name).display().to_string()
     };
     at("drop.urdf", &urdf);
-    let contact = |stiffness: f64| format!("file = 'drop.urdf'\neffects = {{ contact = {{ ball = {{ radius = 0.1, stiffness = {stiffness}, damping = 0, friction = 0 }} }} }}");
+    let contact = |stiffness: f64| {
+        format!(
+            "file = 'drop.urdf'\neffects = {{ contact = {{ ball = {{ radius = 0.1, stiffness = {stiffness}, damping = 0, friction = 0 }} }} }}"
+        )
+    };
     let (steep, soft) = (at("steep.toml", &contact(STIFFNESS)), at("soft.toml", &contact(1e3)));
     let q = -999.900_000_000_01;
     let states = at("states.json", &format!("[{{\"q\": [{q:?}], \"v\": [0], \"tau\": [0.001]}}]"));

@@ -57,13 +57,24 @@ file = 'torqes.csv'
     for command in [&["check"][..], &["simulate"], &["generate"], &["effects"]] {
         let ended = run(&[command, &[&path(folder.path(), "arm.toml"), "--format", "json"]].concat());
         let told = fields(&ended);
-        let expected =
-            ["free_flyer", "frames", "functions", "effects.damping.turn_9", "effects.drag.part_x", "initial.q.tern_2", "simulaton", "control.kind", "control.file"];
+        let expected = [
+            "free_flyer",
+            "frames",
+            "functions",
+            "effects.damping.turn_9",
+            "effects.drag.part_x",
+            "initial.q.tern_2",
+            "simulaton",
+            "control.kind",
+            "control.file",
+        ];
         for key in expected {
             assert_eq!(told.iter().filter(|field| *field == key).count(), 1, "{command:?}: {key}: {told:?}");
         }
         assert_eq!((ended.status, ended.json()["exit_status"].as_i64()), (1, Some(1)));
-        for meant in ["did you mean \"part_1\"", "did you mean `inverse_dynamics`", "did you mean \"turn_2\"", "did you mean \"torques.csv\""] {
+        for meant in
+            ["did you mean \"part_1\"", "did you mean `inverse_dynamics`", "did you mean \"turn_2\"", "did you mean \"torques.csv\""]
+        {
             assert!(ended.err.contains(meant), "{meant}: {}", ended.err);
         }
     }

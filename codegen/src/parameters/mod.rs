@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! payload(link)      ten numbers, added to what the link has; nothing at first
-//! inertia(link)      ten numbers in the place of the link's own; those of the robot's file at first
-//! origin(joint)      three numbers in the place of the joint's origin xyz, m; those of the robot's file at first
+//! inertia(link)      ten numbers in the place of the link's own; those of the file at first
+//! origin(joint)      three numbers in the place of the joint's origin xyz, m; the file's at first
 //! gravity            three numbers in the world frame, m/s²; those of the request at first
 //! damping(joint)     the numbers of an effect on a joint, any of those that are on; those of the request at first
 //! contact(link)      the same of an effect on a link, which is the only one of its kind there

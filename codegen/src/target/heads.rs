@@ -1,5 +1,5 @@
-//! What the heads of generated files have in common, whatever the language: how text is printed, and
-//! the list of warnings.
+//! What the heads of generated files have in common, whatever the language: how text is printed,
+//! and the list of warnings.
 
 use articulated_core::diagnostic::{Diagnostic, Span, summary};
 
@@ -89,7 +89,13 @@ mod tests {
             assert_eq!(odd.matches("Warnings about the robot:").count(), files, "{odd}");
             assert_eq!(odd.lines().filter(|line| line.contains(&told) && !line.contains("folder")).count(), files, "{odd}");
             // The other lines are those of a robot without warnings.
-            let others = |text: &str| text.lines().skip(1).filter(|line| !line.contains("arm.urdf:2") && !line.contains("Warnings")).map(str::to_owned).collect::<Vec<_>>();
+            let others = |text: &str| {
+                text.lines()
+                    .skip(1)
+                    .filter(|line| !line.contains("arm.urdf:2") && !line.contains("Warnings"))
+                    .map(str::to_owned)
+                    .collect::<Vec<_>>()
+            };
             assert!(!even.contains("Warnings about") && others(&odd).iter().take(4).eq(others(&even).iter().take(4)), "{even}");
         }
     }

@@ -282,8 +282,8 @@ impl<'a> Resolving<'a> {
         self.resolved.keys.push(key);
     }
 
-    /// Unused content of the robot's file: what the reader could not use, except for numbers that effects
-    /// use, and bounds without an effect that keeps them.
+    /// Unused content of the robot's file: what the reader could not use, except for numbers that
+    /// effects use, and bounds without an effect that keeps them.
     fn ignored(&mut self) {
         if self.scene.shafts.is_empty() {
             self.resolved.report.off.push(EffectOff { effect: shaft::NAME, why: Why::NotAsked });

@@ -198,8 +198,8 @@ impl RobotRequest<'_> {
         (resolved, model, effects)
     }
 
-    /// A finding about a number of the robot's file that an effect takes, where that stands. `None`:
-    /// the number is not of the file, or the scene has a place of its own.
+    /// A finding about a number of the robot's file that an effect takes, at its place there.
+    /// `None`: the number is not of the file, or the scene has a place of its own.
     fn number_of_the_file(&self, error: &EffectError, resolved: &Resolved, unused: &[Unused]) -> Option<Diagnostic> {
         let Fault::Number { field, found, expected } = &error.fault else { return None };
         let numbers = resolved.places.get(error.index).filter(|place| **place == At::Nowhere);
@@ -207,7 +207,9 @@ impl RobotRequest<'_> {
         let tag = effect.numbers.iter().find(|number| number.name == *field)?.from?;
         let subject = Subject::Joint(error.on.clone());
         // Numbers that scenes may use are reported with their places.
-        let of_tag = |one: &&Unused| one.subject == subject && one.tag.strip_prefix(tag).is_some_and(|rest| rest.is_empty() || rest.starts_with(" of "));
+        let of_tag = |one: &&Unused| {
+            one.subject == subject && one.tag.strip_prefix(tag).is_some_and(|rest| rest.is_empty() || rest.starts_with(" of "))
+        };
         let (file, line) = match unused.iter().find(of_tag) {
             Some(one) => (one.tag[tag.len()..].strip_prefix(" of ").unwrap_or(self.file), one.line),
             None => (self.file, None),

@@ -8,8 +8,8 @@ use articulated_core::effect::{Applied, Field};
 use articulated_core::spatial::Reference;
 
 use crate::Precision;
-use crate::target::heads::{self, printable};
 use crate::target::Module;
+use crate::target::heads::{self, printable};
 use crate::target::rust::RustOptions;
 
 /// Origin, warnings, contract, and unused content of the robot's file, as comments.
@@ -43,7 +43,12 @@ pub(crate) fn header(out: &mut String, module: &Module<'_>, rust: &RustOptions) 
     if rust.no_std {
         line("For crates without std: square roots, arctangents and sines of large angles are those of the crate libm.");
     }
-    first_of(&mut line, "Elements of the robot's file that are not used:", &summary_of_unused(*unused), ": `articulated check` lists them all.");
+    first_of(
+        &mut line,
+        "Elements of the robot's file that are not used:",
+        &summary_of_unused(*unused),
+        ": `articulated check` lists them all.",
+    );
     out.push('\n');
 }
 
