@@ -323,9 +323,11 @@ mod tests {
         request.scene = Some(scene.clone());
         let told = crate::generate(&request).unwrap_err().to_string();
         assert!(["elbo", "no_such", "b = 0", "nowhere", "shouder", "elbw"].iter().all(|key| told.contains(key)), "{told}");
-        // Of a robot that cannot be read the document alone is reported.
+        // Of a robot that cannot be read the document is reported, and words that are wrong for any.
         let told = prepare(scene, "arm.urdf", ARM.replace("parent link=\"base\"", "parent link=\"bse\"").into(), Base::Fixed, Vec::new());
-        assert!(told.unwrap_err().errors.iter().all(|error| error.file() == "arm.urdf"));
+        let told = told.unwrap_err().errors;
+        let (document, words): (Vec<_>, Vec<_>) = told.iter().partition(|error| error.file() == "arm.urdf");
+        assert!(!document.is_empty() && words.len() == 2 && words.iter().all(|error| error.field == "functions"), "{told:?}");
     }
 
     /// A build script's own functions, frames and names stand in place of the scene's.
