@@ -273,6 +273,84 @@ fn mistakes_have_the_line_of_the_source_file() {
     }
 }
 
+/// The working folder is the one that names of files start from, whatever the folder of the file is.
+#[test]
+fn the_working_folder_and_classes_in_patterns_are_read() {
+    let files = Files::of(&[
+        ("parts/arm_1.xacro", "<robot><link name='one'/></robot>"),
+        ("parts/arm_2.xacro", "<robot><link name='two'/></robot>"),
+        ("parts/arm_3.xacro", "<robot><link name='three'/></robot>"),
+        ("robots/urdf/base.xacro", "<robot><link name='base'/></robot>"),
+    ]);
+    let joints =
+        ["one", "three"].map(|name| format!("<joint name='{name}' type='fixed'><parent link='base'/><child link='{name}'/></joint>"));
+    let body = format!(
+        "<xacro:include filename='$(dirname)/base.xacro'/><xacro:include filename='$(cwd)/parts/arm_[13].xacro'/>{}\
+         <link name='mesh'><visual><geometry><mesh filename='$(cwd)/m.stl'/></geometry></visual></link>\
+         <joint name='m' type='fixed'><parent link='base'/><child link='mesh'/></joint>",
+        joints.concat()
+    );
+    let reading = expanded(&files, &body, &[]);
+    assert_eq!(shown(&reading.description), "base, one, three, mesh");
+    assert!(format!("{:?}", reading.description.links[3].visual).contains("\"./m.stl\""));
+    let found = errors(&files, "<link name='base'/><xacro:include filename='$(cwd)/p[ab]rts/x.xacro'/><link name='$(cwd x)'/>");
+    assert!(
+        found.len() == 2 && found[0].contains("[…] in the name of the file alone") && found[1].contains("none behind dirname and cwd"),
+        "{found:?}"
+    );
+}
+
+/// The texts are those of Python 3.
+#[test]
+fn texts_have_the_prefixes_and_escapes_of_python() {
+    let body = |expression: &str| format!("<xacro:property name='größe' value='ü'/><link name=\"${{{expression}}}\"/>");
+    for (expression, name) in [
+        ("u'arm_' + U'ä'", "arm_ä"),
+        ("'gelenk_' + größe", "gelenk_ü"),
+        (r"'\x41\u00e9\U0001f916\101\50z'", "Aé🤖A(z"),
+        (r"r'a\x41' + '\q'", r"a\x41\q"),
+        (r"'\u00fc'.upper() + u'日本'[1]", "Ü本"),
+    ] {
+        let reading = expanded(&Files::default(), &body(expression), &[]);
+        assert_eq!(reading.description.links[0].name, name, "{expression}");
+    }
+    for (expression, words) in [
+        (r"'\x4'", r"the text \x4"),
+        (r"'\ud800'", r"the text \ud800, expected the number of a character, of 4 digits"),
+        (r"'\N{DEGREE SIGN}'", r"\N, the name of a character"),
+        ("b'a'", "the text b'…'"),
+        ("u'a", "a text without its closing quotation mark"),
+    ] {
+        let found = errors(&Files::default(), &body(expression));
+        assert!(found.len() == 1 && found[0].contains(words), "{words}: {found:?}");
+    }
+    let files = Files::of(&[("robots/urdf/n.yaml", "a: \"\\u00fc\\x41\\/\"\nb: 'é'\n")]);
+    let named = "<xacro:property name='n' value=\"${xacro.load_yaml('n.yaml')}\"/><link name='${n.a}${n.b}'/>";
+    assert_eq!(shown(&expanded(&files, named, &[]).description), "üA/é");
+}
+
+/// As the program `xacro` does: of builtins and of all that `math` has.
+#[test]
+fn a_redefined_name_of_every_file_is_a_warning() {
+    let told = |body: &str| {
+        let reading = expanded(&Files::default(), &format!("{body}<link name='base'/>"), &[]);
+        assert!(reading.warnings.iter().all(|w| w.code == Code::Xacro), "{:?}", reading.warnings);
+        reading.warnings.iter().map(|w| format!("{} {}", w.line().unwrap(), w.found.split('"').nth(1).unwrap())).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        told("<xacro:property name='pi' value='3.2'/>\n<xacro:property name='gamma' value='1' scope='global'/>"),
+        ["2 pi", "3 gamma"]
+    );
+    assert_eq!(told("<xacro:macro name='m' params='e len:=3 a'/>\n<xacro:m e='1' a='2'/>"), ["3 e", "3 len"]);
+    assert_eq!(told("<xacro:property name='tau' remove='true'/>"), ["2 tau"]);
+    // A default of a name that every file has is left out; other names, and blocks, are nobody's.
+    assert_eq!(
+        told("<xacro:property name='pi' default='3'/><xacro:property name='abs' value='1'/><xacro:property name='mass' value='1'/>"),
+        [""; 0]
+    );
+    values("<xacro:property name='pi' value='3.25'/>", &[("${pi}", 3.25), ("${math.pi}", std::f64::consts::PI)]);
+}
+
 #[test]
 fn every_mistake_is_an_error_of_its_own() {
     let cases: &[(&str, &str)] = &[

@@ -122,6 +122,10 @@ impl Expander<'_> {
             return self.refused(element.at, element, "value", "more than one of value, default and remove", "one of them");
         }
         if remove {
+            if super::functions::is_of_every_file(&name) {
+                let found = format!("the name {}, which every file has", quote(&name));
+                self.warning(at, &field(element, "name"), Code::Xacro, found, "a property of this file: that name cannot be removed");
+            }
             return self.scopes.remove(scope, &name);
         }
         if default.is_some() && (self.scopes.find(scope, &name).0.is_some() || super::functions::global(&name).is_some()) {
@@ -147,7 +151,19 @@ impl Expander<'_> {
         };
         match value.or(default) {
             None => self.scopes.set(target.unwrap_or(scope), &format!("**{name}"), Symbol::Block(element.clone())),
-            Some(value) => self.set_property(element, &name, value, (scope, target.unwrap_or(scope)), lazy && target.is_none()),
+            Some(value) => {
+                self.warn_of_redefinition(&name, at, &field(element, "name"));
+                self.set_property(element, &name, value, (scope, target.unwrap_or(scope)), lazy && target.is_none());
+            }
+        }
+    }
+
+    /// Warns of a name that every file has, where xacro does: it stands for something else from here
+    /// on.
+    fn warn_of_redefinition(&mut self, name: &str, at: At, field: &str) {
+        if super::functions::is_of_every_file(name) {
+            let found = format!("the name {}, which stands for a function or a number in every file", quote(name));
+            self.warning(at, field, Code::Xacro, found, "another name; used as written, in place of that function or number");
         }
     }
 
@@ -246,7 +262,10 @@ impl Expander<'_> {
             element.attribute("optional").and_then(|a| self.truth(&a.value, a.at, &field(element, &a.name), scope)).unwrap_or(false);
         let Some((name, at)) = self.required_text(element, "filename", scope) else { return };
         let inner = match &namespace {
-            Some(name) => self.scopes.namespace(scope, name),
+            Some(name) => {
+                self.warn_of_redefinition(name, element.at, &field(element, "ns"));
+                self.scopes.namespace(scope, name)
+            }
             None => scope,
         };
         let folder = self.folder();
@@ -276,9 +295,10 @@ impl Expander<'_> {
     fn matching(&mut self, pattern: &Path, (at, field): &(At, String)) -> Vec<std::path::PathBuf> {
         let folder = pattern.parent().unwrap_or(Path::new(""));
         let name = pattern.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        if files::is_pattern(&folder.to_string_lossy()) || name.contains('[') {
+        if files::is_pattern(&folder.to_string_lossy()) {
             self.incomplete = true;
-            self.error(*at, field, Code::Unsupported, quote(&pattern.to_string_lossy()), "* and ? in the name of the file alone");
+            let expected = "*, ? and […] in the name of the file alone, not in that of a folder";
+            self.error(*at, field, Code::Unsupported, quote(&pattern.to_string_lossy()), expected);
             return Vec::new();
         }
         let mut names = match self.input.sources.list(folder) {
@@ -335,6 +355,7 @@ impl Expander<'_> {
                 continue;
             }
             given.insert(attribute.name.clone());
+            self.warn_of_redefinition(&attribute.name, attribute.at, &field(element, &attribute.name));
             let symbol = match self.evaluated(&attribute.value, attribute.at, scope) {
                 Ok(value) => Symbol::Value(literal(&value)),
                 Err(fault) => {
@@ -366,6 +387,7 @@ impl Expander<'_> {
 
     /// Sets a parameter that a call does not give.
     fn default(&mut self, element: &Element, parameter: &Parameter<'_>, (scope, inner): (usize, usize)) {
+        self.warn_of_redefinition(parameter.name, element.at, &field(element, parameter.name));
         let forwarded =
             if parameter.forwards { self.evaluated(&format!("${{{}}}", parameter.name), element.at, scope) } else { Ok(Value::None) };
         let is_known = parameter.forwards && self.scopes.find(scope, parameter.name).0.is_some();

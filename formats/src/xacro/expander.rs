@@ -436,10 +436,12 @@ impl<'a> Expander<'a> {
             },
             ("optenv", [name, default @ ..]) => Ok(Value::text(&self.input.sources.variable(name).unwrap_or_else(|| default.join(" ")))),
             ("dirname", []) => Ok(Value::text(&files::folder(&self.folder()))),
-            ("arg" | "find" | "env" | "optenv" | "dirname", _) => {
-                wrong(format!("{} words behind {command}", words.len()), "one name, and none behind dirname")
+            // Names of files start from there.
+            ("cwd", []) => Ok(Value::text(&files::folder(Path::new(".")))),
+            ("arg" | "find" | "env" | "optenv" | "dirname" | "cwd", _) => {
+                wrong(format!("{} words behind {command}", words.len()), "one name, and none behind dirname and cwd")
             }
-            _ => wrong(format!("the unknown command {}", quote(command)), "arg, find, env, optenv, dirname or eval"),
+            _ => wrong(format!("the unknown command {}", quote(command)), "arg, find, env, optenv, dirname, cwd or eval"),
         }
     }
 

@@ -139,18 +139,85 @@ pub(super) fn is_pattern(name: &str) -> bool {
     name.contains(['*', '?', '['])
 }
 
-/// Whether a name of a file is of a pattern with `*` and `?`.
+/// A part of a pattern.
+enum Part {
+    /// `*`: any characters.
+    Any,
+    /// `?`: any character.
+    One,
+    Character(char),
+    /// `[…]`: one from these ranges, or where it begins with `!`, none of them.
+    Class {
+        is_not: bool,
+        ranges: Vec<[char; 2]>,
+    },
+}
+
+impl Part {
+    fn fits(&self, c: char) -> bool {
+        match self {
+            Self::Any => false,
+            Self::One => true,
+            Self::Character(own) => *own == c,
+            Self::Class { is_not, ranges } => ranges.iter().any(|[first, last]| (*first..=*last).contains(&c)) != *is_not,
+        }
+    }
+}
+
+/// The parts of a pattern, as Python's `fnmatch` splits it. A `[` without its `]` is itself.
+fn parts(pattern: &str) -> Vec<Part> {
+    let signs: Vec<char> = pattern.chars().collect();
+    let (mut parts, mut at, mut is_open) = (Vec::new(), 0, true);
+    while at < signs.len() {
+        let c = signs[at];
+        at += 1;
+        parts.push(match c {
+            '*' => Part::Any,
+            '?' => Part::One,
+            // Behind one without its `]` there is none for the next.
+            '[' if is_open => match class(&signs[at..]) {
+                Some((class, length)) => {
+                    at += length;
+                    class
+                }
+                None => {
+                    is_open = false;
+                    Part::Character(c)
+                }
+            },
+            c => Part::Character(c),
+        });
+    }
+    parts
+}
+
+/// The class whose signs follow a `[`, and how many they are with the `]`.
+fn class(signs: &[char]) -> Option<(Part, usize)> {
+    let is_not = signs.first() == Some(&'!');
+    let from = usize::from(is_not);
+    // A `]` that comes first is a member.
+    let end = from + 1 + signs.get(from + 1..)?.iter().position(|c| *c == ']')?;
+    let (members, mut ranges, mut at) = (&signs[from..end], Vec::new(), 0);
+    while at < members.len() {
+        let is_range = members.get(at + 1) == Some(&'-') && at + 2 < members.len();
+        ranges.push([members[at], members[if is_range { at + 2 } else { at }]]);
+        at += if is_range { 3 } else { 1 };
+    }
+    Some((Part::Class { is_not, ranges }, end + 1))
+}
+
+/// Whether a name of a file is of a pattern with `*`, `?` and `[…]`.
 pub(super) fn fits(pattern: &str, name: &str) -> bool {
-    let (pattern, name): (Vec<char>, Vec<char>) = (pattern.chars().collect(), name.chars().collect());
-    // Where the last `*` stands, and what it was tried with.
+    let (parts, name): (Vec<Part>, Vec<char>) = (parts(pattern), name.chars().collect());
+    // Where the last `*` is, and what it was tried with.
     let (mut p, mut n, mut star) = (0, 0, None);
     while n < name.len() {
-        match pattern.get(p) {
-            Some('*') => {
+        match parts.get(p) {
+            Some(Part::Any) => {
                 star = Some((p, n));
                 p += 1;
             }
-            Some(c) if *c == '?' || *c == name[n] => (p, n) = (p + 1, n + 1),
+            Some(part) if part.fits(name[n]) => (p, n) = (p + 1, n + 1),
             _ => match star {
                 Some((at, tried)) => {
                     (p, n) = (at + 1, tried + 1);
@@ -160,7 +227,8 @@ pub(super) fn fits(pattern: &str, name: &str) -> bool {
             },
         }
     }
-    pattern[p..].iter().all(|c| *c == '*') && (name.first().is_none_or(|c| *c != '.') || pattern.first() == Some(&'.'))
+    let shows_hidden = name.first().is_none_or(|c| *c != '.') || pattern.starts_with('.');
+    parts[p..].iter().all(|part| matches!(part, Part::Any)) && shows_hidden
 }
 
 #[cfg(test)]
@@ -184,6 +252,16 @@ mod tests {
             ("*a*b", "xaab", true),
             ("*", ".a", false),
             ("", "a", false),
+            ("a[1-3]", "a2", true),
+            ("a[1-3]", "a4", false),
+            ("a[!1-3]", "a4", true),
+            ("a[!1-3]", "a2", false),
+            ("[]x]*", "]b", true),
+            ("[a-]", "-", true),
+            ("[3-1]", "2", false),
+            ("a[1", "a[1", true),
+            ("a[1", "a1", false),
+            ("*[é-ü].x", "bö.x", true),
         ] {
             assert_eq!(fits(pattern, name), is_so, "{pattern} {name}");
         }

@@ -83,6 +83,44 @@ const CONSTANTS: [(&str, f64); 5] =
 
 const MODULES: [&str; 3] = ["math", "python", "xacro"];
 
+/// Names of Python that every file has without a module.
+const GLOBAL: [&str; 15] =
+    ["list", "dict", "map", "len", "str", "float", "int", "True", "False", "min", "max", "round", "sorted", "range", "python"];
+
+/// Names of the module `math` that are not read, and are taken all the same.
+const MATH_UNREAD: [&str; 23] = [
+    "comb",
+    "dist",
+    "erf",
+    "erfc",
+    "exp2",
+    "factorial",
+    "fma",
+    "frexp",
+    "gamma",
+    "gcd",
+    "isclose",
+    "isqrt",
+    "lcm",
+    "ldexp",
+    "lgamma",
+    "modf",
+    "nextafter",
+    "perm",
+    "prod",
+    "remainder",
+    "sumprod",
+    "ulp",
+    "math",
+];
+
+/// Whether xacro has this name in every file, so that a property of this name takes its place:
+/// builtins, all of the module `math`, and some of its own.
+pub(super) fn is_of_every_file(name: &str) -> bool {
+    let own = || name == "xacro" || XACRO[..3].contains(&name);
+    GLOBAL.contains(&name) || MATH_UNREAD.contains(&name) || of_module("math", name).is_some() || own()
+}
+
 /// What a name stands for without a property of this name.
 pub(super) fn global(name: &str) -> Option<Value> {
     let module = MODULES.iter().find(|module| **module == name).map(|module| Value::Builtin(module));

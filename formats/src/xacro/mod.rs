@@ -13,8 +13,8 @@
 //! * `<xacro:macro>` with defaults (`:=`), forwarded properties (`^`), `*block` and `**block`;
 //!   `<xacro:call>`, `<xacro:insert_block>`.
 //! * `<xacro:if>`, `<xacro:unless>`, `<xacro:arg>`, `<xacro:element>`, `<xacro:attribute>`.
-//! * `<xacro:include>` with `ns`, `optional`, and `*` and `?` in the name of the file.
-//! * `$(arg)`, `$(find)`, `$(env)`, `$(optenv)`, `$(dirname)`, `$(eval)`.
+//! * `<xacro:include>` with `ns`, `optional`, and `*`, `?` and `[…]` in the name of the file.
+//! * `$(arg)`, `$(find)`, `$(env)`, `$(optenv)`, `$(dirname)`, `$(cwd)`, `$(eval)`.
 //! * `${…}`: a part of Python, with numbers, texts, lists, dictionaries, comprehensions, methods of
 //!   texts and dictionaries, and the functions of `math`, `python` and `xacro`; no lambda.
 //! * `xacro.load_yaml`: block and flow mappings and sequences, quoted texts, anchors, and units.

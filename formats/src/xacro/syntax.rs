@@ -132,9 +132,19 @@ fn tokens(text: &str) -> Result<Vec<Token>> {
             out.push(number(&rest[..length])?);
             rest = &rest[length..];
         } else if first == '"' || first == '\'' {
-            let (token, length) = string(rest, first)?;
+            let (token, length) = string(rest, first, false)?;
             out.push(Token::Text(token));
             rest = &rest[length..];
+        } else if let Some(mark) = rest[first.len_utf8()..].chars().next().filter(|c| matches!(c, '"' | '\'') && "uUrRbBfF".contains(first))
+        {
+            let is_raw = match first {
+                'u' | 'U' => false,
+                'r' | 'R' => true,
+                _ => return wrong(format!("the text {first}{mark}…{mark}"), "a text in quotation marks, with u, r or nothing before it"),
+            };
+            let (token, length) = string(&rest[1..], mark, is_raw)?;
+            out.push(Token::Text(token));
+            rest = &rest[1 + length..];
         } else if first.is_alphabetic() || first == '_' {
             let length = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
             out.push(Token::Name(rest[..length].to_owned()));
@@ -181,24 +191,71 @@ fn number(word: &str) -> Result<Token> {
     }
 }
 
-/// A text in quotation marks, and how many bytes it takes.
-fn string(rest: &str, mark: char) -> Result<(String, usize)> {
+/// A text in quotation marks, and how many bytes it takes. In a raw one, backslashes stand for
+/// themselves.
+fn string(rest: &str, mark: char, is_raw: bool) -> Result<(String, usize)> {
     let mut out = String::new();
-    let mut characters = rest.char_indices().skip(1);
-    while let Some((at, c)) = characters.next() {
-        match c {
-            c if c == mark => return Ok((out, at + 1)),
-            '\\' => match characters.next() {
-                Some((_, 'n')) => out.push('\n'),
-                Some((_, 't')) => out.push('\t'),
-                Some((_, c @ ('\\' | '\'' | '"'))) => out.push(c),
-                Some((_, c)) => out.extend(['\\', c]),
-                None => break,
-            },
-            c => out.push(c),
+    let mut at = mark.len_utf8();
+    while let Some(c) = rest[at..].chars().next() {
+        at += c.len_utf8();
+        if c == mark {
+            return Ok((out, at));
+        }
+        match (c, rest[at..].chars().next()) {
+            ('\\', Some(next)) if is_raw => {
+                out.extend(['\\', next]);
+                at += next.len_utf8();
+            }
+            ('\\', Some(_)) => at += escape(&rest[at..], &mut out)?,
+            _ => out.push(c),
         }
     }
     wrong("a text without its closing quotation mark", format!("the sign {mark}"))
+}
+
+/// What stands behind a backslash, as in Python, and how many bytes of `rest` it takes.
+fn escape(rest: &str, out: &mut String) -> Result<usize> {
+    let Some(first) = rest.chars().next() else { return Ok(0) };
+    let plain = match first {
+        '\n' => None,
+        '\\' | '\'' | '"' => Some(first),
+        'a' => Some('\u{7}'),
+        'b' => Some('\u{8}'),
+        'f' => Some('\u{c}'),
+        'n' => Some('\n'),
+        'r' => Some('\r'),
+        't' => Some('\t'),
+        'v' => Some('\u{b}'),
+        'x' => return coded(rest, 1, (2, 16), out),
+        'u' => return coded(rest, 1, (4, 16), out),
+        'U' => return coded(rest, 1, (8, 16), out),
+        '0'..='7' => {
+            let length = rest.bytes().take(3).take_while(|b| (b'0'..=b'7').contains(b)).count();
+            return coded(rest, 0, (length, 8), out);
+        }
+        'N' => return wrong("\\N, the name of a character", "the character, or its number: \\u and four digits"),
+        other => {
+            out.extend(['\\', other]);
+            return Ok(other.len_utf8());
+        }
+    };
+    out.extend(plain);
+    Ok(first.len_utf8())
+}
+
+/// The character of a number of so many digits, behind `before` bytes.
+pub(super) fn coded(rest: &str, before: usize, (count, radix): (usize, u32), out: &mut String) -> Result<usize> {
+    let digits = rest.get(before..before + count).filter(|digits| digits.bytes().all(|b| char::from(b).is_digit(radix)));
+    match digits.and_then(|digits| char::from_u32(u32::from_str_radix(digits, radix).ok()?)) {
+        Some(c) => {
+            out.push(c);
+            Ok(before + count)
+        }
+        None => {
+            let found: String = rest.chars().take(before + count).collect();
+            wrong(format!("the text \\{found}"), format!("the number of a character, of {count} digits"))
+        }
+    }
 }
 
 struct Parser {

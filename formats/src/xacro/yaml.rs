@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
+use super::syntax::coded;
 use super::value::{Result, Value, wrong};
 
 /// A file may have so many values, nested so deeply.
@@ -297,7 +298,7 @@ impl<'a> Reader<'a, '_> {
                 None => wrong(format!("the unknown anchor {text}"), "one that is defined before"),
             },
             Some(mark @ ('"' | '\'')) => match quoted_length(text, mark) {
-                Some(length) if length == text.len() => Ok(Value::text(&unquoted(&text[1..length - 1], mark))),
+                Some(length) if length == text.len() => Ok(Value::text(&unquoted(&text[1..length - 1], mark)?)),
                 _ => wrong(text, format!("one text between two signs {mark}")),
             },
             Some('%' | '@' | '`') => wrong(text, "a value, or a text in quotation marks"),
@@ -363,25 +364,54 @@ fn quoted_length(text: &str, mark: char) -> Option<usize> {
     None
 }
 
-fn unquoted(text: &str, mark: char) -> String {
+fn unquoted(text: &str, mark: char) -> Result<String> {
     if mark == '\'' {
-        return text.replace("''", "'");
+        return Ok(text.replace("''", "'"));
     }
     let mut out = String::new();
-    let mut characters = text.chars();
-    while let Some(c) = characters.next() {
-        match c {
-            '\\' => match characters.next() {
-                Some('n') => out.push('\n'),
-                Some('t') => out.push('\t'),
-                Some(c) => out.push(c),
-                None => {}
-            },
-            c => out.push(c),
-        }
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once('\\') {
+        out.push_str(before);
+        let Some(first) = after.chars().next() else { break };
+        let length = match first {
+            'x' => coded(after, 1, (2, 16), &mut out)?,
+            'u' => coded(after, 1, (4, 16), &mut out)?,
+            'U' => coded(after, 1, (8, 16), &mut out)?,
+            _ => {
+                let Some((_, c)) = ESCAPES.iter().find(|(own, _)| *own == first) else {
+                    return wrong(format!("the text \\{first}"), "a backslash before one of YAML's letters");
+                };
+                out.push(*c);
+                first.len_utf8()
+            }
+        };
+        rest = &after[length..];
     }
-    out
+    out.push_str(rest);
+    Ok(out)
 }
+
+/// What stands behind a backslash, and its character.
+const ESCAPES: [(char, char); 18] = [
+    ('0', '\0'),
+    ('a', '\u{7}'),
+    ('b', '\u{8}'),
+    ('t', '\t'),
+    ('\t', '\t'),
+    ('n', '\n'),
+    ('v', '\u{b}'),
+    ('f', '\u{c}'),
+    ('r', '\r'),
+    ('e', '\u{1b}'),
+    (' ', ' '),
+    ('"', '"'),
+    ('/', '/'),
+    ('\\', '\\'),
+    ('N', '\u{85}'),
+    ('_', '\u{a0}'),
+    ('L', '\u{2028}'),
+    ('P', '\u{2029}'),
+];
 
 /// The brackets and the quotation mark of a flow value that are open.
 #[derive(Default)]
