@@ -78,14 +78,18 @@ type Has = fn(&Joint) -> bool;
 
 /// Effects whose forces are smooth.
 const SMOOTH: [(&str, Has); 3] = [
-    ("damping", |joint| joint.dynamics.damping.is_some()),
-    ("spring", |joint| joint.dynamics.stiffness.is_some()),
-    ("armature", |joint| joint.dynamics.armature.is_some()),
+    ("damping", |joint| is_not_zero(joint.dynamics.damping)),
+    ("spring", |joint| is_not_zero(joint.dynamics.stiffness)),
+    ("armature", |joint| is_not_zero(joint.dynamics.armature)),
 ];
+
+fn is_not_zero(number: Option<f64>) -> bool {
+    number.is_some_and(|number| number != 0.0)
+}
 
 /// Others, as a scene turns them on.
 const OTHERS: [(&str, &str, Has); 2] = [
-    ("friction = \"file\"", "dry friction", |joint| joint.dynamics.friction.is_some_and(|friction| friction != 0.0)),
+    ("friction = \"file\"", "dry friction", |joint| is_not_zero(joint.dynamics.friction)),
     ("limit = { from = \"file\", stiffness = 1e4, damping = 10 }", "limits", |joint| {
         joint.limit.is_some_and(|limit| limit.lower.is_finite() || limit.upper.is_finite())
     }),

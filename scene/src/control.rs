@@ -22,6 +22,9 @@ pub struct Control {
     pub drive: Drive,
     /// Sampling period, s, over which torques are held; `None`: continuous control.
     pub period: Option<f64>,
+    /// Actuators, springs and dampers of tendons of the robot's file that are left out, each with
+    /// its place in the scene.
+    pub without: Vec<(String, At)>,
     /// Where the scene says so.
     pub place: At,
     /// The file of its table and where the scene names it, also where other keys are wrong.
@@ -110,6 +113,7 @@ pub(crate) struct Keys {
     period: Option<f64>,
     ctrl: Option<Coordinates>,
     keyframe: Option<(String, At)>,
+    without: Vec<(String, At)>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -131,7 +135,7 @@ const OF_SORT: &[(Sort, &[&str])] = &[
     (Sort::Torque, &["torque"]),
     (Sort::Table, &["file", "columns", "rows", "interpolation", "period"]),
     (Sort::Pd, &["target", "kp", "kd", "torque", "file", "columns", "rows", "interpolation", "period"]),
-    (Sort::Actuators, &["ctrl", "keyframe", "file", "columns", "rows", "interpolation", "period"]),
+    (Sort::Actuators, &["ctrl", "keyframe", "without", "file", "columns", "rows", "interpolation", "period"]),
 ];
 
 pub(crate) const KEYS: &[Row<Keys>] = &[
@@ -190,6 +194,17 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
         default: "none",
         what: "`actuators`: a state of the robot's file, whose controls `ctrl` changes",
         read: |x, s, log| x.keyframe = name(s, log, "the name of a keyframe of the robot's file").map(|name| (name, s.at)),
+    },
+    Row {
+        name: "without",
+        required: false,
+        value: "texts",
+        default: "none",
+        what: "`actuators`: names of actuators, or of tendons with a spring or damper, to leave out, as those of a locked joint",
+        read: |x, s, log| {
+            let names = s.texts(log, "a list of actuators, as [\"wrist_servo\"]").unwrap_or_default();
+            x.without = names.into_iter().zip(places(s)).collect();
+        },
     },
     Row {
         name: "file",
@@ -256,7 +271,7 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Control {
     if log.count() > before {
         return Control { table, ..Control::default() };
     }
-    let Keys { kind, torque, target, kp, kd, source, period, ctrl, keyframe } = keys;
+    let Keys { kind, torque, target, kp, kd, source, period, ctrl, keyframe, without } = keys;
     let moving = source.file.is_some() || !source.rows.is_empty();
     let drive = match kind {
         Sort::None => Drive::None,
@@ -267,7 +282,7 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Control {
         Sort::Actuators if moving => Drive::Actuators(Controls::Moving(source)),
         Sort::Actuators => Drive::Actuators(Controls::Still { keyframe, control: ctrl.unwrap_or_default() }),
     };
-    Control { drive, period, place: spot.at, table }
+    Control { drive, period, without, place: spot.at, table }
 }
 
 /// Checks that the keys are those of the kind; `right`: the accepted keys of a table.
@@ -406,10 +421,11 @@ impl Scene {
     pub fn check_table(&self, robot: Option<RobotInWorld<'_>>, read: &mut Reader<'_>, log: &mut Diagnostics) {
         let Some((file, place)) = &self.control.table else { return };
         let mut own = Diagnostics::new(&self.file);
-        let table = robot.and_then(|robot| match &self.control.drive {
+        let world = robot.map(|robot| robot.world_without(&self.control.without, &mut Diagnostics::new("")));
+        let table = robot.zip(world.as_ref()).and_then(|(robot, world)| match &self.control.drive {
             Drive::Table(source) => Some((source, Slots::of_joints(robot.model, Side::V))),
             Drive::Pd { target: Target::Moving(source), .. } => Some((source, Slots::of_joints(robot.model, Side::Q))),
-            Drive::Actuators(Controls::Moving(source)) => Some((source, Slots::of_actuators(&robot.world.actuators))),
+            Drive::Actuators(Controls::Moving(source)) => Some((source, Slots::of_actuators(&world.actuators))),
             _ => None,
         });
         match table {
@@ -426,11 +442,13 @@ impl Scene {
 
     /// The actuators of the robot's file, with the scene's controls.
     fn actuators(&self, robot: RobotInWorld<'_>, controls: &Controls, read: Option<&mut Reader<'_>>, log: &mut Diagnostics) -> Actuators {
-        let actuators = &robot.world.actuators;
         let place = (self.control.place, "control.kind");
-        if actuators.is_empty() && robot.world.passive.is_empty() {
+        if robot.world.actuators.is_empty() && robot.world.passive.is_empty() {
             log.error(place, Code::Robot, "actuators, of which the robot's file has none", "another kind of control");
         }
+        let world = robot.world_without(&self.control.without, log);
+        let robot = RobotInWorld { world: &world, ..robot };
+        let actuators = &robot.world.actuators;
         let signal = match controls {
             Controls::Moving(source) => Signal::Moving(source.series(&Slots::of_actuators(actuators), read, log)),
             Controls::Still { keyframe, control } => {

@@ -63,7 +63,7 @@ pub use edits::{Append, Follower, Load, Lock};
 pub use effects::{Edited, EffectRequest, Numbers, Resolved, Selector, still};
 pub use impact::{Impact, When};
 pub use initial::{BaseState, Coordinates, Initial, Named};
-pub use report::{EffectOff, EffectOn, Number, Report, Why};
+pub use report::{EffectCount, EffectOff, EffectOn, Number, Report, Why};
 pub use robot::{
     Appended, BuiltRobot, Bundled, Loader, Opened, RobotOptions, RobotRequest, beside, beyond_sense, folder_of, open, open_in,
     open_in_into, open_into,

@@ -1,9 +1,13 @@
 //! Active and inactive effects of a scene, and unused content of the robot's file.
 
 use articulated_core::diagnostic::{At, Unused};
+use std::collections::HashSet;
 use std::fmt;
 
 use articulated_core::effect::{EffectId, On};
+
+/// The source of numbers that come from collision geometry.
+pub(crate) const COLLISION: &str = "collision";
 
 /// What of a scene is on, what is off, and what of the robot's file is not used.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -14,6 +18,85 @@ pub struct Report {
     pub off: Vec<EffectOff>,
     /// Unused content of the robot's file.
     pub ignored: Vec<Unused>,
+    /// Number of joints that move.
+    pub joints: usize,
+    /// Number of links that move.
+    pub links: usize,
+}
+
+/// On how many joints or links an effect is, and where its numbers come from. An effect that takes
+/// any of its numbers from the robot's file counts as one of the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EffectCount {
+    /// Which.
+    pub effect: EffectId,
+    /// Number of joints or links that have it.
+    pub on: usize,
+    /// Number of joints or links that move.
+    pub of: usize,
+    /// Number of those whose numbers come from the robot's file.
+    pub from_file: usize,
+    /// Number of those whose points come from collision geometry.
+    pub from_collision: usize,
+    /// Number of those whose numbers the scene gives.
+    pub from_scene: usize,
+}
+
+impl Report {
+    /// One for each effect that is on, in their order.
+    #[must_use]
+    pub fn counts(&self) -> Vec<EffectCount> {
+        let mut effects: Vec<EffectId> = self.on.iter().map(|on| on.effect).collect();
+        effects.dedup();
+        let count = |effect: EffectId| {
+            let names = |source: Option<Source>| {
+                let own = self.on.iter().filter(|on| on.effect == effect && source.is_none_or(|source| source == on.source()));
+                own.map(|on| on.on.as_str()).collect::<HashSet<&str>>().len()
+            };
+            EffectCount {
+                effect,
+                on: names(None),
+                of: if effect.row().on == On::Joint { self.joints } else { self.links },
+                from_file: names(Some(Source::File)),
+                from_collision: names(Some(Source::Collision)),
+                from_scene: names(Some(Source::Scene)),
+            }
+        };
+        effects.into_iter().map(count).collect()
+    }
+}
+
+/// Where the numbers of an effect come from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Source {
+    File,
+    Collision,
+    Scene,
+}
+
+impl EffectOn {
+    fn source(&self) -> Source {
+        let tags: Vec<&str> = self.numbers.iter().filter_map(|number| number.from).collect();
+        match tags.as_slice() {
+            [] => Source::Scene,
+            tags if tags.contains(&COLLISION) => Source::Collision,
+            _ => Source::File,
+        }
+    }
+}
+
+impl fmt::Display for EffectCount {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = if self.effect.row().on == On::Joint { "joint" } else { "link" };
+        write!(f, "{} of {} {kind}{}", self.on, self.of, if self.of == 1 { "" } else { "s" })?;
+        let all = [(self.from_file, "the file"), (self.from_collision, "collision geometry"), (self.from_scene, "the scene")];
+        let sources: Vec<(usize, &str)> = all.into_iter().filter(|(count, _)| *count > 0).collect();
+        if let [(_, source)] = *sources {
+            return write!(f, ", from {source}");
+        }
+        let listed: Vec<String> = sources.iter().map(|(count, source)| format!("{count} from {source}")).collect();
+        write!(f, ": {}", listed.join(", "))
+    }
 }
 
 /// An effect on a joint or link.

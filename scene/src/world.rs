@@ -1,5 +1,7 @@
 //! What the robot's file says of its world, against a robot: states and actuators.
 
+use std::borrow::Cow;
+use std::collections::HashSet;
 use std::sync::LazyLock;
 
 use articulated_core::control::{ActuatorLaw, Actuators, Follower, Signal, Transmission};
@@ -74,6 +76,34 @@ impl<'a> RobotInWorld<'a> {
                 into[first..first + count].copy_from_slice(values);
             }
         }
+    }
+
+    /// The world without the actuators, springs and dampers of these names. A name that the file
+    /// does not have, or that is listed twice, is an error.
+    pub(crate) fn world_without(self, without: &[(String, At)], log: &mut Diagnostics) -> Cow<'a, World> {
+        if without.is_empty() {
+            return Cow::Borrowed(self.world);
+        }
+        let names = || self.world.actuators.iter().chain(&self.world.passive).map(|actuator| actuator.name.as_str());
+        let mut left: HashSet<&str> = HashSet::new();
+        for (k, (name, place)) in without.iter().enumerate() {
+            let key = format!("control.without[{k}]");
+            if !names().any(|known| known == name) {
+                let found = ("no such actuator".to_owned(), name.as_str());
+                log.unknown(((*place, &key), Code::UnknownName), found, "an actuator or a tendon of the robot's file", names());
+            } else if !left.insert(name) {
+                log.error((*place, &key), Code::DuplicateName, format!("{} a second time", quote(name)), "each name once");
+            }
+        }
+        let mut world = self.world.clone();
+        let is_kept = |name: &str| !left.contains(name);
+        for keyframe in &mut world.keyframes {
+            let own = keyframe.control.iter().zip(&self.world.actuators);
+            keyframe.control = own.filter(|(_, actuator)| is_kept(&actuator.name)).map(|(control, _)| *control).collect();
+        }
+        world.actuators.retain(|actuator| is_kept(&actuator.name));
+        world.passive.retain(|actuator| is_kept(&actuator.name));
+        Cow::Owned(world)
     }
 
     /// Writes the controls that a scene gives, in the order of the file's actuators or by name.
@@ -155,7 +185,8 @@ impl<'a> RobotInWorld<'a> {
             }
             if drives.len() == before {
                 let found = format!("the actuator {} on joint {}, which is locked", quote(&actuator.name), quote(joint));
-                log.error(place, Code::Robot, found, "joints that move, or control of another kind");
+                let expected = format!("joints that move, or `without = [{}]`, which leaves it out", quote(&actuator.name));
+                log.error(place, Code::Robot, found, expected);
             }
         }
         let from = |[at_rest, of_length, of_rate]: [f64; 3]| [at_rest + of_length * constant, of_length, of_rate];

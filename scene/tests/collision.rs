@@ -35,7 +35,14 @@ fn reading(urdf: &str) -> Reading {
 fn resolve_on(urdf: &str, text: &str, base: Base) -> Result<Resolved, Diagnostics> {
     let reading = reading(urdf);
     let scene = Scene::read("s.toml", text).unwrap_or_else(|e| panic!("{e}"));
-    scene.resolve(&Edited { description: &reading.description, base, unused: &reading.unused, world: &reading.world, shafts: &[] })
+    scene.resolve(&Edited {
+        description: &reading.description,
+        file: "r.urdf",
+        base,
+        unused: &reading.unused,
+        world: &reading.world,
+        shafts: &[],
+    })
 }
 
 fn resolved(text: &str) -> Resolved {

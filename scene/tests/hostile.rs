@@ -69,7 +69,7 @@ fn try_out(bytes: &[u8], description: &Description, model: &Model<f64>) -> bool 
     else {
         return false;
     };
-    let robot = Edited { description, base: Base::Fixed, unused: &[], world: &World::default(), shafts: &[] };
+    let robot = Edited { description, file: "r.urdf", base: Base::Fixed, unused: &[], world: &World::default(), shafts: &[] };
     let _ = scene.resolve(&robot).map(|resolved| assert_eq!(resolved.effects.len(), resolved.places.len()));
     let _ = scene.start(model);
     let _ = scene.controller(model, &mut |_| Ok(Box::new(&b"t,elbow\n0,1\n1,2\n"[..])));

@@ -65,7 +65,8 @@ fn gains_are_those_of_their_joints() {
 /// Of each effect: on what, and its numbers.
 fn on(text: &str) -> Vec<(EffectId, String, Vec<f64>)> {
     let description = robot();
-    let edited = Edited { description: &description, base: Base::Fixed, unused: &[], world: &World::default(), shafts: &[] };
+    let edited =
+        Edited { description: &description, file: "r.urdf", base: Base::Fixed, unused: &[], world: &World::default(), shafts: &[] };
     let resolved = scene(text).resolve(&edited).unwrap_or_else(|e| panic!("{e:?}"));
     resolved.effects.into_iter().map(|a| (a.effect, a.on, a.parameters)).collect()
 }
@@ -88,7 +89,8 @@ fn what_is_asked_of_ten_thousand_joints_and_links_is_soon_resolved() {
         why: String::new(),
     };
     let unused: Vec<Unused> = (0..count).map(unused).collect();
-    let robot = Edited { description: &description, base: Base::Fixed, unused: &unused, world: &World::default(), shafts: &[] };
+    let robot =
+        Edited { description: &description, file: "r.urdf", base: Base::Fixed, unused: &unused, world: &World::default(), shafts: &[] };
     let each = |what: &str, number: &str| (1..count).map(|k| format!("{what}_{k} = {number}\n")).collect::<String>();
     let text = format!(
         "[effects.damping]\n\"*\" = \"urdf\"\n[effects.friction]\n{}[effects.drag]\n{}",
@@ -124,7 +126,8 @@ fn what_is_asked_of_all_is_had_by_those_that_can() {
     // for where nobody said.
     assert_eq!(on("[effects.damping]\n\"*\" = 1\ntwo = \"off\"").iter().map(|d| d.1.as_str()).collect::<Vec<_>>(), ["one", "three"]);
     let description = robot();
-    let edited = Edited { description: &description, base: Base::Fixed, unused: &[], world: &World::default(), shafts: &[] };
+    let edited =
+        Edited { description: &description, file: "r.urdf", base: Base::Fixed, unused: &[], world: &World::default(), shafts: &[] };
     let wrong = scene("[effects.motor]\ntwo = { gear = 2 }").resolve(&edited).unwrap_err().errors;
     assert!(wrong.len() == 1 && wrong[0].to_string().contains("no torque for joint \"two\""), "{wrong:?}");
     // Nothing pulls at a link without mass that was not named, nor at one that stands still.
@@ -147,7 +150,8 @@ fn a_quaternion_that_is_nearly_of_norm_one_is_made_so() {
 fn what_is_asked_of_all_says_where_too() {
     let text = "[effects.drag]\n\"*\" = { coefficient = 1, xyz = [0, 0, 0.1] }\na = { coefficient = 2 }\nb = { coefficient = 3, xyz = [0.5, 0, 0] }";
     let description = robot();
-    let edited = Edited { description: &description, base: Base::Fixed, unused: &[], world: &World::default(), shafts: &[] };
+    let edited =
+        Edited { description: &description, file: "r.urdf", base: Base::Fixed, unused: &[], world: &World::default(), shafts: &[] };
     let resolved = scene(text).resolve(&edited).unwrap_or_else(|e| panic!("{e:?}"));
     let places: Vec<(&str, f64, [f64; 3])> = resolved.effects.iter().map(|a| (a.on.as_str(), a.parameters[0], a.at.xyz)).collect();
     assert_eq!(places, [("a", 2.0, [0.0, 0.0, 0.1]), ("b", 3.0, [0.5, 0.0, 0.0]), ("c", 1.0, [0.0, 0.0, 0.1])]);
@@ -185,4 +189,63 @@ fn every_key_of_a_scene_is_a_setting() {
         assert_eq!(said(&format!("end = 1\noutput = {word}")).output, output);
     }
     assert_eq!(said("end = 1"), Settings::default());
+}
+
+/// A slide without a spring, with bounds and a damping of 0; a hinge without bounds.
+const PLAIN: &str = "<robot name='p'><link name='base'/>
+  <link name='a'><inertial><mass value='2'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>
+  <link name='b'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>
+  <joint name='slide' type='prismatic'><parent link='base'/><child link='a'/><axis xyz='1 0 0'/>
+    <limit lower='-3' upper='3' effort='9' velocity='9'/><dynamics damping='0'/></joint>
+  <joint name='hinge' type='continuous'><parent link='a'/><child link='b'/><axis xyz='1 0 0'/></joint></robot>";
+
+/// Numbers of the file that no joint has are an error for a joint by its name, and a warning for
+/// all.
+#[test]
+fn an_effect_whose_numbers_the_file_has_for_no_joint_is_told() {
+    let built = |effects: &str| {
+        let scene = Scene::read("s.toml", &format!("[effects]\n{effects}")).unwrap_or_else(|e| panic!("{e}"));
+        articulated_scene::Opened::new(scene, "plain.urdf", PLAIN.into(), Base::Fixed, vec![]).build()
+    };
+    let warned = |effects: &str| {
+        let found = built(effects).unwrap_or_else(|e| panic!("{e}")).reading.warnings;
+        let own = found.iter().filter(|warning| warning.code == articulated_core::diagnostic::Code::NoNumbers);
+        own.map(ToString::to_string).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        warned("spring = \"urdf\""),
+        [
+            "s.toml:2: effects.spring: found no joint of plain.urdf has numbers for effects.spring, expected joints with <joint stiffness> or \
+          <joint springref>, or numbers in the scene: the effect does nothing"
+        ]
+    );
+    for effects in ["friction = \"file\"", "armature = { from = \"file\", gear = 2 }", "spring = { \"*\" = \"file\", slide = 3 }"] {
+        assert_eq!(warned(effects).len(), 1, "{effects}");
+    }
+    assert!(warned("damping = \"file\"")[0].contains("found no joint of plain.urdf has numbers other than 0 for effects.damping"));
+    assert!(warned("damping.slide = \"file\"")[0].contains("joint \"slide\": effects.damping.slide: found 0 in the robot's file"));
+    // The hinge has no bounds, the slide has.
+    let limit = |stiffness: f64| format!("limit = {{ from = \"urdf\", stiffness = {stiffness} }}");
+    for effects in [&limit(1e4), &limit(0.0), "spring = 1", "spring = \"off\"", "damping = { slide = 0, hinge = 1 }", ""] {
+        assert_eq!(warned(effects), Vec::<String>::new(), "{effects}");
+    }
+    for (effects, tag) in [("spring.slide = \"file\"", "stiffness"), ("limit.hinge = { from = \"file\", stiffness = 1 }", "limit lower")] {
+        let told = built(effects).unwrap_err().to_string();
+        assert!(told.contains(tag) && told.contains("whose file has no"), "{told}");
+    }
+}
+
+/// Joints by the source of their numbers.
+#[test]
+fn effects_are_counted_by_their_sources() {
+    let counted = |effects: &str| {
+        let scene = Scene::read("s.toml", &format!("[effects]\n{effects}")).unwrap_or_else(|e| panic!("{e}"));
+        let built = articulated_scene::Opened::new(scene, "plain.urdf", PLAIN.into(), Base::Fixed, vec![]).build();
+        let counts = built.unwrap_or_else(|e| panic!("{e}")).resolved.report.counts();
+        counts.iter().map(|count| format!("{}: {count}", count.effect.name())).collect::<Vec<_>>()
+    };
+    let limit = "limit = { from = \"file\", stiffness = 1e4 }";
+    assert_eq!(counted(limit), ["limit: 1 of 2 joints, from the file"]);
+    let both = "limit = { \"*\" = { from = \"file\", stiffness = 1e4 }, hinge = { lower = -1, upper = 1, stiffness = 3 } }\ndrag.b = 1";
+    assert_eq!(counted(both), ["limit: 2 of 2 joints: 1 from the file, 1 from the scene", "drag: 1 of 2 links, from the scene"]);
 }

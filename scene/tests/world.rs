@@ -119,10 +119,50 @@ fn actuators_that_cannot_be_are_refused() {
     other.actuators[0].drives[0].0 = "three".into();
     assert_eq!(
         told(plain, &other),
-        "s.toml:1: control.kind: found the actuator \"turn\" on joint \"three\", which is locked, expected joints that move, or control of another kind"
+        "s.toml:1: control.kind: found the actuator \"turn\" on joint \"three\", which is locked, expected joints that move, or \
+         `without = [\"turn\"]`, which leaves it out"
     );
     let told = Scene::read("s.toml", "control = { kind = \"actuators\", kp = 1 }").unwrap_err().to_string();
-    assert!(told.contains("expected one of ctrl, keyframe, file, columns, rows, interpolation, period"), "{told}");
+    assert!(told.contains("expected one of ctrl, keyframe, without, file, columns, rows, interpolation, period"), "{told}");
+}
+
+/// Servos p1 and p2 of two joints, a spring of a tendon over both, and a state. With joint two locked
+/// the rest of the control is that of the file.
+#[test]
+fn actuators_of_a_locked_joint_are_left_out_by_name() {
+    const SERVOS: &str = "<mujoco><worldbody><body><joint name='one' axis='0 1 0'/><geom size='0.1'/>
+      <body pos='0.3 0 0'><joint name='two' axis='0 1 0'/><geom size='0.1'/></body></body></worldbody>
+      <tendon><fixed name='string' stiffness='5' springlength='0'><joint joint='one' coef='1'/><joint joint='two' coef='1'/></fixed></tendon>
+      <actuator><position name='p2' joint='two' kp='7'/><position name='p1' joint='one' kp='11'/></actuator>
+      <keyframe><key name='k' qpos='0.1 0.2' ctrl='0.6 0.5'/></keyframe></mujoco>";
+    let built = |control: &str| {
+        let text = scene(&format!("lock = {{ two = 0.2 }}\ncontrol = {{ kind = \"actuators\", {control} }}"));
+        articulated_scene::Opened::new(text.clone(), "m.xml", SERVOS.into(), Base::Fixed, vec![]).build().map(|robot| (robot, text))
+    };
+    let torque = |control: &str| {
+        let (robot, text) = built(control).unwrap_or_else(|e| panic!("{e}"));
+        let world = RobotInWorld { model: &robot.model, world: &robot.reading.world };
+        let Ok(Controller::Actuators(actuators)) = text.controller(world, &mut |_| Err("no files".into())) else { panic!("{control}") };
+        let Signal::Still(u) = &actuators.controls else { panic!("{control}") };
+        let mut tau = [0.0];
+        actuators.add_torques(u, &[0.1], &[0.0], &mut tau);
+        tau[0]
+    };
+    let close = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-15, "{found} {expected}");
+    close(torque("without = [\"p2\", \"string\"], keyframe = \"k\""), 11.0 * (0.5 - 0.1));
+    close(torque("without = [\"p2\", \"string\"], ctrl = { p1 = 0.3 }"), 11.0 * (0.3 - 0.1));
+    close(torque("without = [\"p2\", \"string\"], ctrl = [0.3]"), 11.0 * (0.3 - 0.1));
+    close(torque("without = [\"p2\", \"p1\", \"string\"]"), 0.0);
+    let told = built("without = [\"p3\", \"string\", \"string\"]").map(drop).unwrap_err().to_string();
+    for part in [
+        "control.without[0]: found no such actuator, expected an actuator or a tendon of the robot's file; did you mean \"p2\"?",
+        "control.without[2]: found \"string\" a second time, expected each name once",
+        "the actuator \"p2\" on joint \"two\", which is locked, expected joints that move, or `without = [\"p2\"]`",
+    ] {
+        assert!(told.contains(part), "{part} in {told}");
+    }
+    let told = Scene::read("s.toml", "control = { kind = \"pd\", kp = 1, without = [\"p2\"] }").unwrap_err().to_string();
+    assert!(told.contains("control.without: found a key that control of kind \"pd\" does not have"), "{told}");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use articulated_core::description::{JointKind, Quantity};
 use articulated_core::effect::effects;
+use articulated_scene::EffectCount;
 use serde::Serialize;
 
 use articulated_lab::compare::timing::Summary;
@@ -17,6 +18,8 @@ pub(super) struct Report {
     pub(super) gravity: [f64; 3],
     pub(super) degrees_of_freedom: usize,
     pub(super) on: Vec<On>,
+    /// On how many joints or links each effect is, and where its numbers come from.
+    pub(super) counts: Vec<Count>,
     pub(super) off: Vec<Off>,
     /// What the robot's file says and nothing uses.
     pub(super) ignored: Vec<Ignored>,
@@ -50,6 +53,24 @@ pub(super) struct Number {
     pub(super) unit: &'static str,
     /// The tag of the robot's file that it is from.
     pub(super) from: Option<&'static str>,
+}
+
+/// On how many joints or links an effect is.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Count {
+    pub(super) effect: &'static str,
+    /// Number of joints or links that have it.
+    pub(super) on: usize,
+    /// Number of joints or links that move.
+    pub(super) of: usize,
+    /// How many of those that have it take numbers from the robot's file, points from its collision
+    /// geometry, or numbers from the scene.
+    pub(super) from_file: usize,
+    pub(super) from_collision: usize,
+    pub(super) from_scene: usize,
+    /// The same in words.
+    #[serde(skip)]
+    pub(super) text: String,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -148,6 +169,7 @@ impl Report {
             gravity: session.model.gravity().into(),
             degrees_of_freedom: session.model.nv(),
             on: on.collect(),
+            counts: told.counts().into_iter().map(count).collect(),
             off: told.off.iter().map(|e| Off { effect: e.effect, why: e.why.to_string() }).collect(),
             ignored: told
                 .ignored
@@ -160,6 +182,11 @@ impl Report {
             units: UNITS,
         }
     }
+}
+
+fn count(own: EffectCount) -> Count {
+    let EffectCount { effect, on, of, from_file, from_collision, from_scene } = own;
+    Count { effect: effect.name(), on, of, from_file, from_collision, from_scene, text: own.to_string() }
 }
 
 /// Units are those of a joint that turns or of one that slides; both, as in the manual, of one that

@@ -20,7 +20,8 @@ pub(super) fn text(r: &Report) -> String {
     let mut last = "";
     for (e, names, lines) in together(&r.on) {
         if e.effect != last {
-            let _ = writeln!(out, "  {}: {}", e.effect, e.law);
+            let count = r.counts.iter().find(|count| count.effect == e.effect).map_or("", |count| count.text.as_str());
+            let _ = writeln!(out, "  {}: {count}\n    law: {}", e.effect, e.law);
             last = e.effect;
         }
         let lines = if lines.is_empty() { String::new() } else { format!("   (line {})", lines.join(", ")) };

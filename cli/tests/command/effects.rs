@@ -41,6 +41,7 @@ fn people_are_told_in_groups() {
         "\non:\n",
         "\noff:\n",
         "in the robot's file, and not used:",
+        "armature: 7 of 7 joints, from the scene",
         "joint_5, joint_6, joint_7: inertia 0.2 kg·m²",
         "mass_matrix: what",
         "without effects",

@@ -10,7 +10,7 @@ use super::{EffectRequest, FRAME, Numbers, Selector};
 use crate::table::Spot;
 
 /// The word for it.
-pub(super) const WORD: &str = "collision";
+pub(super) const WORD: &str = crate::report::COLLISION;
 
 /// The field that a shape gives.
 const RADIUS: &str = "radius";
@@ -118,7 +118,7 @@ impl<'a> Resolving<'a> {
         }
     }
 
-    fn warn(&mut self, one: &EffectRequest, subject: &Subject, kind: Code, found: &str, expected: &str) {
+    pub(super) fn warn(&mut self, one: &EffectRequest, subject: &Subject, kind: Code, found: &str, expected: &str) {
         let place = Place { at: one.place, subject, field: &one.key };
         self.resolved.warnings.push(Diagnostic::error(&self.scene.file, place, kind, found, expected).into_warning());
     }

@@ -13,7 +13,7 @@ use super::{EffectRequest, Numbers, Selector, collision, plane, urdf};
 use crate::report::{EffectOff, EffectOn, Number, Report, Why};
 use crate::scene::Scene;
 use crate::shaft;
-use articulated_core::effect::{Applied, Effect, EffectId, Enters, Field, On, effects};
+use articulated_core::effect::{Applied, Effect, EffectId, Enters, Field, On, Zeros, effects};
 use articulated_core::model::FLOATING_BASE;
 use articulated_formats::world::World;
 
@@ -22,6 +22,8 @@ use articulated_formats::world::World;
 pub struct Edited<'a> {
     /// The robot.
     pub description: &'a Description,
+    /// The name of its file, for messages.
+    pub file: &'a str,
     /// Its base.
     pub base: Base,
     /// What the reader of the robot's file could not use.
@@ -63,6 +65,8 @@ impl Scene {
         let (still, moving) = (still(robot.description, robot.base), moving(robot.description));
         let index = Index::of(robot, &self.shafts);
         let mut at_work = Resolving { scene: self, robot, still, moving, index, resolved: Resolved::default(), used: HashSet::new() };
+        at_work.resolved.report.joints = at_work.moving_joints().count();
+        at_work.resolved.report.links = at_work.still.iter().filter(|still| !**still).count();
         at_work.known_impact(log);
         for row in effects() {
             at_work.effect(row, log);
@@ -98,6 +102,7 @@ impl<'a> Resolving<'a> {
             On::Joint => self.on_joints(row, &asked, log),
             On::Link => self.on_links(row, &asked, log),
         }
+        self.warn_of_no_numbers(row, &asked);
         if self.resolved.effects.len() == before {
             self.warn_of_no_geometry(&asked);
             self.resolved.report.off.push(EffectOff { effect: row.name, why: why(&asked) });
@@ -200,6 +205,9 @@ impl<'a> Resolving<'a> {
             let Some(layers) = one.says.as_ref().map(|_| layers) else { continue };
             match fill((row, fields_on(row, joint.kind)), &layers, &|tag: &str| urdf::number(joint, tag)) {
                 Ok(mut filled) => {
+                    if named.is_some() {
+                        self.warn_of_zero(row, one, joint, &filled);
+                    }
                     urdf::before_the_gear(row.id, &mut filled);
                     self.put_filled(row, &joint.name, Origin::default(), one, &filled);
                 }
@@ -239,6 +247,34 @@ impl<'a> Resolving<'a> {
                     }
                 }
             }
+        }
+    }
+
+    /// Warns if the numbers of all joints are to come from the robot's file, which has them for no
+    /// joint, not even for one that is locked, or has zeros.
+    fn warn_of_no_numbers(&mut self, row: &'static Effect, asked: &[&EffectRequest]) {
+        let Some((one, says)) = for_all(asked).and_then(|one| Some((one, one.says.as_ref()?))).filter(|(_, says)| says.from_urdf) else {
+            return;
+        };
+        let of = |joint: &Joint| fill((row, fields_on(row, joint.kind)), &[Some(says)], &|tag: &str| urdf::number(joint, tag)).ok();
+        let mut all = self.robot.description.joints.iter().filter_map(|joint| Some((joint, of(joint)?)));
+        let has_tag = |filled: &[Filled]| filled.iter().any(|(_, tag)| tag.is_some());
+        if all.any(|(joint, filled)| has_tag(&filled) && !is_zero_in_file(fields_on(row, joint.kind), &filled)) {
+            return;
+        }
+        let has_zeros = self.robot.description.joints.iter().filter_map(of).any(|filled| has_tag(&filled));
+        let other = if has_zeros { " other than 0" } else { "" };
+        let tags: Vec<String> = row.fields.iter().filter_map(|field| Some(format!("<{}>", urdf::tag(row.id, field.name)?))).collect();
+        let found = format!("no joint of {} has numbers{other} for effects.{}", self.robot.file, row.name);
+        let expected = format!("joints with {}, or numbers in the scene: the effect does nothing", tags.join(" or "));
+        self.warn(one, &Subject::Document, Code::NoNumbers, &found, &expected);
+    }
+
+    /// Warns if the number of the file for a joint by its name is 0.
+    fn warn_of_zero(&mut self, row: &'static Effect, one: &EffectRequest, joint: &Joint, filled: &[Filled]) {
+        if is_zero_in_file(fields_on(row, joint.kind), filled) {
+            let (found, expected) = ("0 in the robot's file", "another number there or in the scene: the effect does nothing");
+            self.warn(one, &Subject::Joint(joint.name.clone()), Code::NoNumbers, found, expected);
         }
     }
 
@@ -345,6 +381,14 @@ fn on_joint(row: &'static Effect, kind: JointKind) -> String {
     let each: Vec<String> =
         fields_on(row, kind).iter().map(|field| format!("{} with {} ({})", field.name, count(field.len), field.what)).collect();
     each.join(", ")
+}
+
+/// Whether a number of the file makes the effect nothing.
+fn is_zero_in_file(fields: &[Field], filled: &[Filled]) -> bool {
+    let is_zero = |(field, (numbers, tag)): (&Field, &Filled)| {
+        field.zeros == Zeros::Nothing && tag.is_some() && numbers.iter().all(|number| *number == 0.0)
+    };
+    fields.iter().zip(filled).any(is_zero)
 }
 
 fn count(numbers: usize) -> String {

@@ -7,7 +7,7 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use articulated_core::description::{Base, EditError, Editor};
+use articulated_core::description::{Base, Description, EditError, Editor, Joint, JointKind, Link};
 use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Span, Spanned, Subject, Unused};
 use articulated_core::effect::{Applied, EffectError, Fault};
 use articulated_core::model::{Model, ModelError};
@@ -15,9 +15,12 @@ use articulated_core::suggest::Suggester;
 use articulated_formats::{Options, Reading, SNAP_EXPECTED, can_snap, read_with};
 
 use super::options::{Appended, RobotOptions, RobotRequest};
-use crate::effects::{Edited, Resolved};
+use crate::effects::{Edited, Resolved, still};
 use crate::series::open_table;
 use crate::world::RobotInWorld;
+
+/// The link that does not move in files of worlds.
+const WORLD: &str = "world";
 
 /// A robot as requested.
 #[derive(Clone, Debug)]
@@ -126,6 +129,7 @@ impl RobotRequest<'_> {
         let mut editing = Editing { request: *self, reading, springs: Vec::new(), frames: None };
         let mut refused = log.apart();
         let appended = editing.edit(&mut refused);
+        editing.refuse_second_base(&mut refused);
         editing.choose_frames(&mut refused);
         if !appended {
             // Names that only the appended robot would have had are not unknown.
@@ -160,7 +164,7 @@ impl RobotRequest<'_> {
         let mut own = log.apart();
         let resolved = self.scene.map_or_else(Resolved::default, |scene| {
             let Reading { description, unused, world, .. } = &editing.reading;
-            let robot = Edited { description, base: self.options.base, unused, world, shafts: &editing.springs };
+            let robot = Edited { description, file: self.file, base: self.options.base, unused, world, shafts: &editing.springs };
             let resolved = scene.resolve_into(&robot, &mut own);
             if self.checks_motion {
                 scene.check_file_step(&editing.reading.world, &mut own);
@@ -357,6 +361,30 @@ impl Editing<'_> {
         self.take(&at, result, log);
     }
 
+    /// Refuses a floating base for a robot whose root floats by a free joint of its own. The root of
+    /// an MJCF or SDF file is its world, which moves in no case.
+    fn refuse_second_base(&self, log: &mut Diagnostics) {
+        if self.request.options.base != Base::Floating {
+            return;
+        }
+        let Description { links, joints, .. } = &self.reading.description;
+        let held = still(&self.reading.description, Base::Fixed);
+        let is_held = |link: usize| held.get(link).copied().unwrap_or_default();
+        let root = self.reading.description.root();
+        let is_world = root.is_some_and(|root| links[root].name == WORLD);
+        let has_mass = |(link, held): (&Link, &bool)| *held && link.inertial.is_some_and(|inertial| inertial.mass > 0.0);
+        // A root with mass may fly beside another free body.
+        if !is_world && links.iter().zip(&held).any(has_mass) {
+            return;
+        }
+        let free = |joint: &&Joint| joint.kind == JointKind::Floating && joint.locked.is_none() && is_held(joint.parent);
+        let names = joints.iter().filter(free).filter_map(|joint| Some((&links.get(joint.child)?.name, &joint.name)));
+        for (link, joint) in names {
+            let sentence = format!("{link:?} has the free joint {joint:?} already: leave out --floating (base = \"floating\")");
+            self.refuse(&Entry { span: None, key: (String::new(), "base") }, Code::Edit, sentence, log);
+        }
+    }
+
     /// The frames that exist, each once.
     fn choose_frames(&mut self, log: &mut Diagnostics) {
         let Some(frames) = &self.request.options.frames else { return };
@@ -516,6 +544,34 @@ mod tests {
         // The moments 0, 1 − 0.0009 and 1 + 0.0009.
         assert_eq!(told([0.0, 0.0, 0.0, 1.0, 0.0009, 1.0]), of("0, 9.991e-1, 1.001e0"));
         assert_eq!(told([0.0, 0.0, 0.0, 1.0, 1e-7, 1.0]), []);
+    }
+
+    /// A body that a free joint holds to the root, of this name and with this content.
+    fn free(root: &str, content: &str) -> TestRequest {
+        let urdf = format!(
+            "<robot name='quad'><link name='{root}'>{content}</link><link name='stand'/><link name='trunk'>{LINK}</link>
+            <joint name='foot' type='fixed'><parent link='{root}'/><child link='stand'/></joint>
+            <joint name='f' type='floating'><parent link='stand'/><child link='trunk'/></joint></robot>"
+        );
+        let options = RobotOptions { base: Base::Floating, ..RobotOptions::default() };
+        TestRequest { file: "quad.urdf", urdf, options }
+    }
+
+    #[test]
+    fn a_floating_base_beside_a_free_joint_of_the_root_is_refused() {
+        for (root, content) in [("world", ""), ("base", ""), ("world", LINK)] {
+            let told = read(&free(root, content)).unwrap_err();
+            let sentence = "base: \"trunk\" has the free joint \"f\" already: leave out --floating (base = \"floating\")";
+            assert_eq!(told.to_string(), format!("quad.urdf: {sentence}"), "{root}");
+        }
+        // A root with mass of its own, a joint that is locked, or no floating base
+        assert!(read(&free("base", LINK)).is_ok());
+        let mut locked = free("world", "");
+        locked.options.lock.push(("f".into(), vec![0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]).into());
+        assert!(read(&locked).is_ok());
+        let mut fixed = free("world", "");
+        fixed.options.base = Base::Fixed;
+        assert!(read(&fixed).is_ok());
     }
 
     /// A hand and, fixed to it, a tip and a lamp.

@@ -21,8 +21,14 @@ fn against_the_arm(text: &str) -> Vec<String> {
 fn against(urdf: &str, text: &str) -> Vec<String> {
     let scene = Scene::read("s.toml", text).unwrap();
     let reading = articulated_formats::read(urdf.as_bytes(), &articulated_formats::Options::default()).unwrap();
-    let robot =
-        Edited { description: &reading.description, base: Base::Fixed, unused: &reading.unused, world: &World::default(), shafts: &[] };
+    let robot = Edited {
+        description: &reading.description,
+        file: "r.urdf",
+        base: Base::Fixed,
+        unused: &reading.unused,
+        world: &World::default(),
+        shafts: &[],
+    };
     let model = Model::new(&reading.description, Base::Fixed).unwrap();
     let mut errors: Vec<_> = scene.resolve(&robot).err().into_iter().flat_map(|e| e.errors).collect();
     errors.extend(scene.start(&model).err().into_iter().flat_map(|e| e.errors));
@@ -35,8 +41,14 @@ fn against(urdf: &str, text: &str) -> Vec<String> {
 fn effects_on_joints_are_not_on_a_floating_base() {
     let scene = Scene::read("s.toml", "[effects.damping]\n__floating_base__ = 1").unwrap();
     let reading = articulated_formats::read(ARM.as_bytes(), &articulated_formats::Options::default()).unwrap();
-    let robot =
-        Edited { description: &reading.description, base: Base::Floating, unused: &reading.unused, world: &World::default(), shafts: &[] };
+    let robot = Edited {
+        description: &reading.description,
+        file: "r.urdf",
+        base: Base::Floating,
+        unused: &reading.unused,
+        world: &World::default(),
+        shafts: &[],
+    };
     let told =
         "s.toml:2: effects.damping.__floating_base__: found the floating base, expected a joint: effects on joints do not act on the base";
     assert_eq!(scene.resolve(&robot).unwrap_err().to_string(), told);
@@ -140,8 +152,14 @@ fn numbers_that_a_ball_joint_does_not_have_are_told() {
 #[test]
 fn effects_on_all_joints_are_on_balls_where_they_have_such_numbers() {
     let reading = articulated_formats::read(BALL.as_bytes(), &articulated_formats::Options::default()).unwrap();
-    let robot =
-        Edited { description: &reading.description, base: Base::Fixed, unused: &reading.unused, world: &World::default(), shafts: &[] };
+    let robot = Edited {
+        description: &reading.description,
+        file: "r.urdf",
+        base: Base::Fixed,
+        unused: &reading.unused,
+        world: &World::default(),
+        shafts: &[],
+    };
     let on = |text: &str| {
         let resolved = Scene::read("s.toml", text).unwrap().resolve(&robot).unwrap_or_else(|errors| panic!("{errors}"));
         resolved.effects.into_iter().map(|e| (e.on, e.parameters)).collect::<Vec<_>>()

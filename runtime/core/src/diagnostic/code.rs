@@ -152,6 +152,8 @@ codes! {
     NoContact "no_contact",
     /// Contact with collision geometry of which a part makes none: a mesh beside other shapes.
     PartOfContact "part_of_contact",
+    /// An effect whose numbers are to come from the robot's file, which has them for no joint.
+    NoNumbers "no_numbers",
     /// A number far beyond any robot's: gravity or a coordinate.
     BeyondSense "beyond_sense",
     /// More findings than are listed.
