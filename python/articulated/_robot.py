@@ -225,13 +225,13 @@ class Robot(_native.Robot):
         return self._edited(self._source._replace(coupling=(of_file, (*rest, (_name("joint", joint), rows, _number("offset", offset))))))
 
     def payload(self, link, mass, center_of_mass=(0.0, 0.0, 0.0), inertia=None):
-        """The robot with a load on a link.
+        """The robot with a load on a link or frame.
 
         Args:
-            link: The link's name.
+            link: The name of the link or frame.
             mass: kg.
-            center_of_mass: (3,), m, in the link's frame.
-            inertia: About the centre of mass, in axes of the link, kg·m²: (3, 3), or xx, xy, xz, yy,
+            center_of_mass: (3,), m, in that frame.
+            inertia: About the centre of mass, in axes of that frame, kg·m²: (3, 3), or xx, xy, xz, yy,
                 yz, zz. None for a point mass.
 
         Raises:
@@ -244,13 +244,13 @@ class Robot(_native.Robot):
         return self._edited(self._source._replace(payloads=payloads))
 
     def append(self, other, at, prefix="", position=(0.0, 0.0, 0.0), rpy=(0.0, 0.0, 0.0)):
-        """The robot with another one, such as a gripper, fixed to a link.
+        """The robot with another one, such as a gripper, fixed to a link or frame.
 
         Args:
             other: A robot without edits, or the path of a file.
-            at: The link that carries it.
+            at: The link or frame that carries it.
             prefix: What its names of joints and links begin with here.
-            position: (3,), m: its root's origin in the frame of the link.
+            position: (3,), m: its root's origin in that frame.
             rpy: (3,), rad: roll, pitch and yaw of its root there.
 
         Raises:

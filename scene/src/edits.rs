@@ -43,11 +43,11 @@ pub struct Load {
 pub struct Append {
     /// Its file, relative to the scene's folder.
     pub file: String,
-    /// The link that carries it.
+    /// The link or frame that carries it.
     pub link: String,
     /// The prefix of its names.
     pub prefix: String,
-    /// Its root in the frame of that link.
+    /// Its root in that frame.
     pub origin: Origin,
     /// Where the scene names its file.
     pub place: At,
@@ -175,10 +175,10 @@ pub(crate) const LOAD: &[Row<Load>] = &[
         required: true,
         value: "text",
         default: "",
-        what: "the link that carries it",
+        what: "the link or frame that carries it",
         read: |l, s, log| {
             l.place = s.node.at;
-            l.payload.link = name(s, log, "the name of a link").unwrap_or_default();
+            l.payload.link = name(s, log, "the name of a link or frame").unwrap_or_default();
         },
     },
     Row {
@@ -194,7 +194,7 @@ pub(crate) const LOAD: &[Row<Load>] = &[
         required: false,
         value: "3 numbers, m",
         default: "[0, 0, 0]",
-        what: "in the link's frame",
+        what: "in the frame of what carries it",
         read: |l, s, log| l.payload.center_of_mass = s.numbers(log).unwrap_or_default(),
     },
     Row {
@@ -202,7 +202,7 @@ pub(crate) const LOAD: &[Row<Load>] = &[
         required: false,
         value: "6 numbers, kg·m²",
         default: "a point's",
-        what: "xx, xy, xz, yy, yz, zz about the centre of mass, in axes of the link",
+        what: "xx, xy, xz, yy, yz, zz about the centre of mass, in axes of what carries it",
         read: |l, s, log| l.payload.inertia = s.numbers(log).unwrap_or_default(),
     },
     Row {
@@ -247,10 +247,10 @@ pub(crate) const APPEND: &[Row<Append>] = &[
         required: true,
         value: "text",
         default: "",
-        what: "the link that carries it",
+        what: "the link or frame that carries it",
         read: |a, s, log| {
             a.link_place = s.node.at;
-            a.link = name(s, log, "the name of a link").unwrap_or_default();
+            a.link = name(s, log, "the name of a link or frame").unwrap_or_default();
         },
     },
     Row {
@@ -266,7 +266,7 @@ pub(crate) const APPEND: &[Row<Append>] = &[
         required: false,
         value: "3 numbers, m",
         default: "[0, 0, 0]",
-        what: "its root in the link's frame",
+        what: "its root in that frame",
         read: |a, s, log| a.origin.xyz = s.numbers(log).unwrap_or_default(),
     },
     Row {
@@ -274,7 +274,7 @@ pub(crate) const APPEND: &[Row<Append>] = &[
         required: false,
         value: "3 numbers, rad",
         default: "[0, 0, 0]",
-        what: "roll, pitch, yaw of its root in the link's frame",
+        what: "roll, pitch, yaw of its root in that frame",
         read: |a, s, log| a.origin.rotation = Rotation::RollPitchYaw(s.numbers(log).unwrap_or_default()),
     },
 ];

@@ -12,9 +12,9 @@ use crate::tree::Value;
 /// friction.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Impact {
-    /// The link that hits.
+    /// The link or frame that hits.
     pub link: String,
-    /// The point that hits, in the link's frame, m.
+    /// The point that hits, in that frame, m.
     pub point: [f64; 3],
     /// Direction in which the ball leaves, in the world frame; of any non-zero length.
     pub normal: [f64; 3],
@@ -56,10 +56,10 @@ pub(crate) const KEYS: &[Row<Impact>] = &[
         required: true,
         value: "text",
         default: "",
-        what: "the link that hits",
+        what: "the link or frame that hits",
         read: |x, s, log| {
             x.place = s.at;
-            x.link = name(s, log, "the name of a link").unwrap_or_default();
+            x.link = name(s, log, "the name of a link or frame").unwrap_or_default();
         },
     },
     Row {
@@ -67,7 +67,7 @@ pub(crate) const KEYS: &[Row<Impact>] = &[
         required: false,
         value: "3 numbers, m",
         default: "[0, 0, 0]",
-        what: "the point that hits, in the link's frame",
+        what: "the point that hits, in that frame",
         read: |x, s, log| set(&mut x.point, s.numbers(log)),
     },
     Row {

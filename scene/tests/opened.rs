@@ -72,9 +72,9 @@ kd = 1
     let told = opened(scene, arm()).build().unwrap_err();
     let told = told.to_string();
     let expected = [
-        "1: payload: the robot has no link \"too\", did you mean \"tool\"?",
+        "1: payload: the robot has no link or frame \"too\", did you mean \"tool\"?",
         "2: lock.elbo: ",
-        "3: frames: the robot has no link \"tol\"",
+        "3: frames: the robot has no link or frame \"tol\"",
         "5: effects.damping.shouder: ",
         "7: initial.q.elbow: ",
         "7: initial.q.wrist: ",

@@ -24,6 +24,39 @@ fn check_tells_what_an_edited_robot_is_made_of() {
     assert!(text.status == 0 && text.lines_with("locked at 0.5") == 1 && text.lines_with("left_close") >= 1, "{}", text.out);
 }
 
+/// A body that floats, with a site on the arm that it carries.
+const FLYER: &str = "<mujoco><worldbody><body name='hull'><freejoint name='air'/><geom size='0.1'/>
+<body name='arm' pos='0.1 0 0'><joint name='turn' axis='0 1 0'/><geom size='0.05'/><site name='tip' pos='0.2 0 0'/></body></body></worldbody></mujoco>";
+
+/// Two fingers, the second of which follows the first.
+const CLAW: &str = "<mujoco><worldbody><body name='a'><joint name='lead' axis='0 1 0'/><geom size='0.05'/></body>
+<body name='b'><joint name='foll' axis='0 1 0' ref='0.5'/><geom size='0.05'/></body></worldbody>
+<compiler angle='radian'/><equality><joint joint1='foll' joint2='lead' polycoef='0.25 -2 0 0 0'/></equality></mujoco>";
+
+#[test]
+fn a_robot_hangs_at_a_site_with_the_equations_of_its_file() {
+    let (flyer, claw) = (File::new("flyer.xml", FLYER.as_bytes()), File::new("claw.xml", CLAW.as_bytes()));
+    let append = format!("{}@tip:g_", claw.name());
+    let report = |coupling: &[&str]| {
+        let ended = run(&[&["check", flyer.name(), "--append", &append, "--format", "json"], coupling].concat());
+        assert_eq!(ended.status, 0, "{}{}", ended.out, ended.err);
+        ended.json()["totals"]["degrees_of_freedom"].as_u64()
+    };
+    assert_eq!((report(&[]), report(&["--coupling", "file"])), (Some(9), Some(8)));
+    let wrong = run(&["check", flyer.name(), "--append", &append.replace("@tip", "@tap")]);
+    assert!(wrong.status == 1 && wrong.lines_with("no link or frame \"tap\", did you mean \"tip\"?") == 1, "{}{}", wrong.out, wrong.err);
+}
+
+#[test]
+fn a_floating_base_beside_a_free_joint_is_refused() {
+    let flyer = File::new("flyer.xml", FLYER.as_bytes());
+    for command in ["check", "generate", "functions"] {
+        let ended = run(&[command, flyer.name(), "--floating"]);
+        let told = "\"hull\" has the free joint \"air\" already: leave out --floating";
+        assert!(ended.status == 1 && ended.lines_with(told) == 1, "{command}: {}{}", ended.out, ended.err);
+    }
+}
+
 #[test]
 fn a_lock_beyond_the_limits_is_a_warning() {
     let gripper = File::new("gripper.urdf", GRIPPER.as_bytes());
@@ -38,7 +71,9 @@ fn edits_that_cannot_be_made_are_told_all_at_once() {
     for command in ["check", "generate"] {
         let ended = run(&[&[command, gripper.name()][..], &wrong].concat());
         assert_eq!(ended.status, 1);
-        for words in ["joint \"clos\", did you mean \"close\"?", "locked at [0.0, 1.0]", "did you mean \"palm\"?", "no link \"thumb\""] {
+        for words in
+            ["joint \"clos\", did you mean \"close\"?", "locked at [0.0, 1.0]", "did you mean \"palm\"?", "no link or frame \"thumb\""]
+        {
             assert_eq!(ended.lines_with(words), 1, "{words}: {}{}", ended.out, ended.err);
         }
     }

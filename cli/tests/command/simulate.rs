@@ -332,7 +332,7 @@ fn names_that_only_generated_code_needs_are_checked_too() {
         ("functions = [\"inverse_dynamic\"]", "unknown function `inverse_dynamic`, did you mean `inverse_dynamics`?"),
         ("functions = [\"x = mass_matrix(v = 0)\"]", "functions: `"),
         ("parameters = [\"payload(pole_rd)\"]", "parameters: `payload(pole_rd)`: there is no link \"pole_rd\", did you mean \"pole_rod\"?"),
-        ("frames = [\"pole_rd\"]", "the robot has no link \"pole_rd\""),
+        ("frames = [\"pole_rd\"]", "the robot has no link or frame \"pole_rd\""),
     ];
     for (line, said) in cases {
         let file = scene(line);

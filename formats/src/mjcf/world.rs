@@ -42,9 +42,7 @@ pub(crate) fn world(
     world.joint_forces = bounds.filter_map(|known| Some((known.name.to_owned(), known.joint.force_range?))).collect();
     let tendons = tendons(&mut scope, flags, &mut world.passive, log);
     let (controls, armatures) = actuators(&mut scope, &tendons, simulation, &lowered.description, &mut world, log);
-    if !world.planes.is_empty() {
-        world.contact_masks = std::mem::take(&mut lowered.masks);
-    }
+    world.contact_masks = std::mem::take(&mut lowered.masks);
     spring_dampers(&scope, flags, &mut lowered.description, &armatures, log);
     equalities(&mut scope, &tendons, flags.no_equality, &mut world, log);
     states::keyframes(&mut scope, &controls, has_unread_joints, &mut world, log);

@@ -13,6 +13,7 @@
 use articulated_core::diagnostic::{At, Code, Diagnostics, quote};
 mod collision;
 mod index;
+mod placed;
 mod plane;
 mod resolve;
 mod still;
@@ -54,7 +55,7 @@ pub struct EffectRequest {
 pub enum Selector {
     /// `*`: all joints that move, or all links that move and have mass; but those that are named.
     All,
-    /// The joint or link of this name.
+    /// The joint, link or frame of this name.
     Named(String),
 }
 
@@ -67,7 +68,7 @@ pub struct Numbers {
     pub from_collision: bool,
     /// The planes are those of the robot's file.
     pub from_file_planes: bool,
-    /// The effect's frame in the link's frame.
+    /// The effect's frame in the frame of what it is on: a link, or a frame of the robot.
     pub at: Option<Origin>,
     /// One for each of the effect's fields.
     pub fields: Vec<Option<Vec<f64>>>,

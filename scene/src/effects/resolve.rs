@@ -9,7 +9,7 @@ use articulated_core::description::{Base, Description, Joint, JointKind, Origin}
 
 use super::index::{Index, Named};
 use super::still::{moving, still};
-use super::{EffectRequest, Numbers, Selector, collision, plane, urdf};
+use super::{EffectRequest, Numbers, Selector, collision, placed, plane, urdf};
 use crate::report::{EffectOff, EffectOn, Number, Report, Why};
 use crate::scene::Scene;
 use crate::shaft;
@@ -64,7 +64,17 @@ impl Scene {
     pub(crate) fn resolve_into(&self, robot: &Edited<'_>, log: &mut Diagnostics) -> Resolved {
         let (still, moving) = (still(robot.description, robot.base), moving(robot.description));
         let index = Index::of(robot, &self.shafts);
-        let mut at_work = Resolving { scene: self, robot, still, moving, index, resolved: Resolved::default(), used: HashSet::new() };
+        let requests = placed::on_links(&self.effects, robot.description, log);
+        let mut at_work = Resolving {
+            scene: self,
+            requests: &requests,
+            robot,
+            still,
+            moving,
+            index,
+            resolved: Resolved::default(),
+            used: HashSet::new(),
+        };
         at_work.resolved.report.joints = at_work.moving_joints().count();
         at_work.resolved.report.links = at_work.still.iter().filter(|still| !**still).count();
         at_work.known_impact(log);
@@ -78,6 +88,8 @@ impl Scene {
 
 pub(super) struct Resolving<'a> {
     pub(super) scene: &'a Scene,
+    /// Its requests, those at frames on their links.
+    requests: &'a [EffectRequest],
     pub(super) robot: &'a Edited<'a>,
     /// Links fixed to the base.
     still: Vec<bool>,
@@ -94,8 +106,7 @@ pub(super) type Filled = (Vec<f64>, Option<&'static str>);
 
 impl<'a> Resolving<'a> {
     fn effect(&mut self, row: &'static Effect, log: &mut Diagnostics) {
-        let scene = self.scene;
-        let asked: Vec<&EffectRequest> = scene.effects.iter().filter(|a| a.effect == row.id).collect();
+        let asked: Vec<&EffectRequest> = self.requests.iter().filter(|a| a.effect == row.id).collect();
         let before = self.resolved.effects.len();
         self.known_names(row, &asked, log);
         match row.on {
@@ -157,13 +168,17 @@ impl<'a> Resolving<'a> {
         log.error((one.place, &one.key), Code::Robot, found, expected);
     }
 
+    /// Names of links and frames.
+    fn places(&self) -> impl Iterator<Item = &'a str> + use<'a> {
+        let Description { links, frames, .. } = self.robot.description;
+        links.iter().map(|link| link.name.as_str()).chain(frames.iter().map(|frame| frame.name.as_str()))
+    }
+
     fn known_link(&self, one: &EffectRequest, name: &str, log: &mut Diagnostics) {
-        let links = &self.robot.description.links;
         match self.index.links.get(name) {
             None => {
                 let place = ((one.place, one.key.as_str()), Code::UnknownName);
-                let names = links.iter().map(|l| l.name.as_str());
-                log.unknown(place, ("no such link".into(), name), "a link of the robot", names);
+                log.unknown(place, ("no such link".into(), name), "a link or frame of the robot", self.places());
             }
             Some(&link) if self.still[link] && one.says.is_some() => {
                 log.error((one.place, &one.key), Code::Robot, "a link that is fixed to the base", "a link that moves");
@@ -174,14 +189,14 @@ impl<'a> Resolving<'a> {
 
     fn known_impact(&self, log: &mut Diagnostics) {
         let Some(impact) = &self.scene.impact else { return };
-        let links = &self.robot.description.links;
-        match self.index.links.get(impact.link.as_str()) {
+        let frame = || self.robot.description.frames.iter().find(|frame| frame.name == impact.link);
+        match self.index.links.get(impact.link.as_str()).copied().or_else(|| frame().map(|frame| frame.link)) {
             None => {
                 let place = ((impact.place, "impact.link"), Code::UnknownName);
                 let found = ("no such link".into(), impact.link.as_str());
-                log.unknown(place, found, "a link of the robot", links.iter().map(|l| l.name.as_str()));
+                log.unknown(place, found, "a link or frame of the robot", self.places());
             }
-            Some(&link) if self.still[link] => {
+            Some(link) if self.still[link] => {
                 log.error((impact.place, "impact.link"), Code::Robot, "a link that is fixed to the base", "a link that moves");
             }
             Some(_) => {}

@@ -14,7 +14,7 @@ use articulated_core::model::{Model, ModelError};
 use articulated_core::suggest::Suggester;
 use articulated_formats::{Options, Reading, SNAP_EXPECTED, can_snap, read_with};
 
-use super::options::{Appended, RobotOptions, RobotRequest};
+use super::options::{RobotOptions, RobotRequest};
 use crate::effects::{Edited, Resolved, still};
 use crate::series::open_table;
 use crate::world::RobotInWorld;
@@ -126,7 +126,8 @@ impl RobotRequest<'_> {
     fn edit(&self, log: &mut Diagnostics) -> Option<Editing<'_>> {
         let reading =
             read_with(&self.options.included, self.document, &self.reader_options()).map_err(|findings| log.take(findings)).ok()?;
-        let mut editing = Editing { request: *self, reading, springs: Vec::new(), frames: None };
+        let coupling_files = vec![self.file.to_owned(); reading.world.couplings.len()];
+        let mut editing = Editing { request: *self, reading, coupling_files, springs: Vec::new(), frames: None };
         let mut refused = log.apart();
         let appended = editing.edit(&mut refused);
         editing.refuse_second_base(&mut refused);
@@ -225,7 +226,7 @@ impl RobotRequest<'_> {
         Some(Diagnostic::error(file, place, Code::Effect, found, expected))
     }
 
-    fn reader_options(&self) -> Options {
+    pub(super) fn reader_options(&self) -> Options {
         Options {
             file: self.file.to_owned(),
             base: self.options.base,
@@ -251,20 +252,22 @@ fn is_about_shaft(error: &Diagnostic, refused: &[&str]) -> bool {
 pub(super) struct Editing<'a> {
     pub(super) request: RobotRequest<'a>,
     pub(super) reading: Reading,
+    /// The file of each coupling of the world.
+    pub(super) coupling_files: Vec<String>,
     /// The springs and dampings of each shaft; `None` for a refused one.
     springs: Vec<Option<Vec<Applied>>>,
     frames: Option<Vec<String>>,
 }
 
 /// The place of an entry for messages: its own, or the robot's file.
-struct Entry<'a> {
+pub(super) struct Entry<'a> {
     span: Option<&'a Span>,
     /// The key in a file, and that of an entry which no file gives.
     key: (String, &'static str),
 }
 
 impl<'a> Entry<'a> {
-    fn of<T>(entry: &'a Spanned<T>, key: &'static str) -> Self {
+    pub(super) fn of<T>(entry: &'a Spanned<T>, key: &'static str) -> Self {
         Self { span: entry.span.as_ref(), key: (key.to_owned(), key) }
     }
 
@@ -297,7 +300,7 @@ impl Editing<'_> {
             self.take(&at, editor.couple(coupling), log);
         }
         if options.file_coupling {
-            self.couple_as_the_file_says(&mut editor, log);
+            self.couple_as_the_files_say(appended, &mut editor, log);
         }
         for lock in &options.lock {
             let (joint, coordinates) = &lock.value;
@@ -308,16 +311,18 @@ impl Editing<'_> {
         appended
     }
 
-    /// Linear equations of the robot's file are edits. Warnings that they are not applied go.
-    fn couple_as_the_file_says(&mut self, editor: &mut Editor<'_>, log: &mut Diagnostics) {
-        if self.reading.world.couplings.is_empty() {
+    /// Linear equations of the robot's file and of those appended are edits. Warnings that they are
+    /// not applied go. `appended`: whether all robots were appended.
+    fn couple_as_the_files_say(&mut self, appended: bool, editor: &mut Editor<'_>, log: &mut Diagnostics) {
+        if appended && self.reading.world.couplings.is_empty() {
             let place = (Default::default(), "coupling");
             let found = "\"file\", and the robot's file has no linear equations of joints";
             log.error(place, Code::Edit, found, "no key coupling, or a table of joints");
         }
-        for (coupling, at) in std::mem::take(&mut self.reading.world.couplings) {
+        let couplings = std::mem::take(&mut self.reading.world.couplings);
+        for ((coupling, at), file) in couplings.into_iter().zip(std::mem::take(&mut self.coupling_files)) {
             let joint = coupling.joint.clone();
-            let entry = Spanned::new(coupling, self.request.file, at);
+            let entry = Spanned::new(coupling, &file, at);
             self.take(&Entry::named(&entry, format!("joint {joint:?}"), "coupling"), editor.couple(&entry), log);
         }
         self.reading.warnings.retain(|warning| warning.field != "coupling");
@@ -330,7 +335,7 @@ impl Editing<'_> {
         });
     }
 
-    fn take(&self, at: &Entry<'_>, result: Result<(), EditError>, log: &mut Diagnostics) {
+    pub(super) fn take(&self, at: &Entry<'_>, result: Result<(), EditError>, log: &mut Diagnostics) {
         if let Err(error) = result {
             let code = match &error {
                 EditError::UnknownLink { .. } => Code::UnknownLink,
@@ -339,26 +344,6 @@ impl Editing<'_> {
             };
             self.refuse(at, code, error.to_string(), log);
         }
-    }
-
-    fn append(&mut self, other: &Appended, editor: &mut Editor<'_>, log: &mut Diagnostics) {
-        // Its root moves with the link that carries it.
-        // Arguments are those of the robot.
-        let arguments = Default::default();
-        let options = Options { file: other.file.value.clone(), base: Base::Floating, arguments, ..self.request.reader_options() };
-        let reading = match read_with(&self.request.options.included, &other.document, &options) {
-            Ok(reading) => reading,
-            Err(findings) => return log.take(findings),
-        };
-        let result = editor.append(&other.at, &reading.description, &other.prefix, other.origin);
-        self.reading.warnings.extend(reading.warnings);
-        self.reading.snapped.extend(reading.snapped);
-        self.reading.unused.extend(reading.unused.into_iter().map(|u| renamed(u, &other.prefix)));
-        let at = match &result {
-            Err(EditError::UnknownLink { .. }) => Entry::of(&other.at, "append"),
-            _ => Entry::of(&other.file, "append"),
-        };
-        self.take(&at, result, log);
     }
 
     /// Refuses a floating base for a robot whose root floats by a free joint of its own. The root of
@@ -388,13 +373,14 @@ impl Editing<'_> {
     /// The frames that exist, each once.
     fn choose_frames(&mut self, log: &mut Diagnostics) {
         let Some(frames) = &self.request.options.frames else { return };
-        let links = &self.reading.description.links;
-        let names: HashSet<&str> = links.iter().map(|l| l.name.as_str()).collect();
+        let Description { links, frames: others, .. } = &self.reading.description;
+        let known = || links.iter().map(|link| link.name.as_str()).chain(others.iter().map(|frame| frame.name.as_str()));
+        let names: HashSet<&str> = known().collect();
         let (mut seen, mut suggester, mut chosen) = (HashSet::new(), Suggester::default(), Vec::new());
         for frame in frames {
             let (name, at) = (&frame.value, Entry::of(frame, "frames"));
             if !names.contains(name.as_str()) {
-                let nearest = suggester.nearest(name, links.iter().map(|l| l.name.as_str())).map(str::to_owned);
+                let nearest = suggester.nearest(name, known()).map(str::to_owned);
                 self.take(&at, Err(EditError::UnknownLink { name: name.clone(), nearest }), log);
             } else if seen.insert(name) {
                 chosen.push(name.clone());
@@ -406,23 +392,15 @@ impl Editing<'_> {
     }
 }
 
-/// Content of an appended robot that is not used, under its new names.
-fn renamed(unused: Unused, prefix: &str) -> Unused {
-    let subject = match unused.subject {
-        Subject::Document => Subject::Document,
-        Subject::Link(name) => Subject::Link(format!("{prefix}{name}")),
-        Subject::Joint(name) => Subject::Joint(format!("{prefix}{name}")),
-    };
-    Unused { subject, ..unused }
-}
-
 #[cfg(test)]
 mod tests {
     use articulated_core::description::{Origin, Payload, Shaft};
+    use articulated_core::diagnostic::Subject;
     use articulated_core::effect::EffectId;
     use articulated_formats::MOST_SNAPPED;
 
     use super::*;
+    use crate::Appended;
 
     /// An inertia that no body has, which is a warning.
     const LINK: &str = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='3'/></inertial>";
@@ -510,6 +488,23 @@ mod tests {
             asked.options.lock.push(("hinge".into(), vec![at]).into());
             let warnings = read(&asked).unwrap().warnings;
             assert_eq!(warnings.iter().any(|w| w.code == Code::BeyondLimit), beyond, "{at}");
+        }
+    }
+
+    /// The range of a ball is a cone about the identity; q and −q are one rotation.
+    #[test]
+    fn a_lock_of_a_ball_is_told_of_where_its_angle_is_beyond_the_range() {
+        let ball =
+            "<mujoco><worldbody><body name='b'><joint name='ball' type='ball' range='0 60'/><geom size='0.1'/></body></worldbody></mujoco>";
+        for (degrees, sign, beyond) in
+            [(61.0_f64, 1.0, true), (59.0, 1.0, false), (60.0, 1.0, false), (59.0, -1.0, false), (179.0, -1.0, true)]
+        {
+            let half = degrees.to_radians() / 2.0;
+            let [axis, w] = [half.sin() / 3.0, half.cos()].map(|x| sign * x);
+            let mut asked = TestRequest { file: "ball.xml", urdf: ball.into(), options: RobotOptions::default() };
+            asked.options.lock.push(("ball".into(), vec![axis, -2.0 * axis, 2.0 * axis, w]).into());
+            let warnings = read(&asked).unwrap().warnings;
+            assert_eq!(warnings.iter().any(|w| w.code == Code::BeyondLimit), beyond, "{degrees} {sign}");
         }
     }
 
@@ -627,7 +622,7 @@ mod tests {
     fn each_frame_is_listed_once_and_is_a_link() {
         let mut asked = request();
         asked.options.frames = Some(["tip", "base", "tap", "tip"].map(Into::into).to_vec());
-        begin_with(&refused(&asked), &["frames: the robot has no link \"tap\"", "frames: \"tip\" is listed twice"]);
+        begin_with(&refused(&asked), &["frames: the robot has no link or frame \"tap\"", "frames: \"tip\" is listed twice"]);
     }
 
     #[test]
@@ -653,7 +648,7 @@ mod tests {
         asked.options.lock.push(("left_hinge".into(), vec![0.0]).into());
         asked.options.frames = Some(vec!["left_tip".into()]);
         let mass = "payload: load on link \"tip\": mass";
-        begin_with(&refused(&asked), &["append: the robot has no link \"top\"", mass]);
+        begin_with(&refused(&asked), &["append: the robot has no link or frame \"top\"", mass]);
         asked.options.append[0].at = "tip".into();
         begin_with(&refused(&asked), &[mass]);
         asked.options.append.clear();

@@ -4,6 +4,7 @@
 //! document make a [`RobotRequest`]; [`RobotRequest::build`] makes the robot and reports all
 //! findings at once.
 
+mod append;
 mod build;
 mod load;
 mod options;

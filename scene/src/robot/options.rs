@@ -70,8 +70,8 @@ pub struct RobotOptions {
     pub packages: BTreeMap<String, PathBuf>,
 }
 
-/// Another robot, such as a gripper, to be fixed to a link. Its links and joints get a prefix
-/// before their names.
+/// Another robot, such as a gripper, to be fixed to a link or frame. Its links, joints, frames and
+/// what its file says of a world get a prefix before their names.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Appended {
     /// The bytes of its file.
@@ -79,11 +79,11 @@ pub struct Appended {
     /// The file's name, for messages and for the header of a generated file; with the place that
     /// names it. Not opened.
     pub file: Spanned<String>,
-    /// The link that carries it.
+    /// The link or frame that carries it.
     pub at: Spanned<String>,
     /// What stands before its names.
     pub prefix: String,
-    /// Its root in the frame of that link.
+    /// Its root in that frame.
     pub origin: Origin,
 }
 

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use articulated_core::Plain;
-use articulated_core::description::{Collision, ContactSphere, PrincipalMoments};
+use articulated_core::description::{Collision, ContactSphere, JointKind, PrincipalMoments};
 use articulated_core::diagnostic::{At, Code, Diagnostic, Place, Subject, Unused};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
@@ -116,12 +116,24 @@ impl Editing<'_> {
             let (name, at) = &lock.value;
             let joint = &joints[*of_name.get(name.as_str())?];
             let limit = joint.limit.filter(|_| joint.locked.is_some())?;
+            let beyond = |found: String, expected: String| {
+                let place = Place { at: At::Nowhere, subject: &Subject::Joint(name.clone()), field: "lock" };
+                warning(self.request.file, &place, Code::BeyondLimit, found, expected)
+            };
+            if let (JointKind::Spherical, &[x, y, z, w]) = (joint.kind, at.as_slice()) {
+                // The angle of the rotation from the identity, rad
+                let angle = 2.0 * (x * x + y * y + z * z).sqrt().atan2(w.abs());
+                // Rounding of the numbers in the scene counts nothing.
+                return (limit.upper > 0.0 && angle > limit.upper * (1.0 + 1e-9)).then(|| {
+                    beyond(
+                        format!("a rotation by {angle:.6} rad, beyond its limit"),
+                        format!("at most {} rad; used as given", Plain(limit.upper)),
+                    )
+                });
+            }
             let &[at] = at.as_slice() else { return None };
             (at < limit.lower || limit.upper < at).then(|| {
-                warning(
-                    self.request.file,
-                    &Place { at: At::Nowhere, subject: &Subject::Joint(name.clone()), field: "lock" },
-                    Code::BeyondLimit,
+                beyond(
                     format!("{}, beyond its limits", Plain(at)),
                     format!("{} to {}; used as given", Plain(limit.lower), Plain(limit.upper)),
                 )
@@ -135,7 +147,9 @@ impl Editing<'_> {
         let (options, description) = (&self.request.options, &self.reading.description);
         let still = still(description, options.base);
         let links = indices(description.links.iter().map(|l| l.name.as_str()));
-        let held = |link: &str| links.get(link).is_some_and(|at| still[*at]);
+        let frames = indices(description.frames.iter().map(|frame| frame.name.as_str()));
+        let carrier = |name: &str| links.get(name).copied().or_else(|| Some(description.frames[*frames.get(name)?].link));
+        let held = |name: &str| carrier(name).is_some_and(|at| still.get(at).copied().unwrap_or_default());
         let loads = options.payloads.iter().filter(|load| load.mass != 0.0 && held(&load.link)).map(|load| {
             warning(
                 self.request.file,

@@ -63,7 +63,7 @@ fn names_that_the_robot_does_not_have_are_told_with_the_nearest() {
         ),
         (
             "[effects.drag]\nlowr = 1",
-            "s.toml:2: effects.drag.lowr: found no such link, expected a link of the robot; did you mean \"lower\"?",
+            "s.toml:2: effects.drag.lowr: found no such link, expected a link or frame of the robot; did you mean \"lower\"?",
         ),
         ("[effects.drag]\nworld = 1", "s.toml:2: effects.drag.world: found a link that is fixed to the base, expected a link that moves"),
         ("[effects.damping]\ntool = 1", "s.toml:2: effects.damping.tool: found a fixed joint, expected a joint that moves"),
@@ -93,7 +93,7 @@ fn names_that_the_robot_does_not_have_are_told_with_the_nearest() {
         ),
         (
             "[impact]\nlink = \"tipp\"\nnormal = [1, 0, 0]\nmass = 1\nrestitution = 1\ntime = 0",
-            "s.toml:2: impact.link: found no such link, expected a link of the robot; did you mean \"tip\"?",
+            "s.toml:2: impact.link: found no such link, expected a link or frame of the robot; did you mean \"tip\"?",
         ),
     ];
     for (text, expected) in cases {

@@ -17,17 +17,17 @@ use crate::suggest::Suggester;
 /// A rigid load on a link.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Payload {
-    /// The link that carries it.
+    /// The link or frame that carries it.
     pub link: String,
     /// Name of the link that stands for it, and of the fixed joint between; `None`:
     /// `<link>_payload`, with a number if that is taken.
     pub name: Option<String>,
     /// kg, not negative.
     pub mass: f64,
-    /// Centre of mass in the carrying link's frame, m.
+    /// Centre of mass in the frame of what carries it, m.
     pub center_of_mass: [f64; 3],
-    /// Rotational inertia about the centre of mass in axes of the carrying link: xx, xy, xz, yy,
-    /// yz, zz, kg·m². Zeros: a point mass.
+    /// Rotational inertia about the centre of mass in axes of what carries it: xx, xy, xz, yy, yz,
+    /// zz, kg·m². Zeros: a point mass.
     pub inertia: [f64; 6],
 }
 
@@ -52,8 +52,8 @@ impl Description {
     }
 
     /// [`Editor::append`], for one edit.
-    pub fn append(&mut self, at_link: &str, other: &Self, prefix: &str, origin: Origin) -> Result<(), EditError> {
-        Editor::of(self).append(at_link, other, prefix, origin)
+    pub fn append(&mut self, at: &str, other: &Self, prefix: &str, origin: Origin) -> Result<(), EditError> {
+        Editor::of(self).append(at, other, prefix, origin)
     }
 
     /// [`Editor::shaft`], for one edit.
@@ -104,16 +104,16 @@ impl<'a> Editor<'a> {
         Ok(())
     }
 
-    /// Attaches a payload: a link of its own, whose frame has its origin at the payload's centre of
-    /// mass and the axes of the carrying link, behind a fixed joint of the same name. Gives the
-    /// name.
+    /// Attaches a payload to a link or frame: a link of its own, whose frame has its origin at the
+    /// payload's centre of mass and the axes of what carries it, behind a fixed joint of the same
+    /// name. Returns the name.
     ///
-    /// Refused: a link that does not exist, a name that does, a mass or a principal moment below
+    /// Refused: a link or frame that does not exist, a name that does, a mass or a principal moment below
     /// zero, numbers that are not finite, an inertia without mass. One whose principal moments
     /// [miss the triangle inequality](PrincipalMoments::miss_triangle) is used as it is given, as
     /// that of a link is.
     pub fn attach(&mut self, payload: &Payload) -> Result<String, EditError> {
-        let parent = self.link(&payload.link)?;
+        let (parent, place) = self.place(&payload.link)?;
         check_mass(payload)?;
         let name = match &payload.name {
             Some(name) if self.names.has(name) => return Err(EditError::NamesTaken { names: [name.clone()].into() }),
@@ -122,17 +122,17 @@ impl<'a> Editor<'a> {
         };
         let inertial = Inertial { origin: Origin::default(), mass: payload.mass, inertia: payload.inertia };
         let child = self.add_link(Link { name: name.clone(), inertial: Some(inertial), ..Link::default() });
-        self.join(name.clone(), parent, child, Origin { xyz: payload.center_of_mass, ..Origin::default() });
+        self.join(name.clone(), parent, child, place.then(&Origin::at(payload.center_of_mass)));
         Ok(name)
     }
 
     /// Appends another robot: its links and joints with `prefix` before their names, and a fixed
-    /// joint that places its root in the frame of `at_link`, called `<prefix><root>_mount`, with a
-    /// number if that is taken.
+    /// joint that places its root in the frame of `at`, a link or frame. The joint is called
+    /// `<prefix><root>_mount`, with a number if that is taken.
     ///
-    /// Refused: a link that does not exist, a name that does, a robot without a root.
-    pub fn append(&mut self, at_link: &str, other: &Description, prefix: &str, origin: Origin) -> Result<(), EditError> {
-        let parent = self.link(at_link)?;
+    /// Refused: a link or frame that does not exist, a name that does, a robot without a root.
+    pub fn append(&mut self, at: &str, other: &Description, prefix: &str, origin: Origin) -> Result<(), EditError> {
+        let (parent, place) = self.place(at)?;
         let root = other.root().ok_or_else(|| EditError::NoRoot { robot: other.name.clone() })?;
         let named = |name: &String| format!("{prefix}{name}");
         let links = other.links.iter().map(|l| &l.name).chain(other.frames.iter().map(|f| &f.name));
@@ -158,12 +158,12 @@ impl<'a> Editor<'a> {
         }
         for frame in &other.frames {
             let frame = Frame { name: named(&frame.name), link: frame.link + first_link, ..frame.clone() };
-            self.names.add_frame(&frame.name);
+            self.names.add_frame(&frame.name, self.robot.frames.len());
             self.robot.frames.push(frame);
         }
         let root = first_link + root;
         let name = self.names.free(&format!("{}_mount", self.robot.links[root].name));
-        self.join(name, parent, root, origin);
+        self.join(name, parent, root, place.then(&origin));
         Ok(())
     }
 
@@ -184,12 +184,18 @@ impl<'a> Editor<'a> {
         self.add_joint(Joint { name, parent, child, origin, axis: [1.0, 0.0, 0.0], ..Joint::default() });
     }
 
-    /// Index of the link called `name`, or the refusal that names the nearest.
-    fn link(&mut self, name: &str) -> Result<usize, EditError> {
-        self.names.link(name).ok_or_else(|| {
-            let nearest = self.suggester.nearest(name, self.robot.links.iter().map(|l| l.name.as_str()));
-            EditError::UnknownLink { name: name.into(), nearest: nearest.map(String::from) }
-        })
+    /// The link called `name`, or that of the frame called so, and the pose in its frame; or the
+    /// refusal that names the nearest.
+    fn place(&mut self, name: &str) -> Result<(usize, Origin), EditError> {
+        if let Some(link) = self.names.link(name) {
+            return Ok((link, Origin::default()));
+        }
+        if let Some(frame) = self.names.frame(name).and_then(|index| self.robot.frames.get(index)) {
+            return Ok((frame.link, frame.origin));
+        }
+        let names = self.robot.links.iter().map(|link| &link.name).chain(self.robot.frames.iter().map(|frame| &frame.name));
+        let nearest = self.suggester.nearest(name, names.map(String::as_str));
+        Err(EditError::UnknownLink { name: name.into(), nearest: nearest.map(String::from) })
     }
 
     /// The refusal that names the nearest of the joints that may be meant.
@@ -231,6 +237,8 @@ fn can_be(inertia: [f64; 6], mass: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use alloc::vec;
+
     use super::*;
 
     /// A base and a chain of `count` links on it, the root last.
@@ -259,6 +267,36 @@ mod tests {
         robot.append("link_0", &other, "other_", Origin::default()).unwrap();
         assert_eq!((robot.root(), robot.link("other_link_20000")), (Some(20_000), Some(40_001)));
         assert_eq!(robot.joints.last().map(|j| (j.name.as_str(), j.child)), Some(("other_link_20000_mount", 40_001)));
+    }
+
+    /// A site of a link, a quarter turn about x and half a metre along y from it.
+    fn with_site() -> Description {
+        let origin = Origin::new([0.0, 0.5, 0.0], [core::f64::consts::FRAC_PI_2, 0.0, 0.0]);
+        let frames = vec![Frame { name: "site".into(), link: 1, origin }];
+        Description { frames, ..chain(2) }
+    }
+
+    #[test]
+    fn robots_and_payloads_hang_at_frames() {
+        let mut robot = with_site();
+        let payload = Payload { link: "site".into(), mass: 1.0, center_of_mass: [1.0, 2.0, 3.0], ..Payload::default() };
+        assert_eq!(robot.attach(&payload).as_deref(), Ok("site_payload"));
+        robot.append("site", &chain(1), "hand_", Origin::new([0.0, 0.0, 1.0], [0.0, 0.0, 0.25])).unwrap();
+        let mount = |name: &str| robot.joints.iter().find(|joint| joint.name == name).unwrap();
+        let [load, hand] = ["site_payload", "hand_link_1_mount"].map(mount);
+        assert_eq!([load.parent, hand.parent], [1, 1]);
+        // (x, y, z) of the site is (x, −z, y) of the link. The rotation alone keeps the file's form.
+        let close = |found: [f64; 3], expected: [f64; 3]| found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15);
+        assert!(close(load.origin.xyz, [1.0, 0.5 - 3.0, 2.0]) && load.origin.rotation == robot.frames[0].origin.rotation);
+        assert!(close(hand.origin.xyz, [0.0, 0.5 - 1.0, 0.0]));
+        let [c, s] = [0.25_f64.cos(), 0.25_f64.sin()];
+        let expected = nalgebra::Matrix3::new(c, -s, 0.0, 0.0, 0.0, -1.0, s, c, 0.0);
+        assert!((hand.origin.rotation.matrix::<f64>() - expected).amax() < 1e-15);
+        // Frames of the appended robot carry others.
+        robot.append("link_0", &with_site(), "arm_", Origin::default()).unwrap();
+        assert!(robot.append("arm_site", &chain(1), "tip_", Origin::default()).is_ok());
+        let told = robot.append("arm_sit", &chain(1), "other_", Origin::default()).unwrap_err().to_string();
+        assert_eq!(told, "the robot has no link or frame \"arm_sit\", did you mean \"arm_site\"?");
     }
 
     #[test]

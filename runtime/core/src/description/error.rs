@@ -11,11 +11,11 @@ use crate::{MOST_LISTED, listed};
 /// Why a [`Description`](super::Description) was not edited.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EditError {
-    /// There is no such link.
+    /// There is no such link or frame.
     UnknownLink {
         /// The name found.
         name: String,
-        /// The link's name most like it.
+        /// The name of a link or frame most like it.
         nearest: Option<String>,
     },
     /// There is no such joint.
@@ -121,7 +121,7 @@ pub enum EditError {
 impl fmt::Display for EditError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::UnknownLink { name, nearest } => unknown(f, "link", name, nearest.as_deref()),
+            Self::UnknownLink { name, nearest } => unknown(f, "link or frame", name, nearest.as_deref()),
             Self::UnknownJoint { name, nearest } => unknown(f, "joint", name, nearest.as_deref()),
             Self::NamesTaken { names } => taken(f, names),
             Self::LockedBase => f.write_str("the floating base cannot be locked: say that the base is fixed"),

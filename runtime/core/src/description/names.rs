@@ -1,6 +1,6 @@
 //! Names that links and joints of a robot have, while it is edited.
 
-use alloc::collections::{BTreeMap, BTreeSet};
+use alloc::collections::BTreeMap;
 use alloc::format;
 use alloc::string::{String, ToString};
 
@@ -10,7 +10,7 @@ use super::Description;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Names {
     links: BTreeMap<String, usize>,
-    frames: BTreeSet<String>,
+    frames: BTreeMap<String, usize>,
     joints: BTreeMap<String, usize>,
     /// For names that were asked for and taken, the first number that may be free. Names are added
     /// only, so those below stay taken.
@@ -22,7 +22,7 @@ impl Names {
         let mut names = Self::default();
         robot.links.iter().enumerate().for_each(|(index, link)| names.add_link(&link.name, index));
         robot.joints.iter().enumerate().for_each(|(index, joint)| names.add_joint(&joint.name, index));
-        robot.frames.iter().for_each(|frame| names.add_frame(&frame.name));
+        robot.frames.iter().enumerate().for_each(|(index, frame)| names.add_frame(&frame.name, index));
         names
     }
 
@@ -37,17 +37,22 @@ impl Names {
     }
 
     /// A name of a frame that is not a link.
-    pub(super) fn add_frame(&mut self, name: &str) {
-        self.frames.insert(name.to_string());
+    pub(super) fn add_frame(&mut self, name: &str, index: usize) {
+        self.frames.entry(name.to_string()).or_insert(index);
     }
 
     /// Whether a link or another frame has this name.
     pub(super) fn has_frame(&self, name: &str) -> bool {
-        self.links.contains_key(name) || self.frames.contains(name)
+        self.links.contains_key(name) || self.frames.contains_key(name)
     }
 
     pub(super) fn link(&self, name: &str) -> Option<usize> {
         self.links.get(name).copied()
+    }
+
+    /// A frame that is not a link.
+    pub(super) fn frame(&self, name: &str) -> Option<usize> {
+        self.frames.get(name).copied()
     }
 
     pub(super) fn joint(&self, name: &str) -> Option<usize> {

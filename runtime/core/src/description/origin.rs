@@ -85,6 +85,23 @@ impl Origin {
         Self { xyz, rotation: Rotation::IDENTITY }
     }
 
+    /// A frame that `next` places in this one, seen from where this one is placed. A rotation keeps
+    /// the form of the file where the other one is the identity.
+    #[must_use]
+    pub fn then(&self, next: &Self) -> Self {
+        let (first, second) = (self.rotation, next.rotation);
+        let turned = if first == Rotation::IDENTITY { Vector3::from(next.xyz) } else { first.matrix::<f64>() * Vector3::from(next.xyz) };
+        let rotation = match (first == Rotation::IDENTITY, second == Rotation::IDENTITY) {
+            (true, _) => second,
+            (_, true) => first,
+            _ => {
+                let product = first.matrix::<f64>() * second.matrix::<f64>();
+                Rotation::Matrix([0, 1, 2].map(|row| [0, 1, 2].map(|column| product[(row, column)])))
+            }
+        };
+        Self { xyz: [0, 1, 2].map(|k| self.xyz[k] + turned[k]), rotation }
+    }
+
     /// As a placement: components in the placed frame to components in the frame that it is placed
     /// in.
     #[must_use]
@@ -212,6 +229,19 @@ mod tests {
         };
         let expected = [[FRAC_PI_2, 0.0, 0.0], [0.0, FRAC_PI_2, 0.0], [0.0, 0.0, FRAC_PI_2]].map(from_rpy::<f64>);
         assert_eq!([0, 1, 2].map(about), expected);
+    }
+
+    #[test]
+    fn one_placement_after_another_is_their_product() {
+        for (a, b) in TURNS.into_iter().zip(TURNS.into_iter().rev()) {
+            let (first, second) = (Origin::new([1.0, -2.0, 0.5], a), Origin::new([0.25, 3.0, -1.0], b));
+            for (first, second) in [(first, second), (Origin::at(first.xyz), second), (first, Origin::at(second.xyz))] {
+                let [one, other, both] = [first, second, first.then(&second)].map(|origin| origin.placement::<f64>());
+                assert!((one.rotation * other.rotation - both.rotation).amax() < 2e-15, "{a:?} {b:?}");
+                assert!((one.position + one.rotation * other.position - both.position).amax() < 4e-15, "{a:?} {b:?}");
+            }
+            assert_eq!((Origin::default().then(&first), first.then(&Origin::default())), (first, first));
+        }
     }
 
     #[test]

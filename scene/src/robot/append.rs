@@ -1,0 +1,164 @@
+//! Robots that are appended to another one: their links, joints and frames, and what their files say
+//! beside them.
+//!
+//! All names get the prefix. States of one name are one state; the states of the appended robot that
+//! the other one does not have get the prefix, too. Gravity, step and integrator are those of the
+//! first file.
+
+use std::collections::HashSet;
+
+use articulated_core::description::{Base, Coupling, EditError, Editor};
+use articulated_core::diagnostic::{At, Code, Diagnostic, Place, Subject, Unused};
+use articulated_core::diagnostic::{Diagnostics, quote};
+use articulated_formats::world::{Actuator, Keyframe, Loop, World};
+use articulated_formats::{Options, read_with};
+
+use super::build::{Editing, Entry};
+use super::options::Appended;
+
+impl Editing<'_> {
+    /// Reads another robot and appends it, with its world.
+    pub(super) fn append(&mut self, other: &Appended, editor: &mut Editor<'_>, log: &mut Diagnostics) {
+        // Its root moves with the link that carries it.
+        // Arguments are those of the robot.
+        let arguments = Default::default();
+        let options = Options { file: other.file.value.clone(), base: Base::Floating, arguments, ..self.request.reader_options() };
+        let reading = match read_with(&self.request.options.included, &other.document, &options) {
+            Ok(reading) => reading,
+            Err(findings) => return log.take(findings),
+        };
+        let result = editor.append(&other.at, &reading.description, &other.prefix, other.origin);
+        self.reading.warnings.extend(reading.warnings);
+        self.reading.snapped.extend(reading.snapped);
+        self.reading.unused.extend(reading.unused.into_iter().map(|u| renamed(u, &other.prefix)));
+        if result.is_ok() {
+            self.report_other_gravity(&reading.world);
+            self.coupling_files.extend(reading.world.couplings.iter().map(|_| other.file.value.clone()));
+            Joining { file: &other.file, prefix: &other.prefix, warnings: &mut self.reading.warnings }
+                .join(&mut self.reading.world, reading.world);
+        }
+        let at = match &result {
+            Err(EditError::UnknownLink { .. }) => Entry::of(&other.at, "append"),
+            _ => Entry::of(&other.file, "append"),
+        };
+        self.take(&at, result, log);
+    }
+
+    /// Lists the gravity of an appended robot's file where it is not that of the robot.
+    fn report_other_gravity(&mut self, other: &World) {
+        let own = self.request.options.gravity_in(&self.reading.world);
+        if other.gravity.is_some_and(|gravity| gravity != own) {
+            let why = "gravity is that of the robot that carries this one".to_owned();
+            self.reading.unused.push(Unused { line: None, subject: Subject::Document, tag: "option gravity".to_owned(), why });
+        }
+    }
+}
+
+/// Content of an appended robot that is not used, under its new names.
+fn renamed(unused: Unused, prefix: &str) -> Unused {
+    let subject = match unused.subject {
+        Subject::Document => Subject::Document,
+        Subject::Link(name) => Subject::Link(format!("{prefix}{name}")),
+        Subject::Joint(name) => Subject::Joint(format!("{prefix}{name}")),
+    };
+    Unused { subject, ..unused }
+}
+
+/// Adds the world of an appended robot to that of the robot that carries it.
+struct Joining<'a> {
+    /// The file of the appended robot.
+    file: &'a str,
+    prefix: &'a str,
+    warnings: &'a mut Vec<Diagnostic>,
+}
+
+impl Joining<'_> {
+    fn join(&mut self, world: &mut World, other: World) {
+        let counts = [world.actuators.len(), other.actuators.len()];
+        self.keyframes(world, other.keyframes, counts);
+        if let Some(home) = other.home {
+            let own = world.home.get_or_insert_with(|| Keyframe { name: home.name.clone(), ..Keyframe::default() });
+            own.q.extend(self.all_named(home.q));
+            own.v.extend(self.all_named(home.v));
+        }
+        let mut taken: HashSet<String> = world.actuators.iter().chain(&world.passive).map(|actuator| actuator.name.clone()).collect();
+        let actuators: Vec<Actuator> = other.actuators.into_iter().map(|actuator| self.actuator(actuator, &mut taken)).collect();
+        let passive: Vec<Actuator> = other.passive.into_iter().map(|actuator| self.actuator(actuator, &mut taken)).collect();
+        world.actuators.extend(actuators);
+        world.passive.extend(passive);
+        world.joint_forces.extend(self.all_named(other.joint_forces));
+        world.couplings.extend(other.couplings.into_iter().map(|(coupling, at)| (self.coupling(coupling), at)));
+        world.contact_masks.extend(self.all_named(other.contact_masks));
+        for plane in &other.planes {
+            let place = Place { at: plane.place, subject: &Subject::Document, field: "plane" };
+            let found = format!("the plane {} in a robot that is appended", quote(&plane.name));
+            self.warn(&place, Code::NoContact, found, "a plane of the robot that carries it: this one makes no contact");
+        }
+        let named = |own: Loop| Loop {
+            name: if own.name.is_empty() { own.name } else { self.named(&own.name) },
+            between: own.between.iter().map(|name| self.named(name)).collect(),
+            place: At::Nowhere,
+            ..own
+        };
+        world.loops.extend(other.loops.into_iter().map(named));
+    }
+
+    fn named(&self, name: &str) -> String {
+        format!("{}{name}", self.prefix)
+    }
+
+    fn all_named<T>(&self, all: impl IntoIterator<Item = (String, T)>) -> Vec<(String, T)> {
+        all.into_iter().map(|(name, value)| (self.named(&name), value)).collect()
+    }
+
+    fn warn(&mut self, place: &Place<'_>, code: Code, found: String, expected: &str) {
+        self.warnings.push(Diagnostic::error(self.file, place, code, found, expected).into_warning());
+    }
+
+    /// Its lines are of another file than those of the robot that carries it.
+    fn actuator(&mut self, actuator: Actuator, taken: &mut HashSet<String>) -> Actuator {
+        let name = self.named(&actuator.name);
+        let mut free = name.clone();
+        let mut number = 2_usize;
+        while taken.contains(&free) {
+            free = format!("{name}_{number}");
+            number += 1;
+        }
+        if free != name {
+            let place = Place { at: actuator.place, subject: &Subject::Document, field: "actuator" };
+            let found = format!("a second actuator {}", quote(&name));
+            self.warn(&place, Code::DuplicateName, found, &format!("a name of its own, as a prefix gives it: it is {} here", quote(&free)));
+        }
+        taken.insert(free.clone());
+        Actuator { name: free, drives: self.all_named(actuator.drives), place: At::Nowhere, ..actuator }
+    }
+
+    fn coupling(&self, coupling: Coupling) -> Coupling {
+        Coupling { joint: self.named(&coupling.joint), leaders: self.all_named(coupling.leaders), offset: coupling.offset }
+    }
+
+    /// States with controls for the actuators of both: `[own, appended]`. Controls that a state does
+    /// not have are 0, and joints that it does not have are where the file begins.
+    fn keyframes(&self, world: &mut World, other: Vec<Keyframe>, [own, appended]: [usize; 2]) {
+        let full = |control: Vec<f64>, count: usize| if control.len() == count { control } else { vec![0.0; count] };
+        for keyframe in &mut world.keyframes {
+            keyframe.control = full(std::mem::take(&mut keyframe.control), own);
+            keyframe.control.resize(own + appended, 0.0);
+        }
+        for keyframe in other {
+            let (q, v, control) = (self.all_named(keyframe.q), self.all_named(keyframe.v), full(keyframe.control, appended));
+            match world.keyframes.iter_mut().find(|known| known.name == keyframe.name) {
+                Some(known) => {
+                    known.q.extend(q);
+                    known.v.extend(v);
+                    known.control.truncate(own);
+                    known.control.extend(control);
+                }
+                None => {
+                    let control = [vec![0.0; own], control].concat();
+                    world.keyframes.push(Keyframe { name: self.named(&keyframe.name), q, v, control, place: At::Nowhere });
+                }
+            }
+        }
+    }
+}
