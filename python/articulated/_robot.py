@@ -365,6 +365,8 @@ class Robot(_native.Robot):
     def random_configuration(self, rng=None, size=None, *, uniform=None, threads=None):
         """Configurations at random within limits; ±π rad and ±1 m where there are none, rotations uniform.
 
+        Rotations of a ball joint with a range are uniform among those within it.
+
         Args:
             rng: A numpy.random.Generator, or a seed for one, or None for any.
             size: None for one configuration, or their number N.

@@ -54,12 +54,16 @@ impl std::error::Error for LoadError {}
 /// # Ok(()) }
 /// ```
 pub fn load(path: impl AsRef<Path>, base: Base) -> Result<Model<f64>, LoadError> {
-    Model::new(&describe(path)?, base).map_err(LoadError::Model)
+    model(&describe(path)?, base)
 }
 
 /// As [`load`], of a file in memory; `file` is its name in messages.
 pub fn load_bytes(file: &str, bytes: &[u8], base: Base) -> Result<Model<f64>, LoadError> {
-    Model::new(&describe_bytes(file, bytes)?, base).map_err(LoadError::Model)
+    model(&describe_bytes(file, bytes)?, base)
+}
+
+fn model(description: &Description, base: Base) -> Result<Model<f64>, LoadError> {
+    ModelError::of_base(description, base).and_then(|()| Model::new(description, base)).map_err(LoadError::Model)
 }
 
 /// What the robot's file at `path` says, to be edited and made a model of:
@@ -100,6 +104,14 @@ pub fn describe_bytes(file: &str, bytes: &[u8]) -> Result<Description, LoadError
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_floating_base_beside_a_free_joint_is_refused() {
+        let buoy = b"<mujoco><worldbody><body name='buoy'><freejoint name='sea'/><geom size='1'/></body></worldbody></mujoco>";
+        assert_eq!(load_bytes("buoy.xml", buoy, Base::Fixed).unwrap().nv(), 6);
+        let told = load_bytes("buoy.xml", buoy, Base::Floating).unwrap_err().to_string();
+        assert!(told.starts_with("link \"buoy\" has the free joint \"sea\" already: leave out --floating"), "{told}");
+    }
 
     #[test]
     fn a_file_that_is_not_there_is_named() {

@@ -7,7 +7,7 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use articulated_core::description::{Base, Description, EditError, Editor, Joint, JointKind, Link};
+use articulated_core::description::{Description, EditError, Editor};
 use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Span, Spanned, Subject, Unused};
 use articulated_core::effect::{Applied, EffectError, Fault};
 use articulated_core::model::{Model, ModelError};
@@ -15,12 +15,9 @@ use articulated_core::suggest::Suggester;
 use articulated_formats::{Options, Reading, SNAP_EXPECTED, can_snap, read_with};
 
 use super::options::{RobotOptions, RobotRequest};
-use crate::effects::{Edited, Resolved, still};
+use crate::effects::{Edited, Resolved};
 use crate::series::open_table;
 use crate::world::RobotInWorld;
-
-/// The link that does not move in files of worlds.
-const WORLD: &str = "world";
 
 /// A robot as requested.
 #[derive(Clone, Debug)]
@@ -346,27 +343,10 @@ impl Editing<'_> {
         }
     }
 
-    /// Refuses a floating base for a robot whose root floats by a free joint of its own. The root of
-    /// an MJCF or SDF file is its world, which moves in no case.
+    /// Refuses a floating base for a robot that floats by a free joint of its own.
     fn refuse_second_base(&self, log: &mut Diagnostics) {
-        if self.request.options.base != Base::Floating {
-            return;
-        }
-        let Description { links, joints, .. } = &self.reading.description;
-        let held = still(&self.reading.description, Base::Fixed);
-        let is_held = |link: usize| held.get(link).copied().unwrap_or_default();
-        let root = self.reading.description.root();
-        let is_world = root.is_some_and(|root| links[root].name == WORLD);
-        let has_mass = |(link, held): (&Link, &bool)| *held && link.inertial.is_some_and(|inertial| inertial.mass > 0.0);
-        // A root with mass may fly beside another free body.
-        if !is_world && links.iter().zip(&held).any(has_mass) {
-            return;
-        }
-        let free = |joint: &&Joint| joint.kind == JointKind::Floating && joint.locked.is_none() && is_held(joint.parent);
-        let names = joints.iter().filter(free).filter_map(|joint| Some((&links.get(joint.child)?.name, &joint.name)));
-        for (link, joint) in names {
-            let sentence = format!("{link:?} has the free joint {joint:?} already: leave out --floating (base = \"floating\")");
-            self.refuse(&Entry { span: None, key: (String::new(), "base") }, Code::Edit, sentence, log);
+        if let Err(error) = ModelError::of_base(&self.reading.description, self.request.options.base) {
+            self.refuse(&Entry { span: None, key: (String::new(), "base") }, Code::Edit, error.to_string(), log);
         }
     }
 
@@ -556,7 +536,8 @@ mod tests {
     fn a_floating_base_beside_a_free_joint_of_the_root_is_refused() {
         for (root, content) in [("world", ""), ("base", ""), ("world", LINK)] {
             let told = read(&free(root, content)).unwrap_err();
-            let sentence = "base: \"trunk\" has the free joint \"f\" already: leave out --floating (base = \"floating\")";
+            let sentence =
+                "base: link \"trunk\" has the free joint \"f\" already: leave out --floating (base = \"floating\", Base::Floating)";
             assert_eq!(told.to_string(), format!("quad.urdf: {sentence}"), "{root}");
         }
         // A root with mass of its own, a joint that is locked, or no floating base

@@ -12,7 +12,8 @@ use super::Workspace;
 use crate::Scalar;
 use crate::description::{JointKind, Limit, Quantity};
 use crate::model::{JointInfo, Model};
-use crate::spatial::screw::Quaternion;
+use crate::scalar::two_to;
+use crate::spatial::screw::{HalfAngle, Quaternion};
 use crate::spatial::{Twist, Vector3, rotate, rotate_back};
 
 /// q ⊕ step: where a motion with constant rates gets to in a unit of time; rates are body twists
@@ -69,7 +70,8 @@ pub fn difference<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, q: &[S], ta
 ///
 /// uniform: `[nq]`, of the last of each quaternion's four no use is made; out: `[nq]`
 /// rad|m|quaternion. Coordinates in their boxes ([`coordinate_box`]). Rotations uniform: Shoemake,
-/// *Uniform random rotations*, Graphics Gems III, 1992.
+/// *Uniform random rotations*, Graphics Gems III, 1992. Those of a ball joint with a range are
+/// uniform among the rotations by at most that angle ([`cone`]).
 ///
 /// # Panics
 /// As [`integrate`].
@@ -81,7 +83,10 @@ pub fn random_configuration<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, u
                 out.iter_mut().zip(&uniform[..3]).for_each(|(out, u)| *out = between(-1.0, 1.0, *u));
                 put_quaternion(&mut out[3..], &rotation_from(&uniform[3..]));
             }
-            Space::Rotations => put_quaternion(out, &rotation_from(uniform)),
+            Space::Rotations => {
+                let rotation = cone(joint).map_or_else(|| rotation_from(uniform), |largest| rotation_within(largest, uniform));
+                put_quaternion(out, &rotation);
+            }
             Space::Numbers => {
                 for (k, (out, u)) in out.iter_mut().zip(uniform).enumerate() {
                     let (lower, upper) = coordinate_box(joint, k);
@@ -183,6 +188,13 @@ pub fn coordinate_box(joint: &JointInfo, k: usize) -> (f64, f64) {
     bounds(joint.limit, if joint.kind.coordinates().get(k) == Some(&Quantity::Length) { 1.0 } else { PI })
 }
 
+/// The largest angle of a ball joint's rotation from the identity, rad, above 0 and below π. `None`:
+/// the joint is none, or no bound limits it.
+pub fn cone(joint: &JointInfo) -> Option<f64> {
+    let upper = joint.limit.filter(|_| joint.kind == JointKind::Spherical)?.upper;
+    Some(upper).filter(|upper| *upper > 0.0 && *upper < PI)
+}
+
 fn bounds(limit: Option<Limit>, most: f64) -> (f64, f64) {
     let (lower, upper) = limit.map_or((f64::NEG_INFINITY, f64::INFINITY), |l| (l.lower, l.upper));
     match (lower.is_finite(), upper.is_finite()) {
@@ -210,4 +222,49 @@ fn rotation_from<S: Scalar>(u: &[S]) -> Quaternion<S> {
     };
     let ((x, y), (z, w)) = (circle(S::one() - u[0], u[1]), circle(u[0], u[2]));
     Quaternion::from_array([x, y, z, w])
+}
+
+/// A rotation by at most `largest` rad. If `u` is uniform, it is uniform among those: the axis is
+/// uniform on the sphere, of which heights are uniform (Archimedes), and the angle θ has a density
+/// proportional to 1 − cos θ.
+fn rotation_within<S: Scalar>(largest: f64, u: &[S]) -> Quaternion<S> {
+    let two = S::from_f64(2.0);
+    let (sin, cos) = (angle_within(largest, u[0]) * S::from_f64(0.5)).sin_cos();
+    let (y, x) = (u[2] * S::from_f64(TAU)).sin_cos();
+    let radius = sin * two * (u[1] * (S::one() - u[1])).sqrt();
+    Quaternion::from_array([radius * x, radius * y, sin * (S::one() - two * u[1]), cos])
+}
+
+/// The angle θ in [0, θ_max] with the part u of all rotations within θ_max below it:
+///
+/// ```text
+/// θ − sin θ = u (θ_max − sin θ_max)
+/// s³ γ(θ) = u γ(θ_max),   s = θ/θ_max,   γ = (θ − sin θ)/θ³,   d(s³ γ)/ds = s² β,   β = (1 − cos θ)/θ²
+/// ```
+///
+/// by Newton's iteration for s, from a cube root of u. Each step doubles the digits, of which the
+/// start has three bits.
+fn angle_within<S: Scalar>(largest: f64, u: S) -> S {
+    let (one, most) = (S::one(), S::from_f64(largest));
+    let square = most * most;
+    // The root has no derivative at 0.
+    let least = S::from_f64(two_to(-120));
+    let u = S::select((u - least).positive(), u, least);
+    // 1/4 + 1/16 + 1/64 + 1/256 is nearly 1/3.
+    let (mut power, mut root) = (u, one);
+    for _ in 0..4 {
+        power = power.sqrt().sqrt();
+        root *= power;
+    }
+    let part = u * HalfAngle::new(square).excess();
+    // s is ∛(6 γ_max) ∛u for small u, and 1 for u = 1.
+    let small = S::from_f64(2.0 / 3.0) + S::from_f64(2.0) * HalfAngle::new(square).excess();
+    let mut s = root * (small + (one - small) * (root * root));
+    let mut bits = 3;
+    while bits < S::BITS {
+        let angle = HalfAngle::new(square * (s * s));
+        s -= (s * angle.excess() - part / (s * s)) / angle.versine();
+        bits *= 2;
+    }
+    most * S::select((s - one).positive(), one, s)
 }

@@ -349,6 +349,34 @@ impl Description {
         is_child.iter().position(|is| !is)
     }
 
+    /// The first free joint by which the robot floats already, so that a floating base would let it
+    /// float twice: a [floating](JointKind::Floating) joint that is not locked, on the root or on
+    /// links fixed to it. The root is without mass, or it is called `world`, as in files whose root
+    /// is the world. `None`: there is none, or the root is a body that may fly beside others.
+    pub fn free_joint_of_root(&self) -> Option<&Joint> {
+        let root = self.root()?;
+        let mut below: Vec<Vec<&Joint>> = vec![Vec::new(); self.links.len()];
+        for joint in &self.joints {
+            below.get_mut(joint.parent)?.push(joint);
+        }
+        let (mut held, mut seen, mut free) = (vec![root], vec![false; self.links.len()], None);
+        let mut has_mass = false;
+        while let Some(link) = held.pop() {
+            if core::mem::replace(seen.get_mut(link)?, true) {
+                continue;
+            }
+            has_mass |= self.links[link].inertial.is_some_and(|inertial| inertial.mass != 0.0);
+            for joint in &below[link] {
+                if joint.kind.is_fixed() || joint.locked.is_some() {
+                    held.push(joint.child);
+                } else if joint.kind == JointKind::Floating {
+                    free = free.or(Some(*joint));
+                }
+            }
+        }
+        free.filter(|_| !has_mass || self.links[root].name == "world")
+    }
+
     /// Index of the link called `name`.
     pub fn link(&self, name: &str) -> Option<usize> {
         self.links.iter().position(|l| l.name == name)

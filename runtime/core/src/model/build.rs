@@ -43,6 +43,14 @@ pub enum ModelError {
         /// Name of the joint.
         joint: String,
     },
+    /// A floating base is requested for a robot whose root has a free joint
+    /// ([`Description::free_joint_of_root`]). [`Model::new`] accepts such a robot; loaders refuse it.
+    SecondBase {
+        /// Name of the link that floats.
+        link: String,
+        /// Name of its joint.
+        joint: String,
+    },
     /// Masses and lengths, or multipliers of joints that follow each other, whose products are
     /// beyond the range of doubles.
     TooLarge {
@@ -79,6 +87,9 @@ impl fmt::Display for ModelError {
                     "joint {joint:?}: mimic: expected a leader with one degree of freedom that follows neither this joint nor several"
                 )
             }
+            Self::SecondBase { link, joint } => {
+                write!(f, "link {link:?} has the free joint {joint:?} already: leave out --floating (base = \"floating\", Base::Floating)")
+            }
             Self::TooLarge { names } => {
                 write!(
                     f,
@@ -92,6 +103,19 @@ impl fmt::Display for ModelError {
 }
 
 impl core::error::Error for ModelError {}
+
+impl ModelError {
+    /// Refuses a floating base for a robot that floats already.
+    pub fn of_base(description: &Description, base: Base) -> Result<(), Self> {
+        match description.free_joint_of_root().filter(|_| base == Base::Floating) {
+            Some(joint) => {
+                let link = description.links.get(joint.child).map(|link| link.name.clone()).unwrap_or_default();
+                Err(Self::SecondBase { link, joint: joint.name.clone() })
+            }
+            None => Ok(()),
+        }
+    }
+}
 
 impl Model<f64> {
     /// The model of a described robot, with standard gravity.

@@ -283,7 +283,10 @@ fn random_configurations_keep_to_the_limits_and_are_rotations() {
                 let own = &q[joint.q.0..joint.q.0 + joint.q.1];
                 match (joint.kind, joint.limit) {
                     (JointKind::Floating, _) => assert!(own[..3].iter().all(|x| x.abs() <= 1.0)),
-                    (JointKind::Spherical, _) => {}
+                    (JointKind::Spherical, limit) => {
+                        let largest = limit.map(|limit| limit.upper).filter(|upper| *upper > 0.0 && *upper < PI);
+                        assert!(2.0 * own[3].abs().min(1.0).acos() <= largest.unwrap_or(PI) * (1.0 + 1e-7), "{joint:?} {own:?}");
+                    }
                     (_, Some(limit)) => assert!((limit.lower..=limit.upper).contains(&own[0]), "{joint:?} {own:?}"),
                     (JointKind::Prismatic, None) => assert!(own[0].abs() <= 1.0),
                     (JointKind::Planar, None) => assert!(own[0].abs() <= 1.0 && own[1].abs() <= 1.0 && own[2].abs() <= PI),
@@ -319,6 +322,68 @@ fn random_rotations_are_uniform() {
     assert!((small - (FRAC_PI_2 - 1.0) / PI).abs() < 0.011, "{small}");
     assert!(sum.iter().all(|x| x.abs() < 0.0142), "{sum:?}");
     assert!(squares.iter().all(|x| (x - 0.25).abs() < 0.0063), "{squares:?}");
+}
+
+/// A ball joint whose range is `upper` rad.
+fn ball(upper: f64) -> Case {
+    let text = r#"<robot name="r"><link name="base"/>
+        <link name="arm"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+        <joint name="ball" type="spherical"><parent link="base"/><child link="arm"/></joint></robot>"#;
+    let mut description = articulated_test_support::case::read(text);
+    description.joints[0].limit = Some(Limit { lower: 0.0, upper, ..Limit::NONE });
+    Case::new("ball", description, articulated_core::description::Base::Fixed)
+}
+
+/// Rotations within a cone of θ are (θ − sin θ)/π of all, and alike about all axes.
+#[test]
+fn random_rotations_of_a_ball_with_a_range_are_uniform_within_it() {
+    let random = &mut Random::new(11);
+    let volume = |angle: f64| angle - angle.sin();
+    for upper in [1e-3, 0.5, FRAC_PI_2, 3.0] {
+        let case = ball(upper);
+        let (count, mut below, mut sum, mut squares) = (20_000, [0.0; 3], [0.0; 3], [0.0; 3]);
+        for _ in 0..count {
+            let q: [f64; 4] = read(&case.call("random_configuration", &[&random.vector(4, 0.0, 1.0)]), 0).to_array();
+            let sine = (q[0] * q[0] + q[1] * q[1] + q[2] * q[2]).sqrt();
+            let angle = 2.0 * sine.atan2(q[3]);
+            assert!(angle <= upper * (1.0 + 4.0 * U), "{upper} {angle}");
+            for (k, part) in [0.3, 0.6, 0.9].into_iter().enumerate() {
+                below[k] += f64::from(u8::from(angle < part * upper)) / f64::from(count);
+            }
+            for k in 0..3 {
+                sum[k] += q[k] / sine / f64::from(count);
+                squares[k] += (q[k] / sine) * (q[k] / sine) / f64::from(count);
+            }
+        }
+        // Four standard deviations.
+        for (found, part) in below.into_iter().zip([0.3, 0.6, 0.9]) {
+            let expected = volume(part * upper) / volume(upper);
+            assert!(
+                (found - expected).abs() < 4.0 * (expected * (1.0 - expected) / f64::from(count)).sqrt(),
+                "{upper}: {found} {expected}"
+            );
+        }
+        assert!(sum.iter().all(|x| x.abs() < 0.0164), "{upper}: {sum:?}");
+        assert!(squares.iter().all(|x| (x - 1.0 / 3.0).abs() < 0.0085), "{upper}: {squares:?}");
+    }
+}
+
+/// In doubles, and in many digits; a bound from π on, or of 0, is none.
+#[test]
+fn the_textbook_draws_within_the_same_cone() {
+    for upper in [1e-4, 0.4, 1.0, 2.0, 3.1, PI, 7.0, f64::INFINITY, 0.0] {
+        let case = ball(upper);
+        for u in [0.0, 1e-9, 0.01, 0.3, 0.77, 1.0 - U] {
+            let uniform = vec![u, 0.6, 0.35, 0.9];
+            let expected = case.textbook::<Big>().random_configuration(&cast::<Big>(&uniform));
+            let many = case.call::<Big>("random_configuration", &[&cast::<Big>(&uniform)]);
+            let found = case.call::<f64>("random_configuration", &[&uniform]);
+            for ((found, many), expected) in found.iter().zip(&many).zip(&expected) {
+                assert!((found - expected.to_f64()).abs() < 4e-16 + 1e-11 * f64::from(u8::from(u == 0.0)), "{upper} {u}: {found}");
+                assert!(u == 0.0 || (*many - *expected).to_f64().abs() < 1e-60, "{upper} {u}");
+            }
+        }
+    }
 }
 
 #[test]

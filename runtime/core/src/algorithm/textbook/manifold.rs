@@ -60,7 +60,7 @@ impl<S: Scalar> Textbook<S> {
 
     /// From numbers uniform in [0, 1), `[nq]`: within limits, a turn or 2 m from the other where
     /// one is open, ±π and ±1 m where both are or there are none; of a rotation's four the first
-    /// three count.
+    /// three count. A ball joint with a range turns by at most that angle.
     pub fn random_configuration(&self, uniform: &[S]) -> Vec<S> {
         let pi = S::zero().atan2(-S::one());
         let between = |u: S, lower: S, upper: S| lower + (upper - lower) * u;
@@ -78,10 +78,13 @@ impl<S: Scalar> Textbook<S> {
         let one = |joint: &JointInfo| {
             let u = part(uniform, joint.q);
             match (joint.kind, &joint.limit) {
+                (JointKind::Spherical, Some(limit)) if limit.upper > 0.0 && limit.upper < core::f64::consts::PI => {
+                    rotation_within(S::from_f64(limit.upper), u).to_vec()
+                }
+                (JointKind::Spherical, _) => rotation(u).to_vec(),
                 (kind, Some(limit)) => u.iter().map(|&u| within(u, limit, !kind.is_linear())).collect(),
                 (JointKind::Prismatic, None) => alloc::vec![length(u[0])],
                 (JointKind::Planar, None) => alloc::vec![length(u[0]), length(u[1]), angle(u[2])],
-                (JointKind::Spherical, None) => rotation(u).to_vec(),
                 (JointKind::Floating, None) => {
                     let p: Vec<S> = u[..3].iter().map(|&u| length(u)).collect();
                     [p.as_slice(), &rotation(&u[3..])].concat()
@@ -163,6 +166,25 @@ fn turn_between<S: Scalar>(x: [S; 4], y: [S; 4]) -> Vector3<S> {
     // θ/2 = atan2(|u|, w); near no turn at all u = ω/2.
     let factor = S::select(sine.positive(), two * sine.atan2(r[3]) / sine, two / r[3]);
     u * factor
+}
+
+/// A rotation by at most `largest`, rad, uniform among those: the part u of their volume θ − sin θ is
+/// below its angle, which bisection finds.
+fn rotation_within<S: Scalar>(largest: S, u: &[S]) -> [S; 4] {
+    let (half, turn) = (S::from_f64(0.5), S::zero().atan2(-S::one()) * S::from_f64(2.0));
+    let volume = |angle: S| angle - angle.sin_cos().0;
+    let wanted = u[0] * volume(largest);
+    let (mut lower, mut upper) = (S::zero(), largest);
+    for _ in 0..S::BITS + 10 {
+        let angle = half * (lower + upper);
+        let is_beyond = (volume(angle) - wanted).positive();
+        (lower, upper) = (S::select(is_beyond, lower, angle), S::select(is_beyond, angle, upper));
+    }
+    let (s, c) = (half * lower).sin_cos();
+    let z = S::one() - u[1] - u[1];
+    let (y, x) = (turn * u[2]).sin_cos();
+    let radius = (S::one() - z * z).sqrt();
+    [s * radius * x, s * radius * y, s * z, c]
 }
 
 /// A uniform rotation of three uniform numbers; Shoemake, *Graphics Gems III*, 1992, "Uniform
