@@ -374,7 +374,7 @@ impl Editing<'_> {
 
 #[cfg(test)]
 mod tests {
-    use articulated_core::description::{Origin, Payload, Shaft};
+    use articulated_core::description::{Base, Origin, Payload, Shaft};
     use articulated_core::diagnostic::Subject;
     use articulated_core::effect::EffectId;
     use articulated_formats::MOST_SNAPPED;

@@ -71,7 +71,7 @@ pub fn difference<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, q: &[S], ta
 /// uniform: `[nq]`, of the last of each quaternion's four no use is made; out: `[nq]`
 /// rad|m|quaternion. Coordinates in their boxes ([`coordinate_box`]). Rotations uniform: Shoemake,
 /// *Uniform random rotations*, Graphics Gems III, 1992. Those of a ball joint with a range are
-/// uniform among the rotations by at most that angle ([`cone`]).
+/// uniform among the rotations by at most that angle ([`JointInfo::cone`]).
 ///
 /// # Panics
 /// As [`integrate`].
@@ -84,7 +84,7 @@ pub fn random_configuration<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, u
                 put_quaternion(&mut out[3..], &rotation_from(&uniform[3..]));
             }
             Space::Rotations => {
-                let rotation = cone(joint).map_or_else(|| rotation_from(uniform), |largest| rotation_within(largest, uniform));
+                let rotation = joint.cone.map_or_else(|| rotation_from(uniform), |largest| rotation_within(largest, uniform));
                 put_quaternion(out, &rotation);
             }
             Space::Numbers => {
@@ -186,13 +186,6 @@ pub fn coordinate_box(joint: &JointInfo, k: usize) -> (f64, f64) {
         return (-1.0, 1.0);
     }
     bounds(joint.limit, if joint.kind.coordinates().get(k) == Some(&Quantity::Length) { 1.0 } else { PI })
-}
-
-/// The largest angle of a ball joint's rotation from the identity, rad, above 0 and below π. `None`:
-/// the joint is none, or no bound limits it.
-pub fn cone(joint: &JointInfo) -> Option<f64> {
-    let upper = joint.limit.filter(|_| joint.kind == JointKind::Spherical)?.upper;
-    Some(upper).filter(|upper| *upper > 0.0 && *upper < PI)
 }
 
 fn bounds(limit: Option<Limit>, most: f64) -> (f64, f64) {

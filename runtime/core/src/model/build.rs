@@ -251,7 +251,11 @@ impl<'a> Builder<'a> {
         }
         let first = match joint.mimic {
             Some(_) => AT_ZERO,
-            None => self.push_joint(&joint.name, joint.kind, limit_of_coordinates(joint)),
+            None => {
+                let coordinates = self.push_joint(&joint.name, joint.kind, limit_of_coordinates(joint));
+                self.model.joints.last_mut().into_iter().for_each(|info| info.cone = cone(joint));
+                coordinates
+            }
         };
         for stage in &stages {
             // Turn the frames so that the axis is z; the link's frame stays where it was.
@@ -318,7 +322,7 @@ impl<'a> Builder<'a> {
         let coordinates = Coordinates { q: model.nq, v: model.nv, ..AT_ZERO };
         let limit = limit.filter(|_| kind.has_bounds());
         let (nq, nv) = kind.sizes();
-        model.joints.push(JointInfo { name: name.to_string(), kind, q: (model.nq, nq), v: (model.nv, nv), limit });
+        model.joints.push(JointInfo { name: name.to_string(), kind, q: (model.nq, nq), v: (model.nv, nv), limit, cone: None });
         model.nq += nq;
         model.nv += nv;
         coordinates
@@ -451,8 +455,14 @@ fn per_radian(joint: &description::Joint) -> f64 {
     if joint.kind.has_pitch() { joint.pitch / core::f64::consts::TAU } else { 0.0 }
 }
 
-/// The limits of each coordinate: that of a ball joint is of the angle of its rotation, and is kept
-/// with the description alone.
+/// The largest angle of a ball joint. A bound of 0 is that of a `<limit>` that says nothing of it.
+fn cone(joint: &description::Joint) -> Option<f64> {
+    let upper = joint.limit.filter(|_| joint.kind == JointKind::Spherical)?.upper;
+    Some(upper).filter(|upper| *upper > 0.0 && *upper < core::f64::consts::PI)
+}
+
+/// The limits of each coordinate: that of a ball joint is of the angle of its rotation, its
+/// [`JointInfo::cone`].
 fn limit_of_coordinates(joint: &description::Joint) -> Option<Limit> {
     let open = |limit: Limit| Limit { lower: f64::NEG_INFINITY, upper: f64::INFINITY, ..limit };
     match joint.kind {

@@ -106,6 +106,9 @@ pub struct JointInfo {
     pub v: (usize, usize),
     /// Limits, where the file gives them; none for a continuous joint.
     pub limit: Option<Limit>,
+    /// The largest angle of a ball joint's rotation from the identity, rad, above 0 and below π.
+    /// `None`: it has no such bound, or the joint is none.
+    pub cone: Option<f64>,
 }
 
 /// A joint of any robot, generated or not.

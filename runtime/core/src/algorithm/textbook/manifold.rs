@@ -78,10 +78,7 @@ impl<S: Scalar> Textbook<S> {
         let one = |joint: &JointInfo| {
             let u = part(uniform, joint.q);
             match (joint.kind, &joint.limit) {
-                (JointKind::Spherical, Some(limit)) if limit.upper > 0.0 && limit.upper < core::f64::consts::PI => {
-                    rotation_within(S::from_f64(limit.upper), u).to_vec()
-                }
-                (JointKind::Spherical, _) => rotation(u).to_vec(),
+                (JointKind::Spherical, _) => joint.cone.map_or_else(|| rotation(u), |cone| rotation_within(S::from_f64(cone), u)).to_vec(),
                 (kind, Some(limit)) => u.iter().map(|&u| within(u, limit, !kind.is_linear())).collect(),
                 (JointKind::Prismatic, None) => alloc::vec![length(u[0])],
                 (JointKind::Planar, None) => alloc::vec![length(u[0]), length(u[1]), angle(u[2])],
