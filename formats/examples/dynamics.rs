@@ -67,16 +67,19 @@ fn run(file: &str, gravity: &[f64], leave_out: BTreeSet<LeaveOut>) -> Result<(),
     Ok(())
 }
 
-/// τ = Y π to twelve digits of the terms.
+/// τ = Y π to twelve digits of the terms, and to the rounding of the accelerations in Y.
 fn check_regressor(model: &Model<f64>, workspace: &mut Workspace<f64>, [q, v, a]: [&[f64]; 3]) -> Result<(), String> {
     let parameters = model.inertial_parameters().concat();
     let (mut torques, mut rows) = (vec![0.0; model.nv()], vec![0.0; model.nv() * parameters.len()]);
     inverse_dynamics(model, workspace, q, v, a, &mut torques);
     torque_regressor(model, workspace, q, v, a, &mut rows);
+    let greatest = |all: &[f64]| all.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let accelerations = greatest(model.gravity().as_slice()) + greatest(v).powi(2) + greatest(a);
+    let rounding = 1e-15 * accelerations * parameters.iter().map(|p| p.abs()).sum::<f64>();
     for (k, expected) in torques.iter().enumerate() {
         let terms = rows[k * parameters.len()..].iter().zip(&parameters).map(|(y, p)| y * p);
         let (found, size) = terms.fold((0.0, 0.0), |(sum, size): (f64, f64), term| (sum + term, size + term.abs()));
-        if (found - expected).abs() > 1e-12 * size.max(f64::MIN_POSITIVE) {
+        if (found - expected).abs() > 1e-12 * size + rounding {
             let joint = model.joint_of(k);
             return Err(format!("torque_regressor: joint {joint:?}: found {found}, expected {expected} as inverse_dynamics has it"));
         }

@@ -193,6 +193,7 @@ fn dynamics_that_are_not_read_are_warnings() {
         body("gravcomp=\"1\""),
         joint("type=\"free\" springdamper=\"1 1\""),
         joint("stiffness=\"1 2\""),
+        joint("stiffness=\"1\" springyield=\"0.1\""),
         joint("type=\"free\" armature=\"1\""),
         joint("type=\"free\" stiffness=\"1\""),
     ];

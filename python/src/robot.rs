@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 use articulated::algorithm::{Function, Needs, functions};
 use articulated::description::{Coupling, Limit, Origin, Payload};
-use articulated::formats::{Environment, Included};
+use articulated::formats::{Environment, Included, LeaveOut};
 use articulated::spatial::Reference;
 use articulated::{Base, Model};
 use articulated_codegen::{Appended, COptions, Real, Request, Target, generate};
@@ -297,7 +297,7 @@ impl Robot {
         let (allowed, leave_out, snap_angles) = reading;
         options.snap_angles = snap_angles;
         (options.allow_unphysical_inertia, options.first_of_duplicates, options.allow_unknown_version) = allowed;
-        let kinds = leave_out.iter().map(|kind| kind.parse().map_err(|error| PyValueError::new_err(format!("leave_out: {error}"))));
+        let kinds = leave_out.iter().map(|kind| kind.parse::<LeaveOut>().map_err(|error| PyValueError::new_err(format!("leave_out: {error}"))));
         options.leave_out = kinds.collect::<PyResult<_>>()?;
         options.file_coupling = coupling.0;
         let follower = |(joint, leaders, offset)| Coupling { joint, leaders, offset }.into();

@@ -9,10 +9,13 @@
     python3 tests/mjcf/oracle.py --write          also writes docs/mjcf-files.md
 
 For each file that MuJoCo compiles: masses, centres of mass and inertias of all bodies, armature, damping, friction, stiffness,
-rest and limits of all joints but free ones, and in random states the mass matrix, the bias force (inverse dynamics
+rest and limits of all joints but free ones (nothing where a flag turns it off), and in random states the mass matrix, the bias force (inverse dynamics
 without acceleration), positions and orientations of all bodies, and the centre of mass of the whole. Of the rest, see world.py:
 gravity, step, integrator, the state at the start, keyframes, planes, which actuators are read and their forces, those of springs
 and dampers, and equations of joints.
+
+Law: nothing is taken out of MuJoCo's model unless a warning of the reader names it. What is outside of every comparison is
+printed by name. A file with flexible bodies or plugins is read where an option leaves them out, and not compared.
 
 Packages are downloaded, not installed: their models are unpacked into target/mjcf. MuJoCo goes into a virtual environment
 there, with the versions of requirements.txt.
@@ -89,7 +92,7 @@ def main():
         counts = collections.Counter(verdict.split(":")[0] for _, verdict, *_ in rows[name])
         print(f"{name}: " + ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items())), flush=True)
         for file, verdict, numbers, _ in rows[name]:
-            if not verdict.startswith(("equal", "refused by MuJoCo")):
+            if not verdict.startswith(GOOD):
                 worst = ", ".join(f"{key} {value:.1e}" for key, value in numbers.items() if value > BOUND)
                 print(f"  {file}: {verdict} {worst}", flush=True)
     worst, counts = collections.Counter(), collections.Counter()
@@ -99,11 +102,22 @@ def main():
             for key, value in numbers.items():
                 worst[key] = max(worst[key], value)
     print("largest differences: " + ", ".join(f"{key} {value:.1e}" for key, value in sorted(worst.items())))
+    print("outside of every comparison: " + "; ".join(outside()))
     print("numbers of things: " + ", ".join(f"{key} {value}" for key, value in sorted(counts.items())))
     if arguments.write:
         write(rows, worst, counts)
-    good = all(verdict.startswith(("equal", "refused by MuJoCo")) for all_rows in rows.values() for _, verdict, *_ in all_rows)
+    good = all(verdict.startswith(GOOD) for all_rows in rows.values() for _, verdict, *_ in all_rows)
     sys.exit(not good)
+
+
+# Verdicts that are no mistake.
+GOOD = ("equal", "refused by MuJoCo", "read without")
+
+
+def outside():
+    import world
+
+    return world.OUTSIDE
 
 
 def parse():
@@ -215,17 +229,15 @@ def compare(path, generated=False):
         return "refused by MuJoCo: " + without_folders(str(error).splitlines()[0], path)[:120], {}, {}
     data = mujoco.MjData(model)
     armature = model.dof_armature.copy()
-    model.dof_armature[:] = 0
-    if model.ntendon:
-        model.tendon_armature[:] = 0
-    if model.nu and hasattr(model, "actuator_armature"):
-        model.actuator_armature[:] = 0
     if model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY:
         model.opt.gravity[:] = 0
     states = [state(model, np.random.default_rng(seed)) for seed in range(STATES)]
     sent = b"".join(np.concatenate(one[2]).astype("<f8").tobytes() for one in states) if model.nv else b""
     command = [str(HELPER), str(path), *(repr(float(g)) for g in model.opt.gravity)]
     answer = subprocess.run(command, input=sent, capture_output=True, timeout=120)
+    kinds = sorted(set(re.findall(r"`--leave-out (\w+)`", answer.stderr.decode()))) if answer.returncode else []
+    if kinds and subprocess.run([*command, *kinds], input=sent, capture_output=True, timeout=120).returncode == 0:
+        return f"read without {' and '.join(kinds)}, which an option leaves out", {}, {}
     if answer.returncode:
         first = answer.stderr.decode().splitlines()[0]
         return "refused: " + without_folders(first, path)[:300], {}, {}
@@ -251,7 +263,10 @@ def compare(path, generated=False):
         off[kind] = max(off[kind], float(value) if np.isfinite(value) else float("inf"))
 
     counts = collections.Counter()
-    world.compare(model, states, robot, differ, lambda kind, number: counts.update({kind: number}))
+    silent = world.compare(model, states, robot, differ, lambda kind, number: counts.update({kind: number}))
+    warned = world.Warned(robot)
+    world.reduce_armature(model, warned)
+    silent += warned.silent
     masses(model, robot, fused, differ, mujoco, np)
     joints(model, robot, armature, differ, np)
     mujoco.mj_setConst(model, data)
@@ -278,6 +293,8 @@ def compare(path, generated=False):
         centers = [pose[9:] + pose[:9].reshape(3, 3) @ np.array(link["center"]) for pose, link in zip(poses, robot["links"])]
         if weights.sum() > 0:
             differ("centre of mass", weights @ np.array(centers) / weights.sum(), data.subtree_com[0], length)
+    if silent:
+        return f"differs: in MuJoCo's model and without a warning: {', '.join(silent)[:300]}", dict(off), counts
     return "equal" if all(value <= BOUND for value in off.values()) else "differs:", dict(off), counts
 
 
@@ -369,22 +386,30 @@ def masses(model, robot, fused, differ, mujoco, np):
     model.body_sameframe[:] = 0
 
 
+# The flags of <option> that turn off what joints have.
+OFF_BY = {"friction": ("FRICTIONLOSS", "CONSTRAINT"), "limits": ("LIMIT", "CONSTRAINT"), "damping": ("DAMPER",), "stiffness": ("SPRING",)}
+
+
 def joints(model, robot, armature, differ, np):
-    """Compares what joints with one coordinate and ball joints have."""
+    """Compares what joints with one coordinate and ball joints have; what a flag turns off is not there."""
+    import world
+
+    of = {name: 0.0 if world.disabled(model, *flags) else 1.0 for name, flags in OFF_BY.items()}
+    limited = model.jnt_limited * of["limits"]
     for joint, found in zip(range(model.njnt), robot["joints"]):
         kind = int(model.jnt_type[joint])
         if kind not in (BALL, SLIDE, HINGE):
             continue
         dof, at = model.jnt_dofadr[joint], model.jnt_qposadr[joint]
         differ("armature", found["armature"] or 0, armature[dof])
-        differ("friction", found["friction"] or 0, model.dof_frictionloss[dof])
-        differ("damping", found["damping"] or 0, model.dof_damping[dof])
-        differ("stiffness", found["stiffness"] or 0, model.jnt_stiffness[joint])
-        if model.jnt_stiffness[joint] and kind != BALL:
+        differ("friction", found["friction"] or 0, model.dof_frictionloss[dof] * of["friction"])
+        differ("damping", found["damping"] or 0, model.dof_damping[dof] * of["damping"])
+        differ("stiffness", found["stiffness"] or 0, model.jnt_stiffness[joint] * of["stiffness"])
+        if model.jnt_stiffness[joint] * of["stiffness"] and kind != BALL:
             differ("rest", found["rest"] or 0, model.qpos_spring[at], 1.0)
-        if model.jnt_limited[joint] and kind == BALL:
-            differ("limits", found["upper"], model.jnt_range[joint, 1], 1.0)
-        elif model.jnt_limited[joint]:
+        if limited[joint] and kind == BALL:
+            differ("limits", found["upper"], max(model.jnt_range[joint]), 1.0)
+        elif limited[joint]:
             differ("limits", [found["lower"], found["upper"]], model.jnt_range[joint], 1.0)
         elif found["lower"] is not None or found["upper"] is not None:
             differ("limits", 1, 0, 1.0)

@@ -1,19 +1,61 @@
 """Compares what a file says beside its robot: gravity, step, states, actuators, springs of tendons, equations, planes.
 
 The laws are evaluated here from the numbers that the reader returns, not by the library.
+
+What the reader does not read is taken out of MuJoCo's model for the comparison of forces. Each thing needs a warning of the
+reader that names it; one without is a difference. OUTSIDE lists what no comparison is about.
 """
 
 import copy
+import re
 
 import mujoco
 import numpy as np
 
 BALL, SLIDE, HINGE = 1, 2, 3
 ACTING = {int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT), int(mujoco.mjtTrn.mjTRN_TENDON)}
+# docs/mjcf.md says so.
+OUTSIDE = [
+    "forces of contacts, and what adheres by them",
+    "forces of the solver: limits, dry friction and equations act by their numbers, which are compared",
+    "armature in the mass matrix: compared by itself",
+    "states of actuators and springs (act, plastic), and bodies that a program moves (mocap)",
+]
+# More warnings are counted, not listed.
+MOST_WARNINGS = 1000
+
+
+def disabled(model, *flags):
+    """Whether one of the flags of <option> is off."""
+    return any(model.opt.disableflags & int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{flag}")) for flag in flags)
+
+
+class Warned:
+    """The warnings of the reader, and what has none."""
+
+    def __init__(self, robot):
+        self.warnings, self.silent = robot["warnings"], []
+
+    def demand(self, thing, name, *phrases):
+        """Takes note of a thing of MuJoCo's model unless a warning has one of the phrases and the thing's name.
+
+        Copies and attached models have a prefix and a suffix, which the warning about their tag does not have.
+        """
+        name = name or ""
+        for text in self.warnings:
+            quoted = re.findall(r'"([^"]*)"', text)
+            if any(phrase in text for phrase in phrases) and (not name or not quoted or any(own and own in name for own in quoted)):
+                return
+        if len(self.warnings) < MOST_WARNINGS:
+            self.silent.append(f"{thing} {name}".strip())
 
 
 def compare(model, states, robot, differ, count):
-    """`states`: of MuJoCo. `differ(kind, found, expected, scale)` takes differences, `count(kind, number)` numbers of things."""
+    """What is in MuJoCo's model, is not read, and has no warning.
+
+    `states`: of MuJoCo. `differ(kind, found, expected, scale)` takes differences, `count(kind, number)` numbers of things.
+    """
+    warned = Warned(robot)
     world = robot["world"]
     joints = [Joint(model, index, name) for index, (name, *_) in enumerate(robot["order"])]
     by_name = {joint.name: joint for joint in joints}
@@ -22,18 +64,20 @@ def compare(model, states, robot, differ, count):
     planes(model, world, differ, count)
     read = actuators(model, world, differ, count)
     if model.nv == 0:
-        return
+        return warned.silent
     own = copy.deepcopy(model)
-    reduce(own, world, read, by_name)
+    reduce(own, read, warned)
     data = mujoco.MjData(own)
     for seed, (q, v, *_) in enumerate(states):
         data.qpos[:], data.qvel[:] = q, v
-        forces(own, data, world, read, by_name, np.random.default_rng(seed), differ)
+        forces(own, data, robot, read, by_name, np.random.default_rng(seed), differ)
     equations(model, world, joints, states[0][0], differ, count)
+    constraints(model, warned)
     ranges = {joint.name: model.jnt_actfrcrange[joint.index] for joint in joints if model.jnt_actfrclimited[joint.index] and joint.is_scalar}
     differ("joint forces", sorted(ranges) != sorted(name for name, _ in world["joint_forces"]), 0, 1.0)
     for name, bounds in world["joint_forces"]:
         differ("joint forces", bounds, ranges.get(name, np.nan))
+    return warned.silent
 
 
 class Joint:
@@ -108,6 +152,7 @@ def planes(model, world, differ, count):
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     touches = (model.geom_contype != 0) | (model.geom_conaffinity != 0)
+    touches &= not disabled(model, "CONTACT", "CONSTRAINT")
     fixed = [body for body in range(model.nbody) if not moves(model, body)]
     all_planes = [
         geom
@@ -151,9 +196,9 @@ def obstacle(model, one):
     if kind not in ACTING:
         return "acts on " + mujoco.mjtTrn(kind).name[6:].lower()
     if kind == mujoco.mjtTrn.mjTRN_TENDON:
-        return "spatial tendon" if model.wrap_type[model.tendon_adr[target]] != mujoco.mjtWrap.mjWRAP_JOINT else None
-    joint = model.jnt_type[target]
-    if joint == 0 or (joint == BALL and kind == mujoco.mjtTrn.mjTRN_JOINTINPARENT):
+        if is_spatial(model, target):
+            return "spatial tendon"
+    elif model.jnt_type[target] == 0 or (model.jnt_type[target] == BALL and kind == mujoco.mjtTrn.mjTRN_JOINTINPARENT):
         return "free or ball joint"
     if model.actuator_delay[one]:
         return "delay"
@@ -174,35 +219,122 @@ def actuators(model, world, differ, count):
     return numbers_of(model, found)
 
 
-def reduce(model, world, read, by_name):
+def name_of(model, kind, index):
+    return mujoco.mj_id2name(model, getattr(mujoco.mjtObj, f"mjOBJ_{kind}"), index)
+
+
+def is_spatial(model, tendon):
+    return model.wrap_type[model.tendon_adr[tendon]] != mujoco.mjtWrap.mjWRAP_JOINT
+
+
+# Of a spatial tendon there is one warning for all of its forces.
+SPATIAL = "a spatial tendon with forces"
+
+
+def reduce_armature(model, warned):
+    """Takes all armature out of the model: that of hinges, slides and balls is compared by itself."""
+    for joint in range(model.njnt):
+        first = model.jnt_dofadr[joint]
+        if model.jnt_type[joint] == 0 and model.dof_armature[first : first + 6].any():
+            warned.demand("armature of the free joint", name_of(model, "JOINT", joint), "armature of a free joint")
+    for tendon in range(model.ntendon):
+        if model.tendon_armature[tendon]:
+            phrase = SPATIAL if is_spatial(model, tendon) else "armature of a tendon"
+            warned.demand("armature of the tendon", name_of(model, "TENDON", tendon), phrase)
+    for one in np.flatnonzero(getattr(model, "actuator_armature", np.zeros(0))):
+        warned.demand("armature of the actuator", name_of(model, "ACTUATOR", one), "armature of an actuator", "an actuator")
+    model.dof_armature[:] = 0
+    if model.ntendon:
+        model.tendon_armature[:] = 0
+    if model.nu and hasattr(model, "actuator_armature"):
+        model.actuator_armature[:] = 0
+
+
+def reduce(model, read, warned):
     """Takes out of the model what is not read."""
     for one in set(range(model.nactuator)) - set(read):
+        if not disabled(model, "ACTUATION"):
+            warned.demand("the actuator", name_of(model, "ACTUATOR", one), "an actuator")
         model.actuator_gaintype[one] = model.actuator_biastype[one] = 0
         model.actuator_gainprm[one] = 0
         model.actuator_forcelimited[one] = 0
+    no_spring, no_damper = disabled(model, "SPRING"), disabled(model, "DAMPER")
+    has_passive = not (no_spring and no_damper)
+    for body in np.flatnonzero(model.body_gravcomp):
+        if has_passive and model.opt.gravity.any():
+            warned.demand("gravcomp of the body", name_of(model, "BODY", body), "a body whose weight is compensated")
     model.jnt_actgravcomp[:] = 0
     model.body_gravcomp[:] = 0
+    if has_passive and (model.opt.density or model.opt.viscosity):
+        warned.demand("the medium", "", "a medium")
     model.opt.density = model.opt.viscosity = 0
-    model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_SPRING | mujoco.mjtDisableBit.mjDSBL_DAMPER)
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
-    model.actuator_dampingpoly[:] = model.dof_dampingpoly[:] = model.jnt_stiffnesspoly[:] = 0
+    for joint in range(model.njnt):
+        name, first = name_of(model, "JOINT", joint), model.jnt_dofadr[joint]
+        size = {0: 6, BALL: 3}.get(int(model.jnt_type[joint]), 1)
+        dofs = slice(first, first + size)
+        if model.jnt_type[joint] == 0:
+            if model.jnt_stiffness[joint] and not no_spring:
+                warned.demand("stiffness of the free joint", name, "stiffness of a free joint", "a springdamper of a free joint")
+            if model.dof_damping[dofs].any() and not no_damper:
+                warned.demand("damping of the free joint", name, "damping of a free joint", "a springdamper of a free joint")
+        elif model.jnt_stiffnesspoly[joint].any() and not no_spring:
+            warned.demand("stiffness of higher degree of the joint", name, "a stiffness of higher degree")
+        elif model.dof_dampingpoly[dofs].any() and not no_damper:
+            warned.demand("damping of higher degree of the joint", name, "a damping of higher degree")
+        if model.jnt_springyield[joint] > 0 and model.jnt_stiffness[joint] and not no_spring:
+            warned.demand("the spring that yields of the joint", name, "a spring that yields")
+        # The numbers of balls are compared elsewhere.
+        if size > 1:
+            model.jnt_stiffness[joint] = 0
+            model.dof_damping[dofs] = 0
+    model.dof_dampingpoly[:] = model.jnt_stiffnesspoly[:] = 0
+    for tendon in range(model.ntendon):
+        name, spatial = name_of(model, "TENDON", tendon), is_spatial(model, tendon)
+        phrase = SPATIAL if spatial else "stiffness or damping of higher degree"
+        linear = (model.tendon_stiffness[tendon] if not no_spring else 0, model.tendon_damping[tendon] if not no_damper else 0)
+        higher = (model.tendon_stiffnesspoly[tendon].any() and not no_spring) or (model.tendon_dampingpoly[tendon].any() and not no_damper)
+        if higher or (spatial and any(linear)):
+            warned.demand("forces of the tendon", name, phrase)
+        if model.tendon_springyield[tendon] > 0 and linear[0]:
+            warned.demand("the spring that yields of the tendon", name, SPATIAL if spatial else "a spring that yields")
+        if model.tendon_actfrclimited[tendon] and not spatial:
+            warned.demand("bounds of the forces on the tendon", name, "limits of the forces on a tendon")
+        if spatial:
+            model.tendon_stiffness[tendon] = model.tendon_damping[tendon] = 0
     if model.ntendon:
         model.tendon_stiffnesspoly[:] = model.tendon_dampingpoly[:] = 0
         model.tendon_actfrclimited[:] = 0
-        spatial = model.wrap_type[model.tendon_adr] != mujoco.mjtWrap.mjWRAP_JOINT
-        model.tendon_stiffness[spatial] = model.tendon_damping[spatial] = 0
     for one in range(model.nactuator):
-        target = model.actuator_trnid[one, 0]
-        if model.actuator_trntype[one] in (0, 1) and model.jnt_type[target] not in (SLIDE, HINGE):
+        name, target, kind = name_of(model, "ACTUATOR", one), model.actuator_trnid[one, 0], model.actuator_trntype[one]
+        has_law = kind in (0, 1) and model.jnt_type[target] in (SLIDE, HINGE)
+        has_law |= kind == mujoco.mjtTrn.mjTRN_TENDON and not is_spatial(model, target)
+        if not has_law and model.actuator_damping[one]:
+            if not no_damper:
+                warned.demand("damping of the actuator", name, "damping of an actuator", "an actuator")
             model.actuator_damping[one] = 0
-        if model.actuator_trntype[one] == mujoco.mjtTrn.mjTRN_TENDON and spatial[target]:
-            model.actuator_damping[one] = 0
-    # Those of other joints are compared, or warnings, elsewhere.
+        if model.actuator_dampingpoly[one].any() and not no_damper:
+            warned.demand("damping of higher degree of the actuator", name, "damping of an actuator", "an actuator")
+    model.actuator_dampingpoly[:] = 0
+
+
+def constraints(model, warned):
+    """What the solver would do, and no number here stands for."""
     for joint in range(model.njnt):
-        first, size = model.jnt_dofadr[joint], {0: 6, BALL: 3}.get(int(model.jnt_type[joint]), 0)
-        if size:
-            model.jnt_stiffness[joint] = 0
-            model.dof_damping[first : first + size] = 0
+        first = model.jnt_dofadr[joint]
+        if model.jnt_type[joint] == 0 and model.dof_frictionloss[first : first + 6].any() and not disabled(model, "FRICTIONLOSS", "CONSTRAINT"):
+            warned.demand("dry friction of the free joint", name_of(model, "JOINT", joint), "frictionloss of a free joint")
+    for tendon in range(model.ntendon):
+        name, spatial = name_of(model, "TENDON", tendon), is_spatial(model, tendon)
+        if model.tendon_limited[tendon] and not disabled(model, "LIMIT", "CONSTRAINT"):
+            warned.demand("limits of the tendon", name, SPATIAL if spatial else "limits of a tendon")
+        if model.tendon_frictionloss[tendon] and not disabled(model, "FRICTIONLOSS", "CONSTRAINT"):
+            warned.demand("dry friction of the tendon", name, SPATIAL if spatial else "friction of a tendon")
+    off = disabled(model, "EQUALITY", "CONSTRAINT")
+    for one in range(model.neq):
+        if model.eq_active0[one] and not off:
+            name = name_of(model, "EQUALITY", one)
+            warned.demand("the equation", name, "an equation", "a loop")
 
 
 def length(drives, by_name, data):
@@ -236,8 +368,9 @@ def law(one, u, data, by_name):
     return force, force * row, size, winds
 
 
-def forces(model, data, world, read, by_name, random, differ):
+def forces(model, data, robot, read, by_name, random, differ):
     """Forces of actuators with random controls, some beyond their bounds, and of springs and dampers."""
+    world = robot["world"]
     expected, scale = np.zeros(model.nv), 0.0
     laws = []
     for one, number in zip(world["actuators"], read):
@@ -265,12 +398,12 @@ def forces(model, data, world, read, by_name, random, differ):
         passive, scale = passive + torque, max(scale, size)
     for joint in by_name.values():
         if joint.is_scalar:
-            offset = data.qpos[joint.q] - model.qpos_spring[joint.q]
-            parts = model.jnt_stiffness[joint.index] * offset, model.dof_damping[joint.v] * data.qvel[joint.v]
+            own = robot["joints"][joint.index]
+            offset = data.qpos[joint.q] - (own["rest"] or 0)
+            parts = (own["stiffness"] or 0) * offset, (own["damping"] or 0) * data.qvel[joint.v]
             passive[joint.v] -= sum(parts)
             scale = max(scale, *np.abs(parts))
-    if model.nflex == 0:
-        differ("passive force", passive, data.qfrc_passive, scale)
+    differ("passive force", passive, data.qfrc_passive, scale)
 
 
 def equations(model, world, joints, q, differ, count):

@@ -458,7 +458,7 @@ fn what_is_not_read_can_be_left_out() {
         "<mujoco><worldbody><body name='a'><joint name='j'/><geom size='0.1'/></body>\n<flexcomp name='cloth'/></worldbody></mujoco>";
     let robot = File::new("cloth.xml", text.as_bytes());
     let refused = run(&["check", robot.name()]);
-    assert!(refused.status == 1 && refused.err.contains(":2: found a flexible body \"cloth\""), "{}", refused.err);
+    assert!(refused.status == 1 && refused.err.contains(":2: flexcomp: found a flexible body \"cloth\""), "{}", refused.err);
     assert!(refused.err.contains("`--leave-out flex` (key `leave_out`, method `Build::leave_out`)"), "{}", refused.err);
     let scene = File::new("cloth.toml", format!("file = {:?}", robot.name()).as_bytes());
     for name in [robot.name(), scene.name()] {

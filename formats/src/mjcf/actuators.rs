@@ -455,8 +455,9 @@ pub(crate) fn actuators(
                     let [control_range, force_range] = general.bounds(element, &part.settings, target.range, log);
                     let (gain, bias) = general.law();
                     if target.is_ball && general.is_servo() {
-                        let found = "a servo of a ball joint: MuJoCo takes the nearest of the targets that whole turns make";
-                        scope.warn(element, "", (found, "targets within half a turn of the length: this is as written"), log);
+                        let expected = "targets within half a turn of the length: this is as written, and MuJoCo takes the nearest of \
+                                        the targets that whole turns make";
+                        scope.warn(element, "", ("a servo of a ball joint", expected), log);
                     }
                     if general.gains[0] == -general.biases[1] && general.bias == Bias::Affine && bias[2] > 0.0 {
                         ratios.push((world.actuators.len(), element));

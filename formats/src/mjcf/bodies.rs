@@ -637,6 +637,10 @@ fn dynamics(values: &Values<'_>, kind: Kind, flags: Flags, angle: &dyn Fn(f64) -
     });
     let friction = values.number("frictionloss", log).filter(|_| !flags.no_friction);
     let armature = values.number("armature", log);
+    if stiffness.is_some_and(|k| k != 0.0) && values.number("springyield", log).is_some_and(|most| most > 0.0) {
+        let expected = "a spring that does not: it is elastic";
+        values.element.warning((&values.subject, "springyield"), Code::LostDynamics, "a spring that yields", expected, log);
+    }
     if kind != Kind::Free {
         // A ball joint is slack where its coordinate is the identity.
         let rest = if kind == Kind::Ball { None } else { values.number("springref", log).map(angle) };

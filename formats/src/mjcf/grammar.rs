@@ -191,12 +191,11 @@ const ROWS: &[Row] = &[
         name: "joint",
         within: IN_BODIES,
         attributes: "name class type pos axis springdamper limited actuatorfrclimited stiffness range actuatorfrcrange ref springref armature \
-                     damping frictionloss",
+                     damping frictionloss springyield",
         unused_attributes: &[
             ("group", APPEARANCE),
             ("solreflimit solimplimit solreffriction solimpfriction margin", SOLVER),
             ("actuatorgravcomp", ACTUATOR),
-            ("springyield", "springs are elastic"),
             ("user", USER),
         ],
         tags: "",

@@ -32,10 +32,10 @@ impl<'a> Gate<'a> {
         let subject = subject(element);
         if self.leave_out.contains(&kind) {
             let expected = format!("a robot without it: `leave_out` has {}, and the motion is that without it", quote(kind.name()));
-            element.warning((&subject, ""), Code::LostDynamics, found, expected, log);
+            element.warning((&subject, &element.name), Code::LostDynamics, found, expected, log);
         } else {
             let expected = format!("a robot without it; {} leaves it out", kind.option());
-            element.error((&subject, ""), Code::Unsupported, found, expected, log);
+            element.error((&subject, &element.name), Code::Unsupported, found, expected, log);
         }
     }
 

@@ -170,10 +170,12 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// Warns once of what a tag says: `found`, `expected`.
+    /// Warns once of what a tag says: `found`, behind which its name comes, and `expected`.
     pub(crate) fn warn(&mut self, element: &Element, field: &str, (found, expected): (&str, &str), log: &mut Diagnostics) {
         if self.reported.insert((std::ptr::from_ref(element), format!("{field} {found}"))) {
-            element.warning((&Subject::Document, field), Code::LostDynamics, found, expected, log);
+            let field = if field.is_empty() { element.name.as_str() } else { field };
+            let name = element.text("name").filter(|name| !name.is_empty()).map(|name| format!(" {}", quote(name))).unwrap_or_default();
+            element.warning((&Subject::Document, field), Code::LostDynamics, format!("{found}{name}"), expected, log);
         }
     }
 
