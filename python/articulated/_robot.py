@@ -118,6 +118,10 @@ def _inertia(value):
     return tuple(array.tolist())
 
 
+# Nothing that looks wrong is allowed, nothing is left out, and no angle is snapped.
+_AS_WRITTEN = ((False, False, False), (), None)
+
+
 class _Source(NamedTuple):
     """What makes a robot: its document, and what is requested of it."""
 
@@ -133,8 +137,8 @@ class _Source(NamedTuple):
     locks: tuple = ()
     args: tuple = ()
     packages: tuple = ()
-    # Whether to accept unphysical inertias, whether the first of duplicates counts, and what angles are snapped.
-    reading: tuple = (False, False, (), None)
+    # See `_reading`.
+    reading: tuple = _AS_WRITTEN
     # Whether joints follow others as the file says, and as calls say.
     coupling: tuple = (False, ())
 
@@ -263,7 +267,7 @@ class Robot(_native.Robot):
                 raise ValueError("other: found a robot with edits, expected one as loaded; append it first, and edit the result")
             if source.args:
                 raise ValueError("other: found a robot with args, expected one without: args are those of the robot that carries it")
-            if source.reading not in (self._source.reading, (False, False, (), None)):
+            if source.reading not in (self._source.reading, _AS_WRITTEN):
                 raise ValueError("other: found a robot read with other options, expected those of the robot that carries it")
             for name, folder in source.packages:
                 if packages.setdefault(name, folder) != folder:
@@ -473,7 +477,7 @@ def _pairs(what, given):
 
 
 def _reading(leave_out, snap_angles, **allowed):
-    """How to read a file."""
+    """How to read a file: what is allowed, what is left out, and the tolerance of snapped angles."""
     for name, value in allowed.items():
         if not isinstance(value, (bool, np.bool_)):
             raise TypeError(f"{name}: found {type(value).__name__}, expected True or False")
