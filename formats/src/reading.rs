@@ -22,8 +22,8 @@ pub struct Options {
     /// Makes an inertia that is not positive semi-definite a warning instead of an error. One that
     /// is negative by rounding alone always is a warning.
     pub allow_unphysical_inertia: bool,
-    /// Takes the first of tags of a URDF or SDF that should be there once and contradict each other,
-    /// with a warning, as urdfdom does.
+    /// Takes the first of tags of a URDF or SDF that should be there once and contradict each
+    /// other, with a warning, as urdfdom does.
     pub first_of_duplicates: bool,
     /// Elements of an MJCF that change the motion and are not read, which are left out with a
     /// warning. Those of another kind are errors.

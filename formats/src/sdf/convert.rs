@@ -8,8 +8,7 @@ use std::rc::Rc;
 use articulated_core::description::{CollisionShape, Description, Inertial, Joint, JointDynamics, JointKind, Limit, Origin, Rotation};
 use articulated_core::diagnostic::{At, Code, Diagnostics, Place, Subject, quote};
 
-use super::load::ROOT;
-use super::names::WORLD_NAME;
+use super::names::{ROOT, WORLD_NAME};
 use crate::xml::tree::{Attribute, Element, File};
 
 /// Makes tags of one file.

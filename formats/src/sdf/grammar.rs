@@ -6,7 +6,7 @@
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 use articulated_core::suggest::Suggester;
 
-use super::load::ROOT;
+use super::names::ROOT;
 use super::values::text;
 use crate::xml::tree::{Attribute, Element};
 
@@ -234,8 +234,8 @@ fn tag(child: &Element, element: &Element, row: &Row, subject: &Subject, suggest
     child.unused(subject, None, "not known", log);
 }
 
-/// Reports an attribute or a tag of `<mimic>` that the format does not have: it may stand for another
-/// law.
+/// Reports an attribute or a tag of `<mimic>` that the format does not have: it may stand for
+/// another law.
 fn law(element: &Element, attribute: Option<&Attribute>, subject: &Subject, log: &mut Diagnostics) {
     let found = match attribute {
         Some(own) => format!("the attribute {} = {} of <mimic>", own.name, quote(&own.value)),

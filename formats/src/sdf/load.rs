@@ -8,6 +8,7 @@ use articulated_core::description::Base;
 use articulated_core::diagnostic::{Code, Diagnostics, Place, Subject, quote};
 
 use super::convert;
+use super::names::ROOT;
 use crate::urdf::Urdf;
 use crate::xml::document;
 use crate::xml::element::Tag;
@@ -21,9 +22,6 @@ const MOST_DEPTH: usize = 256;
 /// A file may include so many files, and so many tags altogether.
 const MOST_FILES: usize = 1000;
 const MOST_TAGS: usize = 2 << 20;
-
-/// The root element of a document.
-pub(crate) const ROOT: &str = "sdf";
 
 /// Reads a file and the files that it includes.
 pub(crate) struct Loader<'a> {

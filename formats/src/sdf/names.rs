@@ -4,6 +4,9 @@ use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
 use crate::xml::tree::Element;
 
+/// The root element of a document.
+pub(crate) const ROOT: &str = "sdf";
+
 /// Names that the format uses itself.
 pub(crate) const MODEL: &str = "__model__";
 pub(crate) const ROOT_FRAME: &str = "__root__";

@@ -158,8 +158,8 @@ impl Expander<'_> {
         }
     }
 
-    /// Warns of a name that every file has, where xacro does: it stands for something else from here
-    /// on.
+    /// Warns of a name that every file has, where xacro does: it stands for something else from
+    /// here on.
     fn warn_of_redefinition(&mut self, name: &str, at: At, field: &str) {
         if super::functions::is_of_every_file(name) {
             let found = format!("the name {}, which stands for a function or a number in every file", quote(name));
