@@ -272,3 +272,29 @@ fn a_mass_that_is_not_known_has_its_reason() {
     let light = "<mujoco><worldbody><body><joint springdamper=\"0.1 1\"/></body></worldbody></mujoco>";
     assert!(warnings(&accepted(light))[0].contains("a springdamper in a robot whose mass matrix is singular"));
 }
+
+/// So that nobody has to count lines, and the comparison with MuJoCo can tell what has a warning.
+#[test]
+fn a_warning_names_what_is_not_read() {
+    let rest = "<equality><connect name=\"knee\" body1=\"arm\" body2=\"hub\" anchor=\"0 0 0\"/></equality>
+        <tendon><spatial name=\"line\" stiffness=\"1\"><site site=\"a\"/><site site=\"b\"/></spatial></tendon>
+        <actuator><muscle name=\"biceps\" joint=\"one\"/><motor name=\"push\" site=\"a\"/></actuator></mujoco>";
+    let text = ARMS.replace("</mujoco>", rest).replace("<body>", "<body name=\"hub\">").replacen(
+        "<body pos",
+        "<body name=\"arm\" gravcomp=\"1\" pos",
+        1,
+    );
+    let found = warnings(&accepted(&text));
+    let parts = [
+        "a tendon \"both\"",
+        "tendon with forces \"line\"",
+        "at a point \"knee\"",
+        "<muscle> \"biceps\"",
+        "of a site \"push\"",
+        "link \"arm\": gravcomp",
+    ];
+    for part in parts {
+        assert_eq!(found.iter().filter(|warning| warning.contains(part)).count(), 1, "{part}: {found:#?}");
+    }
+    assert_eq!(found.len(), parts.len(), "{found:#?}");
+}

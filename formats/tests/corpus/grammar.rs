@@ -1,7 +1,23 @@
 //! A generator of MJCF documents: the right tags and attributes, mostly in the right places. The
 //! fuzz target `mjcf_grammar` is made of it, too.
 
-const IN_BODIES: &[&str] = &["body", "frame", "replicate", "joint", "geom", "site", "inertial", "freejoint", "attach", "include", "camera"];
+const IN_BODIES: &[&str] = &[
+    "body",
+    "frame",
+    "replicate",
+    "joint",
+    "geom",
+    "site",
+    "inertial",
+    "freejoint",
+    "attach",
+    "include",
+    "camera",
+    "flexcomp",
+    "composite",
+    "plugin",
+];
+const FLAGS: &[&str] = &["gravity", "constraint", "equality", "frictionloss", "limit", "contact", "spring", "damper", "actuation"];
 const IN_ROOT: &[&str] = &["compiler", "option", "default", "asset", "worldbody", "actuator", "keyframe", "equality", "tendon"];
 const IN_DEFAULT: &[&str] = &["default", "joint", "geom", "site", "mesh", "motor", "position", "tendon", "equality"];
 const IN_ACTUATOR: &[&str] = &["motor", "position", "velocity", "damper", "general", "intvelocity", "muscle", "pid"];
@@ -92,6 +108,12 @@ const ATTRIBUTES: &[&str] = &[
     "settotalmass",
     "fitaabb",
     "gravity",
+    "align",
+    "alignfree",
+    "conflict",
+    "hfield",
+    "springdamper",
+    "springyield",
 ];
 const WORDS: &[&str] = &[
     "hinge",
@@ -118,6 +140,9 @@ const WORDS: &[&str] = &[
     "shell",
     "legacy",
     "convex",
+    "disable",
+    "enable",
+    "merge",
 ];
 
 struct Writer<'a> {
@@ -180,6 +205,7 @@ impl Writer<'_> {
                     "equality" if depth == 0 => self.tags(IN_EQUALITY, BESIDE, depth + 1),
                     "tendon" if depth == 0 => self.tags(&["fixed", "spatial"], BESIDE, depth + 1),
                     "fixed" => self.tags(&["joint"], BESIDE, depth + 1),
+                    "option" => self.tags(&["flag"], FLAGS, depth + 1),
                     "keyframe" => self.tags(&["key"], BESIDE, depth + 1),
                     _ => {}
                 }
