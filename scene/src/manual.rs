@@ -67,6 +67,9 @@ fn fields() -> String {
         for (name, effect, field) in fields(effect) {
             let default = match field.default {
                 None if crate::effects::is_of_shape(effect, field.name) => "has to be given; `\"collision\"`: that of the shape".to_owned(),
+                None if field.unless.is_some() => {
+                    format!("has to be given, but where `{}` is", field.unless.unwrap_or_default())
+                }
                 None => crate::effects::tag(effect.id, field.name)
                     .map_or("has to be given".to_owned(), |tag| format!("has to be given; `\"urdf\"`: {tag}")),
                 Some([x]) => format!("{x:?}"),

@@ -104,7 +104,7 @@ fn other_gravity_and_other_effects_are_those_of_a_request_that_asks_for_them() {
             // On one body with what stays an input, and on one link with it.
             on(EffectId::drag, "arm", &[0.6]),
             on(EffectId::drag, "tool", &[loss]),
-            on(EffectId::contact, "arm", &[0.05, 1e3 * inertia, damping, loss, 0.01, 0.0, 0.6, 0.8, 9.0]),
+            on(EffectId::contact, "arm", &[0.05, 1e3 * inertia, damping, loss, 0.01, 0.0, 0.6, 0.8, 9.0, loss]),
         ];
         request
     };
@@ -113,9 +113,9 @@ fn other_gravity_and_other_effects_are_those_of_a_request_that_asks_for_them() {
     let there = robot([0.3, -1.6, 0.7], [1.5, 0.7, 0.2, 0.02, -30.0]);
     assert_eq!(read(&here, &list).1[1].nominal, [0.0, 0.0, -9.81]);
     let mut numbers = nominal(&there, &list);
-    // The contact's normal, and the height behind it.
+    // The contact's normal; the height and the time of its damping are behind it.
     let n = numbers.len();
-    numbers[n - 4..n - 1].iter_mut().for_each(|x| *x *= 3.0);
+    numbers[n - 5..n - 2].iter_mut().for_each(|x| *x *= 3.0);
     let functions = ["inverse_dynamics", "forward_dynamics", "effect_forces", "potential_energy", "inverse_dynamics_derivatives"];
     held(functions, (&here, &list), &numbers, &there);
 }

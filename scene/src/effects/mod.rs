@@ -160,7 +160,8 @@ fn expected(row: &Effect) -> String {
     if shorthand(row) {
         ways.push(format!("a number ({}, {})", row.fields[0].name, row.fields[0].unit));
     }
-    let required: Vec<&str> = row.fields.iter().filter(|f| f.default.is_none()).map(|f| f.name).collect();
+    let name = |f: &Field| f.unless.map_or_else(|| f.name.to_owned(), |other| format!("{} or {other}", f.name));
+    let required: Vec<String> = row.fields.iter().filter(|f| f.default.is_none()).map(name).collect();
     ways.push(format!("a table with {}", required.join(", ")));
     ways.extend(sources(row).map(|word| format!("\"{word}\"")));
     format!("{} or \"off\"", ways.join(", "))
@@ -264,8 +265,9 @@ fn number(field: &Field, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<f64> 
 /// Checks the joint constraint of the numbers. Where one still comes from the file or from `*`, the
 /// model checks it.
 fn check(row: &'static Effect, numbers: &Numbers, spot: &Spot<'_>, log: &mut Diagnostics) {
-    let given = |(i, field): (usize, &'static Field)| numbers.fields[i].as_deref().or(field.default);
-    let Some(all) = row.fields.iter().enumerate().map(given).collect::<Option<Vec<&[f64]>>>().filter(|_| !numbers.from_urdf) else {
+    let default = |field: &Field| resolve::default_of(row, field, std::iter::once(numbers));
+    let given = |(i, field): (usize, &'static Field)| numbers.fields[i].clone().or_else(|| default(field));
+    let Some(all) = row.fields.iter().enumerate().map(given).collect::<Option<Vec<Vec<f64>>>>().filter(|_| !numbers.from_urdf) else {
         return;
     };
     let all = all.concat();

@@ -432,18 +432,29 @@ pub(super) fn fill(
                 return Err(field.name);
             }
         }
-        field.default.map(|x| (x.to_vec(), None)).ok_or(field.name)
+        default_of(row, field, layers.iter().flatten().copied()).map(|x| (x, None)).ok_or(field.name)
     };
     fields.iter().map(of).collect()
 }
 
+/// What a field is where no layer gives it; `None`: one has to.
+pub(super) fn default_of<'n>(row: &Effect, field: &Field, mut layers: impl Iterator<Item = &'n Numbers>) -> Option<Vec<f64>> {
+    if let Some(default) = field.default {
+        return Some(default.to_vec());
+    }
+    let other = row.fields.iter().position(|other| Some(other.name) == field.unless)?;
+    layers.any(|numbers| numbers.fields[other].is_some()).then(|| vec![0.0; field.len])
+}
+
 pub(super) fn missing(row: &Effect, field: &str, one: &EffectRequest, on: &str, log: &mut Diagnostics) {
-    let unit = row.fields.iter().find(|f| f.name == field).map_or("", |f| f.unit);
+    let lacking = row.fields.iter().find(|f| f.name == field);
+    let unit = lacking.map_or("", |f| f.unit);
+    let or_other = lacking.and_then(|f| f.unless).map(|other| format!(", or {other}")).unwrap_or_default();
     let found = match urdf::tag(row.id, field).filter(|_| one.says.as_ref().is_some_and(|s| s.from_urdf)) {
         Some(tag) => format!("no {field} for {on}, whose file has no <{tag}>"),
         None => format!("no {field} for {on}"),
     };
-    log.error((one.place, &one.key), Code::MissingKey, found, format!("{field}, {unit}"));
+    log.error((one.place, &one.key), Code::MissingKey, found, format!("{field}, {unit}{or_other}"));
 }
 
 fn why(asked: &[&EffectRequest]) -> Why {

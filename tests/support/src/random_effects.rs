@@ -74,7 +74,7 @@ fn parameters(random: &mut Random, effect: EffectId) -> Vec<f64> {
             }
             [angular, linear, some(9).iter().map(|x| x * 0.3).collect()].concat()
         }
-        EffectId::contact => [some(4), vec![0.2], vec![0.3, -0.2, 2.0], vec![0.5]].concat(),
+        EffectId::contact => [some(4), vec![0.2], vec![0.3, -0.2, 2.0], vec![0.5], some(1)].concat(),
         other => some(other.row().len()),
     }
 }

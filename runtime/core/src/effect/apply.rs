@@ -359,7 +359,7 @@ mod tests {
     #[test]
     fn a_normal_of_any_length_is_that_of_length_one() {
         let normal = |n: [f64; 3]| {
-            let parameters = [&[0.1, 1e3, 0.5, 0.3, 1e-2], &n[..], &[0.2]].concat();
+            let parameters = [&[0.1, 1e3, 0.5, 0.3, 1e-2], &n[..], &[0.2, 0.0]].concat();
             let with = robot().with_effects(&[on(EffectId::contact, "ball", &parameters)]).unwrap();
             let effects = &with.bodies[with.frames[2].body].effects.body;
             assert_eq!((effects.len(), &effects[0].parameters[..5], effects[0].parameters[8]), (1, &parameters[..5], 0.2));

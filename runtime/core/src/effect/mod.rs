@@ -88,6 +88,8 @@ pub struct Field {
     pub unit: &'static str,
     /// What it is where a scene does not say, as many numbers as it has; `None`: a scene must say.
     pub default: Option<&'static [f64]>,
+    /// The field that makes it optional: where a scene gives that one, this one is 0.
+    pub unless: Option<&'static str>,
     /// Where each of its numbers has to be.
     pub range: Range,
     /// What else has to hold.
@@ -115,7 +117,18 @@ pub enum Zeros {
 impl Field {
     /// Any number, to be given.
     const fn number(name: &'static str, unit: &'static str, what: &'static str) -> Self {
-        Self { name, len: 1, unit, default: None, range: Range::ALL, rule: None, zeros: Zeros::Count, is_direction: false, what }
+        Self {
+            name,
+            len: 1,
+            unit,
+            default: None,
+            unless: None,
+            range: Range::ALL,
+            rule: None,
+            zeros: Zeros::Count,
+            is_direction: false,
+            what,
+        }
     }
 
     /// Not negative.
@@ -151,6 +164,11 @@ impl Field {
 
     const fn or(self, default: &'static [f64]) -> Self {
         Self { default: Some(default), ..self }
+    }
+
+    /// To be given unless another field is.
+    const fn unless(self, other: &'static str) -> Self {
+        Self { unless: Some(other), ..self }
     }
 
     const fn of(self, len: usize) -> Self {
@@ -431,8 +449,21 @@ effects! {
     Wrench box_drag false "for each axis −c_i |v_i| v_i − b v_i and −C_i |ω_i| ω_i − B ω_i" "Batchelor 1967, §5.11, §4.9";
     Wrench buoyancy true "−ρ V g at the centre of the displaced volume" "Archimedes; Fossen 2011, §4.1";
     Added added_mass true "[m; f] += G V̇ + V ×* G V: fluid that is at rest without the link, moved along" "Fossen 2011, §6.3; Lamb 1932, §124";
-    Wrench contact false "a sphere on the plane nᵀx = h: k x max(0, 1 + c ẋ) along n, and −μ F v_t/√(v_t² + s²)"
-        "Hunt & Crossley, J. Appl. Mech. 42, 1975";
+    Wrench contact false "a sphere on the plane nᵀx = h: k x max(0, 1 + c ẋ + T ẋ/√(x² + T²ẋ²)) along n, and −μ F v_t/√(v_t² + s²)"
+        "Hunt & Crossley, J. Appl. Mech. 42, 1975; with T it rests as Kelvin and Voigt's spring and damper";
+}
+
+/// The wrench of an effect on a frame of a link, about the frame's origin and in its axes; `None`
+/// for an effect that does not act by a wrench. `parameters` are those of the effect's fields, with
+/// directions of length one.
+///
+/// # Panics
+/// If there are fewer parameters than the effect has.
+pub fn wrench(effect: EffectId, parameters: &[f64], at: &Station<f64>) -> Option<Wrench<f64>> {
+    match effect.law::<f64>() {
+        Law::Wrench { wrench, .. } => Some(wrench(parameters, at)),
+        _ => None,
+    }
 }
 
 /// All effects, in the order in which they are listed to people.

@@ -111,11 +111,11 @@ fn friction_of_a_contact_is_that_of_its_whole_normal_force() {
         }
         let name = case.model.frames()[0].name.clone();
         let (friction, smooth) = (0.7, 0.4);
-        let [radius, stiffness, damping] = [0.3, 50.0, 0.6];
+        let [radius, stiffness, damping, time] = [0.3, 50.0, 0.6, 0.8];
         let at = Origin { xyz: random.three(0.5), ..Origin::default() };
         let normal = effect::unit(random.three(1.0)).expect("a direction");
         let height = 3.0;
-        let parameters = [&[radius, stiffness, damping, friction, smooth][..], &normal, &[height]].concat();
+        let parameters = [&[radius, stiffness, damping, friction, smooth][..], &normal, &[height, time]].concat();
         let applied = Applied { effect: EffectId::contact, on: name, at: at.clone(), parameters };
         let model = case.model.clone().with_effects(&[applied]).expect("a contact");
         let State { q, v, .. } = case.state(random);
@@ -268,7 +268,7 @@ fn effects_that_cannot_be_had_are_refused() {
         joint(EffectId::motor, &first, &[1.0, 1.0, 1.0, 1.5, 1e-3]),
         joint(EffectId::drag, "no such link at all", &[1.0]),
         joint(EffectId::drag, &arm.frames()[0].name, &[1.0]),
-        joint(EffectId::contact, &arm.frames()[3].name, &[0.1, 1e4, 0.0, 0.5, 0.01, 0.0, 0.0, 0.0, 0.0]),
+        joint(EffectId::contact, &arm.frames()[3].name, &[0.1, 1e4, 0.0, 0.5, 0.01, 0.0, 0.0, 0.0, 0.0, 0.0]),
         joint(EffectId::added_mass, &arm.frames()[3].name, &[[1.0, 2.0, 0.0, 1.0, 0.0, 1.0].as_slice(), &[0.0; 15]].concat()),
     ];
     let errors = arm.clone().with_effects(&wrong).expect_err("all of them are wrong");
@@ -326,7 +326,7 @@ fn effects_that_are_half_right_are_refused_too() {
     let refused = gripper.with_effects(&[motor]).expect_err("a motor on one that follows")[0].to_string();
     assert!(refused.contains("the joint follows another"), "{refused}");
     // Each of the numbers that is wrong.
-    let bad = on(EffectId::contact, &[-1.0, -2.0, 0.0, 0.5, 1e-2, 0.0, 0.0, 1.0, f64::NAN]);
+    let bad = on(EffectId::contact, &[-1.0, -2.0, 0.0, 0.5, 1e-2, 0.0, 0.0, 1.0, f64::NAN, 0.0]);
     let all = arm.clone().with_effects(&[bad]).expect_err("three wrong numbers").to_string();
     assert!(
         all.lines().count() == 3 && ["radius: found -1", "stiffness: found -2", "height: found NaN"].iter().all(|x| all.contains(x)),

@@ -209,7 +209,7 @@ fn coupling_of_added_mass_takes_accelerations_to_moments() {
 #[test]
 fn a_ball_on_the_ground_rests_where_its_weight_is_held() {
     let (radius, stiffness) = (0.1, 5e3);
-    let ground = |friction: f64| on(EffectId::contact, "ball", &[radius, stiffness, 0.4, friction, 1e-9, 0.0, 0.0, 3.0, 0.5]);
+    let ground = |friction: f64| on(EffectId::contact, "ball", &[radius, stiffness, 0.4, friction, 1e-9, 0.0, 0.0, 3.0, 0.5, 0.0]);
     let rest = 0.5 + radius - MASS * G / stiffness;
     assert_all_near(&moves(&[ground(0.6)], rest, [0.0; 6]), &[0.0; 6]);
     let in_the_air = moves(&[ground(0.6)], 0.7, [0.0; 6]);
@@ -228,6 +228,36 @@ fn a_ball_on_the_ground_rests_where_its_weight_is_held() {
     let v = [0.0, 2.0, 0.0, 2.0 * radius, 0.0, 0.0];
     let w = turned(v);
     assert_all_near(&moves(&[ground(0.6)], rest, v), &[0.0, 0.0, 0.0, -w[0], -w[1], -w[2]]);
+}
+
+/// With a damping time: under its load k (x + T ẋ), twice the spring's force at most, and none where
+/// it leaves fast.
+#[test]
+fn damping_of_a_ball_at_rest_is_that_of_a_damper_and_never_pulls() {
+    let (radius, stiffness, time) = (0.1, 5e3, 0.02);
+    let parameters = [radius, stiffness, 0.0, 0.6, 1e-9, 0.0, 0.0, 1.0, 0.5, time];
+    let x = MASS * G / stiffness;
+    let push = |depth: f64, rate: f64| {
+        let found = moves(&[on(EffectId::contact, "ball", &parameters)], 0.5 + radius - depth, [0.0, 0.0, 0.0, 0.0, 0.0, -rate]);
+        (found[5] + G) * MASS
+    };
+    // T ẋ small beside x: k (x + T ẋ), to the third power of T ẋ/x.
+    for rate in [1e-4, -1e-4] {
+        assert!((push(x, rate) - stiffness * (x + time * rate)).abs() < stiffness * x * (time * rate / x).powi(3).abs(), "{rate}");
+    }
+    // T ẋ = x and −¾ x by hand.
+    assert_near(push(x, x / time), stiffness * x * (1.0 + 0.5_f64.sqrt()));
+    assert_near(push(x, -0.75 * x / time), stiffness * x * 0.4);
+    for (rate, most) in [(1e6, 2.0), (-1e6, 0.0)] {
+        let found = push(x, rate) / (stiffness * x);
+        assert!(found > -1e-12 && found < 2.0 + 1e-12 && (found - most).abs() < 1e-8, "{rate}: {found}");
+    }
+    // No jump where it touches, however fast, and nothing beyond.
+    assert!(push(1e-12, 3.0) <= 2.0 * stiffness * 1e-12 + 1e-11);
+    assert_all_near(&[push(0.0, 3.0), push(-0.1, 3.0), push(-0.1, 0.0)], &[0.0; 3]);
+    // Friction is that of the whole force.
+    let sliding = moves(&[on(EffectId::contact, "ball", &parameters)], 0.5 + radius - x, [0.0, 0.0, 0.0, 1.0, 0.0, -x / time]);
+    assert_near(sliding[3], -0.6 * (sliding[5] + G));
 }
 
 /// Kinetic energy of a rotor counts: ½ I n² q̇².

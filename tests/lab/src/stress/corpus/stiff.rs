@@ -204,7 +204,7 @@ fn friction() -> Vec<Row> {
 
 fn contact() -> Vec<Row> {
     let rest = 0.1 - 9.81e-6;
-    let ground = |damping: f64| slider(EffectId::contact, true, vec![0.1, 1e6, damping, 0.5, 1e-2, 0.0, 0.0, 1.0, 0.0], true);
+    let ground = |damping: f64| slider(EffectId::contact, true, vec![0.1, 1e6, damping, 0.5, 1e-2, 0.0, 0.0, 1.0, 0.0, 0.0], true);
     let case = Case::new(NAME, "a ball that falls on the ground and lies there", "contact is nothing, then 1e6 N/m, then at rest");
     let falls = Motion { robot: ground(50.0), q: 0.11, v: 0.0, end: 1.0, rest, near: 1e-4 };
     let mut rows = falls.decays(&case, None, 0.0).split_off(1);
