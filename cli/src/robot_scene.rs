@@ -4,10 +4,12 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use articulated_core::description::Joint;
+use articulated_core::model::GRAVITY;
 use articulated_formats::{Environment, Options, Reading, included, read_file, read_with};
 use articulated_scene::folder_of;
 
 use crate::failure::Failure;
+use crate::table::number;
 
 /// How long the motion is, s.
 const END: f64 = 5.0;
@@ -32,8 +34,10 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     if reading.description.links.iter().any(|link| !link.collision.is_empty()) {
         let (plane, ground) =
             if world.planes.is_empty() { ("", "the ground z = 0") } else { (", plane = \"file\"", "the planes of the file") };
-        let contact = format!("from = \"collision\"{plane}, stiffness = 1e5, damping = 1, friction = 0.8");
-        let _ = writeln!(out, "# contact = {{ \"*\" = {{ {contact} }} }}  # against {ground}");
+        let Resting { stiffness, damping_time, on } = Resting::of(&reading);
+        let contact =
+            format!("from = \"collision\"{plane}, stiffness = {stiffness:.1e}, damping_time = {damping_time:.1e}, friction = 0.8");
+        let _ = writeln!(out, "# contact = {{ \"*\" = {{ {contact} }} }}  # against {ground}; {on}");
     }
     let keyframes: Vec<String> = world.keyframes.iter().map(|keyframe| quoted(&keyframe.name)).collect();
     if !keyframes.is_empty() {
@@ -51,6 +55,38 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
         let _ = writeln!(out, "# integrator = \"semi_implicit_euler\"\n# step = \"file\"  # {step:?} s");
     }
     Ok(out)
+}
+
+/// Numbers of contacts on which a robot rests: they sink in by [`SINKS`] and are damped critically.
+struct Resting {
+    /// N/m.
+    stiffness: f64,
+    /// s.
+    damping_time: f64,
+    /// For which mass on how many points, in words.
+    on: String,
+}
+
+/// How far contacts sink in under the robot, m.
+const SINKS: f64 = 1e-4;
+
+/// Points on which a robot rests, if it has as many.
+const POINTS: usize = 4;
+
+impl Resting {
+    /// Of all mass of a robot. Each point carries an equal part m of it: k = m g/x, T = 2 √(m/k).
+    fn of(reading: &Reading) -> Self {
+        let links = &reading.description.links;
+        let mass: f64 = links.iter().filter_map(|link| link.inertial).map(|inertial| inertial.mass).sum();
+        let mass = if mass > 0.0 && mass.is_finite() { mass } else { 1.0 };
+        let gravity = reading.world.gravity.unwrap_or(GRAVITY).iter().map(|g| g * g).sum::<f64>().sqrt();
+        let gravity = if gravity > 0.0 && gravity.is_finite() { gravity } else { -GRAVITY[2] };
+        let points: usize = links.iter().flat_map(|link| &link.collision).map(|piece| piece.contact_spheres().len()).sum();
+        let points = points.clamp(1, POINTS);
+        let stiffness = mass * gravity / (points as f64 * SINKS);
+        let on = format!("{} kg at rest on {points} point{}", number(mass), if points == 1 { "" } else { "s" });
+        Self { stiffness, damping_time: 2.0 * (SINKS / gravity).sqrt(), on }
+    }
 }
 
 /// A text of TOML.

@@ -4,14 +4,18 @@ use std::fmt;
 use std::time::{Duration, Instant};
 
 use articulated::Dynamics;
-use articulated::simulate::{Control, Counts, Drive, Ended, Recording, Settings, SimulateError, Simulation};
+use articulated::simulate::{Control, Counts, Drive, Ended, Reached, Recording, Settings, SimulateError, Simulation};
 
 use crate::creep::Creep;
 use crate::detectors::{Detectors, UnavailableEvent};
 use crate::error::{Fault, MotionErrors};
 use crate::initial_state::InitialState;
 use crate::occurrence::Occurrence;
+use crate::penetration::Penetration;
+use crate::rolling::Rolling;
 use crate::session::Session;
+use crate::slide::Slide;
+use crate::statistics::{Found, Statistics};
 
 /// A scene on a robot, with all the room that its simulation needs. It may be run again and again.
 pub struct Motion<'a, R: Dynamics<f64>> {
@@ -29,9 +33,16 @@ pub struct Outcome {
     pub recording: Recording,
     /// Occurrences in the order of time, one for each of [`Recording::events`].
     pub occurrences: Vec<Occurrence>,
-    /// Contacts and joints that smoothed friction did not hold, and how far they crept
-    /// ([`Session::creep`]).
+    /// The contact and the joint with dry friction that crept furthest where smoothed friction
+    /// should hold them, of each kind at most one. As those below, it is a statistic over the steps,
+    /// whatever is recorded.
     pub creep: Vec<Creep>,
+    /// Links that went below a plane of contact where no contact holds them, the deepest first.
+    pub penetrations: Vec<Penetration>,
+    /// Links whose contacts move although friction would hold them.
+    pub slides: Vec<Slide>,
+    /// Spheres that roll faster than the tolerance resolves.
+    pub rolling: Vec<Rolling>,
     /// How it ended.
     pub ending: Ending,
     /// The time that was reached, s.
@@ -162,12 +173,15 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
         self.detectors.reset();
         let (over, mut reached) = (self.detectors.over(), self.simulation.settings().start);
         let mut recording = self.simulation.recording();
-        let mut after_step = |t: f64, counts: &Counts| {
-            reached = t;
-            observer(t, counts) && !over()
+        let mut statistics = Statistics::from(self.session, self.simulation.settings(), &initial.q, &initial.v);
+        let mut after_step = |step: &Reached<'_>| {
+            reached = step.t;
+            statistics.step(step.t, step.q, step.v);
+            observer(step.t, step.counts) && !over()
         };
         let clock = Instant::now();
-        let result = self.simulation.run_into(&initial.q, &initial.v, control, &mut self.detectors.events, &mut recording, &mut after_step);
+        let result =
+            self.simulation.run_observed((&initial.q, &initial.v), control, &mut self.detectors.events, &mut recording, &mut after_step);
         let wall = clock.elapsed();
         let error = match result {
             Ok(()) => None,
@@ -181,8 +195,20 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
             _ => recording.t.last().map_or(reached, |t| t.max(reached)),
         };
         let occurrences = recording.events.iter().map(|hit| self.detectors.occurrence(hit)).collect();
-        let creep = self.session.creep(&recording);
-        Ok(Outcome { recording, occurrences, creep, ending, reached, ball: self.detectors.ball_energy(), error, wall })
+        let Found { creep, penetrations, slides, rolling } = statistics.found();
+        Ok(Outcome {
+            recording,
+            occurrences,
+            creep,
+            penetrations,
+            slides,
+            rolling,
+            ending,
+            reached,
+            ball: self.detectors.ball_energy(),
+            error,
+            wall,
+        })
     }
 }
 

@@ -50,50 +50,78 @@ struct Touch {
     plane: Plane,
 }
 
-impl Session {
-    /// Links with collision geometry that are below a plane of contact by more than the contacts of
-    /// their body, and a twentieth of their size: nothing holds them there. `t`, s, and `q`,
-    /// `[t.len() · nq]`, are the times and states to look at: of a start, or of a
-    /// [`Recording`](articulated::simulate::Recording). Of meshes, which are not read, the link's
-    /// centre of mass counts. The deepest comes first; none where the scene has no contact.
-    pub fn penetrations(&self, t: &[f64], q: &[f64]) -> Vec<Penetration> {
-        let touches = self.touches();
+/// Depths of links below planes of contact, state by state: of links with collision geometry that
+/// are below a plane by more than the contacts of their body, and a twentieth of their size. Of
+/// meshes, which are not read, the link's centre of mass counts.
+pub(crate) struct Depths<'s> {
+    session: &'s Session,
+    touches: Vec<Touch>,
+    planes: Vec<Plane>,
+    parts: Vec<Part<'s>>,
+    found: Vec<Option<Penetration>>,
+    /// Depth of each part in the first state, m; 0 where it was not too deep.
+    at_start: Option<Vec<f64>>,
+}
+
+impl<'s> Depths<'s> {
+    pub(crate) fn of(session: &'s Session) -> Self {
+        let touches = session.touches();
         let mut planes: Vec<Plane> = Vec::new();
         touches.iter().for_each(|touch| planes.extend(Some(touch.plane).filter(|plane| !planes.contains(plane))));
-        let parts = if planes.is_empty() { Vec::new() } else { self.parts() };
-        if parts.is_empty() || self.model.nq() == 0 {
-            return Vec::new();
-        }
-        let mut found: Vec<Option<Penetration>> = parts.iter().map(|_| None).collect();
-        let (mut ws, mut places) = (self.model.workspace(), vec![0.0; 12 * self.model.frames().len()]);
-        for (t, q) in t.iter().zip(q.chunks_exact(self.model.nq())) {
-            if self.model.placements(&mut ws, q, &mut places).is_err() {
-                continue;
-            }
-            for plane in &planes {
-                let held = self.held(&touches, plane, &places);
-                for (part, found) in parts.iter().zip(&mut found) {
-                    let depth = part.spheres.iter().map(|s| depth(s, &places[12 * part.frame..][..12], plane)).fold(f64::MIN, f64::max);
-                    if depth <= held[self.model.frames()[part.frame].body] + part.beside {
-                        continue;
-                    }
-                    let new = || Penetration { link: part.link.to_owned(), from: *t, depth, at: *t };
-                    let known = found.get_or_insert_with(new);
-                    if depth > known.depth {
-                        (known.depth, known.at) = (depth, *t);
-                    }
+        let parts = if planes.is_empty() { Vec::new() } else { session.parts() };
+        Self { session, touches, planes, found: parts.iter().map(|_| None).collect(), parts, at_start: None }
+    }
+
+    /// A state at this time, s, by the placements of the model's frames, `[frames][12]`.
+    pub(crate) fn add(&mut self, t: f64, places: &[f64]) {
+        for plane in &self.planes {
+            let held = self.session.held(&self.touches, plane, places);
+            for (part, found) in self.parts.iter().zip(&mut self.found) {
+                let depth = part.spheres.iter().map(|s| depth(s, &places[12 * part.frame..][..12], plane)).fold(f64::MIN, f64::max);
+                if depth <= held[self.session.model.frames()[part.frame].body] + part.beside {
+                    continue;
+                }
+                let new = || Penetration { link: part.link.to_owned(), from: t, depth, at: t };
+                let known = found.get_or_insert_with(new);
+                if depth > known.depth {
+                    (known.depth, known.at) = (depth, t);
                 }
             }
         }
-        let mut found: Vec<Penetration> = found.into_iter().flatten().collect();
-        found.sort_by(|a, b| b.depth.total_cmp(&a.depth));
-        found
+        let depths = || self.found.iter().map(|found| found.as_ref().map_or(0.0, |p| p.depth)).collect();
+        self.at_start.get_or_insert_with(depths);
+    }
+
+    /// The links that went too deep, the deepest first. Those that were there from the start on are
+    /// left out unless they sank much deeper.
+    pub(crate) fn found(self) -> Vec<Penetration> {
+        let at_start = self.at_start.unwrap_or_default();
+        let sank = |(k, found): (usize, Option<Penetration>)| found.filter(|p| p.depth > 1.5 * at_start.get(k).copied().unwrap_or(0.0));
+        deepest_first(self.found.into_iter().enumerate().filter_map(sank).collect())
+    }
+}
+
+fn deepest_first(mut found: Vec<Penetration>) -> Vec<Penetration> {
+    found.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+    found
+}
+
+impl Session {
+    /// Links that are below a plane of contact at the coordinates q `[nq]` where nothing holds them,
+    /// the deepest first; none where the scene has no contact.
+    pub fn penetrations_at(&self, q: &[f64]) -> Vec<Penetration> {
+        let (mut depths, mut places) = (Depths::of(self), vec![0.0; 12 * self.model.frames().len()]);
+        if depths.parts.is_empty() || self.model.placements(&mut self.model.workspace(), q, &mut places).is_err() {
+            return Vec::new();
+        }
+        depths.add(0.0, &places);
+        deepest_first(depths.found.into_iter().flatten().collect())
     }
 
     /// A warning of links that are below a plane at the coordinates q `[nq]`, where a motion
     /// starts.
     pub fn warning_of_penetrations_at_start(&self, q: &[f64]) -> Option<String> {
-        let found = self.penetrations(&[0.0], q);
+        let found = self.penetrations_at(q);
         let (which, them) = count(found.len())?;
         let list = listed(&found, |p| format!("{:?} ({} m deep)", p.link, Plain(rounded(p.depth))));
         let file = &self.scene.file;
@@ -103,17 +131,11 @@ impl Session {
         ))
     }
 
-    /// A warning of links that went below a plane in a motion with these times, s, and states,
-    /// `[t.len() · nq]`. Those that were there from the start on are left out unless they sank much
-    /// deeper.
-    pub fn warning_of_penetrations(&self, t: &[f64], q: &[f64]) -> Option<String> {
-        let (first, start) = (t.first()?, q.get(..self.model.nq())?);
-        let at_start = self.penetrations(&[*first], start);
-        let depth_at_start = |link: &str| at_start.iter().find(|p| p.link == link).map_or(0.0, |p| p.depth);
-        let mut found = self.penetrations(t, q);
-        found.retain(|p| p.depth > 1.5 * depth_at_start(&p.link));
+    /// A warning of links that went below a plane in a motion
+    /// ([`Outcome::penetrations`](crate::Outcome::penetrations)).
+    pub fn warning_of_penetrations(&self, found: &[Penetration]) -> Option<String> {
         let (which, them) = count(found.len())?;
-        let list = listed(&found, |p| {
+        let list = listed(found, |p| {
             let [from, at, depth] = [p.from, p.at, rounded(p.depth)].map(Plain);
             format!("{:?} from t = {from} s on, {depth} m deep at t = {at} s", p.link)
         });
@@ -203,6 +225,6 @@ fn listed(found: &[Penetration], one: impl Fn(&Penetration) -> String) -> String
 }
 
 /// To three digits, for people.
-fn rounded(x: f64) -> f64 {
+pub(crate) fn rounded(x: f64) -> f64 {
     format!("{x:.2e}").parse().unwrap_or(x)
 }

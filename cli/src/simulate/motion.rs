@@ -7,7 +7,7 @@ use std::time::Duration;
 use articulated::FunctionId;
 use articulated::simulate::{Balance, Counts, Recording as Run, Settings};
 use articulated_lab::session::{Code, Session};
-use articulated_motion::{Creep, Ending, InitialState, Occurrence, Outcome};
+use articulated_motion::{Creep, Ending, InitialState, Occurrence, Outcome, Slide};
 
 use super::monitor::RunMonitor;
 use super::recording::{EventRecord, Recording};
@@ -24,6 +24,8 @@ pub(super) struct Motion {
     pub(super) balance: Balance,
     /// What smoothed friction did not hold.
     pub(super) creep: Vec<Creep>,
+    /// What friction would hold, and moves all the same.
+    pub(super) slides: Vec<Slide>,
     /// The time that was reached, s.
     pub(super) reached: f64,
     pub(super) ending: Ending,
@@ -33,7 +35,7 @@ pub(super) struct Motion {
     pub(super) ball: Option<f64>,
     /// Why it did not go on to its end.
     pub(super) error: Option<String>,
-    /// Warnings about its initial state and its events.
+    /// Warnings about its initial state, its events and its steps.
     pub(super) warnings: Vec<String>,
 }
 
@@ -84,17 +86,20 @@ pub(super) fn run(
         monitor.look(t, counts);
         go_on()
     })?;
-    let Outcome { recording, occurrences, creep, ending, reached, ball, error, wall } = outcome;
+    let Outcome { recording, occurrences, creep, penetrations, slides, rolling, ending, reached, ball, error, wall } = outcome;
     let (counts, balance) = (recording.counts, recording.balance.unwrap_or_default());
     let error = error.map(|e| e.to_string());
-    let penetrations = session.warning_of_penetrations(&recording.t, &recording.q);
-    penetrations.iter().for_each(|line| console::warn(line));
-    let warnings = session.warnings(initial).into_iter().chain(unavailable).chain(penetrations).collect();
+    let of_slides = slides.iter().map(ToString::to_string);
+    let of_rolling = rolling.iter().map(ToString::to_string);
+    let of_steps: Vec<String> = session.warning_of_penetrations(&penetrations).into_iter().chain(of_slides).chain(of_rolling).collect();
+    of_steps.iter().for_each(|line| console::warn(line));
+    let warnings = session.warnings(initial).into_iter().chain(unavailable).chain(of_steps).collect();
     Ok(Motion {
         recording: named_recording(session, recording, occurrences),
         counts,
         balance,
         creep,
+        slides,
         reached,
         ending,
         wall,

@@ -3,7 +3,7 @@
 use articulated::simulate::{Balance, Counts, Settings};
 use articulated_core::description::JointKind;
 use articulated_core::effect::EffectId;
-use articulated_motion::Creep;
+use articulated_motion::{Creep, Slide};
 use serde::Serialize;
 
 use super::motion::Motion;
@@ -39,6 +39,8 @@ pub(super) struct Summary {
     pub(super) counts: Done,
     /// What smoothed friction did not hold: of contacts and of joints the one that crept furthest.
     pub(super) creep: Vec<Crept>,
+    /// Links whose contacts move although friction would hold them.
+    pub(super) slides: Vec<Slid>,
     pub(super) events: Vec<EventRecord>,
     /// Whether the ball of the scene's impact was reached and hit; `None` where there is none.
     pub(super) ball_reached: Option<bool>,
@@ -153,6 +155,26 @@ impl Crept {
     }
 }
 
+/// A link whose contacts move although friction would hold them.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Slid {
+    /// The link.
+    pub(super) on: String,
+    pub(super) distance_m: f64,
+    pub(super) time_s: f64,
+    /// The mean force across the normal over the largest that friction has.
+    pub(super) part_of_friction: f64,
+    /// A damping time with which the contacts rest.
+    pub(super) damping_time_s: f64,
+}
+
+impl Slid {
+    fn of(slide: &Slide) -> Self {
+        let Slide { on, distance, time, part, damping_time, .. } = slide;
+        Self { on: on.clone(), distance_m: *distance, time_s: *time, part_of_friction: *part, damping_time_s: *damping_time }
+    }
+}
+
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Done {
     pub(super) steps: u64,
@@ -163,6 +185,8 @@ pub(super) struct Done {
     pub(super) derivatives: u64,
     pub(super) smallest_step_s: Option<f64>,
     pub(super) largest_step_s: f64,
+    /// Steps over a stiff layer, left out of the balance of energy.
+    pub(super) steps_over_stiff_layers: u64,
     /// Where stiffness was noted.
     pub(super) stiff_at_s: Option<f64>,
     /// The joint whose error limits most steps, where they are chosen by tolerances.
@@ -194,6 +218,7 @@ impl Summary {
             momentum: Momentum::of(r),
             counts: Done::of(session, &motion.counts, r.len()),
             creep: motion.creep.iter().map(|creep| Crept::of(session, creep)).collect(),
+            slides: motion.slides.iter().map(Slid::of).collect(),
             events: r.events.clone(),
             ball_reached: session.scene.impact.as_ref().map(|_| motion.ball.is_some()),
             ball_speed_m_per_s: r.events.iter().find_map(|e| e.ball_speed_m_per_s),
@@ -248,12 +273,14 @@ impl Energy {
 /// Part of the largest energy moved that a motion may lack and still be that of the scene.
 const NOT_KEPT: f64 = 0.1;
 
+/// Part from which on fixed steps deserve to be shorter.
+const LOOSE_STEPS: f64 = 0.01;
+
 /// Part from which on steps chosen by tolerances deserve smaller tolerances.
 const LOOSE: f64 = 1e-4;
 
 impl Summary {
-    /// A warning if the balance of energy is not kept, or only loosely by steps that tolerances
-    /// choose.
+    /// A warning if the balance of energy is not kept, or only loosely for such steps.
     pub(super) fn out_of_balance(&self) -> Option<String> {
         let part = self.energy.relative_imbalance;
         if !part.is_finite() {
@@ -263,7 +290,11 @@ impl Summary {
         if !self.energy.is_kept() {
             return Some(format!("{lacks}: the steps are too long, and this motion is not that of the scene"));
         }
-        let loose = self.integrator.step_s.is_none() && part > LOOSE;
+        if let Some(step) = self.integrator.step_s {
+            return (part > LOOSE_STEPS)
+                .then(|| format!("{lacks}, expected at most {LOOSE_STEPS}: take shorter steps, found step = {step:e} s"));
+        }
+        let loose = part > LOOSE;
         loose.then(|| {
             format!("{lacks}, expected at most {LOOSE:e}: take smaller tolerances (rtol, atol), found rtol = {:e}", self.integrator.rtol)
         })
@@ -290,6 +321,7 @@ impl Done {
             derivatives: c.derivatives,
             smallest_step_s: Some(c.smallest_step).filter(|s| s.is_finite()),
             largest_step_s: c.largest_step,
+            steps_over_stiff_layers: c.layers,
             stiff_at_s: c.stiff_at,
             limited_by: c.limited_by.and_then(|index| joint_of(session, index)),
             records,

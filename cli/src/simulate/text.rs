@@ -91,11 +91,18 @@ fn table(s: &Summary) -> Table {
         row(&format!("creep of {} at {}", crept.effect, plain(&crept.on)), none(), number(crept.distance), crept.unit);
         row("  while it should be held", none(), number(crept.time_s), "s");
     }
+    for slid in &s.slides {
+        row(&format!("slide of contact at {}", plain(&slid.on)), none(), number(slid.distance_m), "m");
+        row("  although its cone holds", none(), number(slid.time_s), "s");
+    }
     if last != "end" {
         row("in all", none(), none(), "");
     }
     row("steps", none(), c.steps.to_string(), "");
     row("  rejected", none(), c.rejected_steps.to_string(), "");
+    if c.steps_over_stiff_layers > 0 {
+        row("  over a stiff layer, not in the balance", none(), c.steps_over_stiff_layers.to_string(), "");
+    }
     row("  shortest step", none(), c.smallest_step_s.map_or_else(String::new, number), "s");
     row("  longest step", none(), number(c.largest_step_s), "s");
     row("evaluations of forward dynamics", none(), c.evaluations.to_string(), "");

@@ -378,7 +378,7 @@ damping = "file"
 armature = "file"
 # friction = "file"  # dry friction
 # limit = { from = "file", stiffness = 1e4, damping = 10 }  # limits
-# contact = { "*" = { from = "collision", plane = "file", stiffness = 1e5, damping = 1, friction = 0.8 } }  # against the planes of the file
+# contact = { "*" = { from = "collision", plane = "file", stiffness = 1.8e4, damping_time = 1.0e-2, friction = 0.8 } }  # against the planes of the file; 1 kg at rest on 2 points
 
 [initial]
 # keyframe = "bent"

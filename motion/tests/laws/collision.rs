@@ -32,7 +32,7 @@ fn rest(collision: &str, from: &str) -> f64 {
     let session = session(&fall(from, CONTACT), &body(collision));
     let outcome = moved(&session);
     assert_eq!(session.warning_of_penetrations_at_start(outcome.recording.q_at(0)), None);
-    assert_eq!(session.warning_of_penetrations(&outcome.recording.t, &outcome.recording.q), None);
+    assert_eq!(session.warning_of_penetrations(&outcome.penetrations), None);
     height(&outcome)
 }
 
@@ -152,13 +152,13 @@ const FEET: &str = "[[effects.contact.foot]]\nxyz = [0.1, 0, -0.04]\nradius = 0.
 /// A leg on a line of two points falls to its side, and its trunk goes through the floor.
 #[test]
 fn a_link_that_falls_through_is_named_with_its_depth_and_time() {
-    let scene = fall("xyz = [0, 0, 0.545], rpy = [0.2, 0, 0]", FEET).replace("end = 4.0", "end = 1.5");
+    let scene =
+        fall("xyz = [0, 0, 0.545], rpy = [0.2, 0, 0]", FEET).replace("end = 4.0", "end = 1.5").replace("output = 0.1", "output = 'steps'");
     for trunk in [BOX, "<mesh filename='trunk.stl'/>"] {
         let session = session(&scene, &hopper(trunk));
-        let Outcome { recording, error, .. } = moved(&session);
+        let Outcome { recording, error, penetrations: found, .. } = moved(&session);
         assert_eq!(error, None);
         assert_eq!(session.warning_of_penetrations_at_start(recording.q_at(0)), None);
-        let found = session.penetrations(&recording.t, &recording.q);
         let trunk_is_box = trunk == BOX;
         let deep = found.iter().find(|p| p.link == "trunk").unwrap_or_else(|| panic!("{found:?}"));
         // By hand, from the recorded states.
@@ -174,7 +174,7 @@ fn a_link_that_falls_through_is_named_with_its_depth_and_time() {
         let deepest = (0..recording.len()).max_by(|a, b| corner(*a).total_cmp(&corner(*b))).unwrap();
         assert_eq!((deep.from, deep.at), (recording.t[first], recording.t[deepest]));
         assert!((deep.depth - corner(deepest)).abs() < 1e-12 && deep.depth > 0.1, "{deep:?}");
-        let told = session.warning_of_penetrations(&recording.t, &recording.q).unwrap();
+        let told = session.warning_of_penetrations(&found).unwrap();
         let line = format!("\"trunk\" from t = {} s on, ", recording.t[first]);
         assert!(told.starts_with("s.toml: effects.contact: found ") && told.contains(&line), "{told}");
         assert!(told.contains("below a contact plane") && told.contains("`from = \"collision\"`"), "{told}");
@@ -189,7 +189,7 @@ fn with_contact_of_its_geometry_nothing_falls_through() {
     assert_eq!(session.effects_of(EffectId::contact).count(), 8 + 2 + 8);
     let outcome = moved(&session);
     assert!(height(&outcome) > 0.05, "{}", height(&outcome));
-    assert_eq!(session.warning_of_penetrations(&outcome.recording.t, &outcome.recording.q), None);
+    assert_eq!(session.warning_of_penetrations(&outcome.penetrations), None);
 }
 
 fn told_at(session: &Session) -> Option<String> {

@@ -7,6 +7,7 @@ mod events;
 mod friction;
 mod generated;
 mod opened;
+mod rest;
 
 use articulated::Base;
 use articulated_motion::{Outcome, Scene, Session};

@@ -43,4 +43,4 @@ pub use control::{Constant, Control, Dependence, Drive, Hold, NoTorque, Pd, Torq
 pub use error::{SimulateError, StateError};
 pub use event::{Action, ContactPoint, Direction, Event, Impact, Map, SLIDING, Struck};
 pub use recording::{Balance, Counts, Ended, Hit, Recording};
-pub use simulation::Simulation;
+pub use simulation::{Reached, Simulation};

@@ -60,6 +60,9 @@ pub(crate) struct Known {
     pub(crate) from_events: f64,
     /// T + U where the motion began, J.
     at_start: f64,
+    /// What the balance lacked after the last step, J, and in all steps over stiff layers.
+    lacked: f64,
+    left_out: f64,
 }
 
 impl Known {
@@ -75,6 +78,8 @@ impl Known {
             tau: v,
             from_events: 0.0,
             at_start: 0.0,
+            lacked: 0.0,
+            left_out: 0.0,
         }
     }
 
@@ -161,10 +166,17 @@ impl Known {
         let (kinetic, potential) = self.energies(system, q, &y[nv..2 * nv])?;
         let (kinetic, potential) = (kinetic.unwrap_or(0.0), potential.unwrap_or(0.0));
         if to.balance.is_none() {
-            self.at_start = kinetic + potential;
+            (self.at_start, self.lacked, self.left_out) = (kinetic + potential, 0.0, 0.0);
         }
         let (work, dissipated) = (y[2 * nv], y[2 * nv + 1]);
-        let imbalance = kinetic + potential - self.at_start - work - dissipated - self.from_events;
+        let imbalance = kinetic + potential - self.at_start - work - dissipated - self.from_events - self.left_out;
+        let imbalance = if system.over_layer {
+            self.left_out += imbalance - self.lacked;
+            self.lacked
+        } else {
+            imbalance
+        };
+        self.lacked = imbalance;
         to.balance.get_or_insert_default().add(imbalance, [kinetic, work, dissipated, self.from_events]);
         Ok(())
     }

@@ -27,6 +27,10 @@ pub struct Counts {
     pub largest_step: f64,
     /// The shortest step, s.
     pub smallest_step: f64,
+    /// Steps over a stiff layer: the motion has a decay that is faster than the step, and the
+    /// integrator goes over it without its shape. Work and losses in such a step are those of the
+    /// change of energy, and the step is left out of the balance.
+    pub layers: u64,
     /// When an explicit integrator was first held back by stiffness, s.
     pub stiff_at: Option<f64>,
     /// Of steps that tolerances choose: which of the 2·nv numbers of a step (step of q, then v) had
@@ -45,6 +49,7 @@ impl Default for Counts {
             factorizations: 0,
             iterations: 0,
             events: 0,
+            layers: 0,
             largest_step: 0.0,
             smallest_step: f64::INFINITY,
             stiff_at: None,
@@ -82,7 +87,8 @@ pub enum Ended {
     ByObserver,
 }
 
-/// The balance of energy over all steps of a motion, whatever is recorded.
+/// The balance of energy over all steps of a motion, whatever is recorded, but for steps over a
+/// stiff layer ([`Counts::layers`]).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Balance {
     /// Largest |T + U − (T + U at the start) − work − dissipated − from events| after any step, J.

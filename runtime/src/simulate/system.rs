@@ -34,8 +34,11 @@ pub(crate) struct System<'r, R: Dynamics<f64>> {
     pub(crate) no_torque: Option<(f64, usize)>,
     pub(crate) has_motors: bool,
     pub(crate) has_losses: bool,
+    has_energies: bool,
     /// Whether the last two numbers of y are integrated; they are zero otherwise.
     pub(crate) follows_work: bool,
+    /// Whether the last step went over a stiff layer.
+    pub(crate) over_layer: bool,
 }
 
 impl<'r, R: Dynamics<f64>> System<'r, R> {
@@ -57,11 +60,14 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
             no_torque: None,
             has_motors: false,
             has_losses: false,
+            has_energies: false,
             follows_work: false,
+            over_layer: false,
         };
         let zero = vec![0.0; nv];
         system.has_motors = super::effects::motor_torques(robot, &mut system.ws, &zero, &zero, &mut system.applied);
         system.has_losses = super::effects::dissipation(robot, &mut system.ws, &system.origin, &zero).is_some();
+        system.has_energies = system.energy_here(&zero).is_some();
         Ok(system)
     }
 
@@ -119,6 +125,34 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         let (u, v) = (&y[..nv], &y[nv..2 * nv]);
         self.command_at(control, t, u, v)?;
         Ok(self.powers(v))
+    }
+
+    /// T + U, J, of a state of the chart; `None` if the robot lacks one of the two functions.
+    pub(crate) fn energy(&mut self, y: &[f64]) -> Result<Option<f64>, FunctionError> {
+        let nv = self.nv();
+        if !self.has_energies {
+            return Ok(None);
+        }
+        self.place(&y[..nv])?;
+        Ok(self.energy_here(&y[nv..2 * nv]))
+    }
+
+    fn energy_here(&mut self, v: &[f64]) -> Option<f64> {
+        let (mut kinetic, mut potential) = ([0.0], [0.0]);
+        self.robot.kinetic_energy(&mut self.ws, &self.q, v, &mut kinetic).ok()?;
+        self.robot.potential_energy(&mut self.ws, &self.q, &mut potential).ok()?;
+        Some(kinetic[0] + potential[0])
+    }
+
+    /// The torques that the motors give in a state, `[nv]`, in `given`.
+    pub(crate) fn motor_torques(&mut self, control: &mut dyn Control, t: f64, y: &[f64], given: &mut [f64]) -> Result<(), SimulateError> {
+        let nv = self.nv();
+        let (u, v) = (&y[..nv], &y[nv..2 * nv]);
+        self.command_at(control, t, u, v)?;
+        if !(self.has_motors && super::effects::motor_torques(self.robot, &mut self.ws, v, &self.tau, given)) {
+            given.copy_from_slice(&self.tau);
+        }
+        Ok(())
     }
 
     fn place(&mut self, u: &[f64]) -> Result<(), FunctionError> {

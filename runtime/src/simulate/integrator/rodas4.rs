@@ -11,7 +11,8 @@
 //! J is exact: derivatives of forward dynamics along ⊕, −½ ad(v) for joints that turn freely, and
 //! those of the controller by differences. The first half of the equations is eliminated by hand,
 //! so that what is factorised is `[nv][nv]`. Work and losses are integrated over the curve, by
-//! Gauss with three nodes.
+//! Gauss with three nodes; but over a layer, in which a velocity decays faster than the step, the
+//! curve has no shape, and they come from the change of energy.
 
 use articulated_core::dynamics::Dynamics;
 use articulated_core::nalgebra::{Matrix6, Vector6};
@@ -76,6 +77,8 @@ pub(crate) struct Rodas4 {
     powers: [[f64; 3]; 2],
     tau: [Vec<f64>; 2],
     q: Vec<f64>,
+    /// Torques at the ends of a step over a layer, `[nv]` each.
+    given: [Vec<f64>; 2],
     /// Time and number of steps at which the derivatives were taken.
     at: Option<(f64, u64)>,
 }
@@ -98,6 +101,7 @@ impl Rodas4 {
             powers: [[0.0; 3]; 2],
             tau: [vec![0.0; nv], vec![0.0; nv]],
             q: vec![0.0; manifold.nq],
+            given: [vec![0.0; nv], vec![0.0; nv]],
             at: None,
         }
     }
@@ -254,6 +258,51 @@ impl Rodas4 {
         apply(free, &self.inverses, g, u);
     }
 
+    /// Whether a step begins with a layer: a velocity that decays by its rates, as far as it does,
+    /// with h·λ > 1, and whose acceleration at the start would carry it beyond its size at both ends.
+    ///
+    /// On a slow motion through stiff forces the derivative of the acceleration along the motion,
+    /// ȧ = ∂a/∂q v + ∂a/∂v a + ∂a/∂t, is no larger than that of the slow motion: it is no layer.
+    fn begins_with_layer(&self, start: Start, end: &[f64]) -> bool {
+        let (nv, h) = (self.nv, start.h);
+        let (v, a) = (&start.y[nv..2 * nv], &start.f[nv..2 * nv]);
+        let dot = |row: &[f64], x: &[f64]| row.iter().zip(x).map(|(m, x)| m * x).sum::<f64>();
+        (0..nv).any(|i| {
+            let by_rates = dot(&self.derivatives[(nv + i) * nv..][..nv], a);
+            let along = dot(&self.derivatives[i * nv..][..nv], v) + by_rates + self.drift[i];
+            let decays = |change: f64| -h * change * a[i].signum() > a[i].abs();
+            h * a[i].abs() > v[i].abs().max(end[nv + i].abs()) && decays(by_rates) && decays(along)
+        })
+    }
+
+    /// Work and losses of a step over a layer, in J: by the change of energy, of which the work is
+    /// that of the mean torque on the way, which is exact where the torque is linear in the way.
+    /// `None` if the powers at the nodes say the same.
+    fn over_layer<R: Dynamics<f64>>(
+        &mut self,
+        system: &mut System<R>,
+        control: &mut dyn Control,
+        start: Start,
+        end: &[f64],
+        by_powers: [f64; 2],
+    ) -> Result<Option<[f64; 2]>, SimulateError> {
+        let nv = self.nv;
+        let (Some(before), Some(after)) = (system.energy(start.y)?, system.energy(end)?) else { return Ok(None) };
+        let change = after - before;
+        let moved = change.abs() + start.y[2 * nv].abs() + start.y[2 * nv + 1].abs();
+        if (change - by_powers[0] - by_powers[1]).abs() <= SAME_ENERGY * moved {
+            return Ok(None);
+        }
+        if !system.has_losses {
+            return Ok(Some([change, 0.0]));
+        }
+        let [first, last] = &mut self.given;
+        system.motor_torques(control, start.t, start.y, first)?;
+        system.motor_torques(control, start.t + start.h, end, last)?;
+        let work = first.iter().zip(last.iter()).zip(&end[..nv]).map(|((a, b), u)| 0.5 * (a + b) * u).sum::<f64>();
+        Ok(Some([work, change - work]))
+    }
+
     fn combine(&self, a: &[f64], i: usize) -> f64 {
         let n = self.f.len();
         a.iter().enumerate().map(|(j, a)| a * self.k[j * n + i]).sum()
@@ -274,6 +323,9 @@ fn apply(free: &[Free], inverses: &[Matrix6<f64>], g: f64, x: &mut [f64]) {
     }
     x[next..].iter_mut().for_each(|x| *x /= g);
 }
+
+/// Part of the energy moved so far up to which two sums of it count as the same.
+const SAME_ENERGY: f64 = 1e-9;
 
 /// Where the middle of the other two nodes of Gauss is, from ½.
 const OUTER: f64 = 0.387_298_334_620_741_7;
@@ -329,8 +381,16 @@ impl<R: Dynamics<f64>> Method<R> for Rodas4 {
             (self.powers[0][node], self.powers[1][node]) = (powers[0], powers[1]);
         }
         self.argument = y;
-        for (k, p) in self.powers.iter().enumerate() {
-            end[2 * self.nv + k] = start.y[2 * self.nv + k] + h * (5.0 * (p[0] + p[2]) + 8.0 * p[1]) / 18.0;
+        let mut gained = self.powers.map(|p| h * (5.0 * (p[0] + p[2]) + 8.0 * p[1]) / 18.0);
+        system.over_layer = false;
+        if self.begins_with_layer(start, end)
+            && let Some(right) = self.over_layer(system, control, start, end, gained)?
+        {
+            (gained, system.over_layer) = (right, true);
+            self.powers = right.map(|energy| [energy / h; 3]);
+        }
+        for (k, gained) in gained.into_iter().enumerate() {
+            end[2 * self.nv + k] = start.y[2 * self.nv + k] + gained;
         }
         Ok(())
     }

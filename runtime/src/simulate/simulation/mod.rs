@@ -46,6 +46,19 @@ pub struct Simulation<'r, R: Dynamics<f64>> {
     spare: Vec<f64>,
 }
 
+/// The state that a step of a run reached.
+#[derive(Clone, Copy, Debug)]
+pub struct Reached<'a> {
+    /// The time, s.
+    pub t: f64,
+    /// The configuration, `[nq]`.
+    pub q: &'a [f64],
+    /// The velocity, `[nv]`.
+    pub v: &'a [f64],
+    /// What was done since the start.
+    pub counts: &'a Counts,
+}
+
 /// What a run is given: what drives the joints, what is looked for, and where records go.
 struct Run<'a, 'e> {
     control: &'a mut dyn Control,
@@ -211,6 +224,19 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         recording: &mut Recording,
         observer: &mut dyn FnMut(f64, &Counts) -> bool,
     ) -> Result<(), SimulateError> {
+        self.run_observed((q, v), control, events, recording, &mut |step| observer(step.t, step.counts))
+    }
+
+    /// As [`Simulation::run_into`], with an observer of the state after each step, whatever is
+    /// recorded. The start is `q` and `v`; the observer is not called there.
+    pub fn run_observed(
+        &mut self,
+        (q, v): (&[f64], &[f64]),
+        control: &mut dyn Control,
+        events: &mut [Event],
+        recording: &mut Recording,
+        observer: &mut dyn FnMut(&Reached<'_>) -> bool,
+    ) -> Result<(), SimulateError> {
         self.known.begin(&self.system, recording);
         let state = self.system.manifold.wrong_state(self.system.robot, q, v);
         let events_wrong = events.iter().flat_map(|event| event.wrong(self.shape));
@@ -262,7 +288,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         self.system.counts = Counts::default();
         let controller = if self.settings.step.is_none() { self.method.controller() } else { None };
         self.progress = Progress::begin(self.settings.start, controller, None, u64::MAX);
-        (self.system.holds, self.system.no_torque) = (false, None);
+        (self.system.holds, self.system.no_torque, self.system.over_layer) = (false, None, false);
         self.known.from_events = 0.0;
         self.method.reset();
         self.stability.reset();
@@ -299,11 +325,13 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         Ok(())
     }
 
-    fn steps(&mut self, run: &mut Run, observer: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Ended, SimulateError> {
+    fn steps(&mut self, run: &mut Run, observer: &mut dyn FnMut(&Reached<'_>) -> bool) -> Result<Ended, SimulateError> {
         self.prepare(run)?;
         loop {
             let (outcome, mapped) = self.one_step(run)?;
-            let goes_on = observer(self.t, &self.system.counts);
+            let nv = self.shape.nv;
+            let state = Reached { t: self.t, q: &self.system.origin, v: &self.y[nv..2 * nv], counts: &self.system.counts };
+            let goes_on = observer(&state);
             let ended = self.ended(&outcome, goes_on);
             // The end that was asked for is recorded if it was asked for.
             let early = ended.is_some_and(|ended| mapped || ended != Ended::AtEnd);
@@ -498,6 +526,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     fn count_step(&mut self, h: f64) {
         let counts = &mut self.system.counts;
         counts.steps += 1;
+        counts.layers += u64::from(self.system.over_layer);
         counts.limited_by = self.progress.pace.limiting();
         counts.largest_step = counts.largest_step.max(h);
         // What happens where a motion begins cuts its first step off at once.
