@@ -265,3 +265,29 @@ fn planes_that_are_not_there_or_said_twice_are_errors() {
     let many = resolve_on(&many, &format!("[effects.contact]\nfrom = 'collision'\nplane = 'file'\n{LAW}"), Base::Fixed).unwrap_err();
     assert!(many.errors.len() == 1 && many.to_string().contains("has 102 planes, expected at most 100"), "{many}");
 }
+
+/// Old scenes have `damping`; `damping_time` alone is enough, and both add up.
+#[test]
+fn a_contact_is_damped_by_one_of_two_keys_or_by_both() {
+    let law = |damping: &str| format!("[effects.contact]\nfrom = 'collision'\nstiffness = 1e4\nfriction = 0.5\n{damping}");
+    let numbers = |damping: &str| {
+        let resolved = resolved(&law(damping));
+        let parameters = &resolved.effects[0].parameters;
+        (parameters[2], parameters[9])
+    };
+    assert_eq!(
+        ["damping = 2.0", "damping_time = 0.01", "damping = 2.0\ndamping_time = 0.01"].map(numbers),
+        [(2.0, 0.0), (0.0, 0.01), (2.0, 0.01)]
+    );
+    // One of them for all, the other for a link.
+    let hand = resolved(&format!(
+        "{}[effects.contact.palm]\ndamping_time = 0.02",
+        law("").replace("[effects.contact]", "[effects.contact.'*']") + "damping = 1.0\n"
+    ));
+    let of_palm = hand.effects.iter().find(|a| a.on == "palm").unwrap();
+    assert_eq!((of_palm.parameters[2], of_palm.parameters[9]), (1.0, 0.02));
+    let told = refused(&law(""));
+    assert!(told.contains("found no damping for link \"trunk\", expected damping, s/m, or damping_time"), "{told}");
+    let negative = Scene::read("s.toml", &law("damping_time = -1.0")).unwrap_err().to_string();
+    assert!(negative.contains("damping_time: found -1.0, expected a finite number, at least 0"), "{negative}");
+}

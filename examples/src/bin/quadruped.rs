@@ -18,10 +18,10 @@ articulated::robot! {
         base = floating,
         functions = [forward_dynamics, forward_dynamics_derivatives, integrate, difference],
         effects = { contact = {
-            front_left_foot = { radius = 0.02, stiffness = 1e5, damping = 1.0, friction = 0.8 },
-            front_right_foot = { radius = 0.02, stiffness = 1e5, damping = 1.0, friction = 0.8 },
-            hind_left_foot = { radius = 0.02, stiffness = 1e5, damping = 1.0, friction = 0.8 },
-            hind_right_foot = { radius = 0.02, stiffness = 1e5, damping = 1.0, friction = 0.8 },
+            front_left_foot = { radius = 0.02, stiffness = 1e5, damping_time = 0.03, friction = 0.8 },
+            front_right_foot = { radius = 0.02, stiffness = 1e5, damping_time = 0.03, friction = 0.8 },
+            hind_left_foot = { radius = 0.02, stiffness = 1e5, damping_time = 0.03, friction = 0.8 },
+            hind_right_foot = { radius = 0.02, stiffness = 1e5, damping_time = 0.03, friction = 0.8 },
         } },
     }
 }

@@ -29,7 +29,8 @@ pub struct Counts {
     pub smallest_step: f64,
     /// Steps over a stiff layer: the motion has a decay that is faster than the step, and the
     /// integrator goes over it without its shape. Work and losses in such a step are those of the
-    /// change of energy, and the step is left out of the balance.
+    /// change of energy, and the step is left out of the balance. Counted if the balance is
+    /// requested.
     pub layers: u64,
     /// When an explicit integrator was first held back by stiffness, s.
     pub stiff_at: Option<f64>,

@@ -105,13 +105,19 @@ fn pieces(n: usize) -> String {
 /// The parameters of an effect by name.
 fn numbers(applied: &Applied) -> String {
     let mut rest = applied.parameters.as_slice();
+    let fields = applied.effect.row().fields_of(applied.parameters.len());
+    // What stands in for another field and is 0 is off.
+    let stands_in = |f: &Field| fields.iter().any(|other| other.unless == Some(f.name));
     let field = |f: &Field| {
         let (own, others) = rest.split_at(f.len.min(rest.len()));
         rest = others;
+        if stands_in(f) && own.iter().all(|x| *x == 0.0) {
+            return None;
+        }
         let unit = if f.unit == "1" { String::new() } else { format!(" {}", f.unit) };
-        if let [x] = own { format!("{} {x:?}{unit}", f.name) } else { format!("{} {own:?}{unit}", f.name) }
+        Some(if let [x] = own { format!("{} {x:?}{unit}", f.name) } else { format!("{} {own:?}{unit}", f.name) })
     };
-    applied.effect.row().fields_of(applied.parameters.len()).iter().map(field).collect::<Vec<_>>().join(", ")
+    fields.iter().filter_map(field).collect::<Vec<_>>().join(", ")
 }
 
 /// How much of the unused content a header lists.
