@@ -1,8 +1,13 @@
 #!/usr/bin/env bash
 # Everything that has to hold before a change lands: formatting, lints, tests, documentation, fixtures made anew by the oracles, and the
 # README's main command. Needs git, a Rust toolchain and Python 3; whatever else it needs it installs into .venv and target.
+# What takes longer is in tests/nightly.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+
+# Everything in the workspace but the Python package, which has tests of its own.
+rust=(--workspace --exclude articulated-python)
+target=${CARGO_TARGET_DIR:-$PWD/target}
 
 step() {
     local start=$SECONDS
@@ -39,11 +44,16 @@ alone() { # core without std, and without allocation; the reader without a secon
 }
 
 documentation() {
-    RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps
+    RUSTDOCFLAGS="-D warnings" cargo doc --quiet "${rust[@]}" --no-deps
 }
 
-readme_command() {
-    cargo run --quiet --release -p articulated-cli -- compare panda_like --repetitions 31
+# The command and the wheel are built in one profile and one folder. With the features of both, so that each crate is compiled once.
+release() {
+    cargo build --quiet --release -p articulated-cli -p articulated-python --bins
+}
+
+readme_command() { # `cargo run --release -p articulated-cli -- compare panda_like`, which is compiled already
+    "$ARTICULATED_COMMAND" compare panda_like --repetitions 31
 }
 
 arm() { # where there is an emulator, which only an administrator can install, and rustup for the compiler's target
@@ -58,9 +68,8 @@ browser() { # where there is Chromium, which only an administrator can install
     python3 tests/browser/pages.py --install
 }
 
-python_package() { # of a workspace of its own, so that nothing else compiles PyO3
-    cargo fmt --manifest-path python/Cargo.toml --check
-    CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target} python/check.sh
+python_package() {
+    CARGO_TARGET_DIR=$target python/check.sh
 }
 
 ensure fmt rustfmt
@@ -81,10 +90,13 @@ oracles() {
 }
 
 step cargo fmt --all --check
-step cargo clippy --quiet --workspace --all-targets -- -D warnings
+step cargo clippy --quiet "${rust[@]}" -- -D warnings
 step alone
-step cargo test --workspace
+step cargo test "${rust[@]}"
 step arm
+step release
+# What scripts run is there now: the command, and the examples, which `cargo test` compiles.
+export ARTICULATED_COMMAND=$target/release/articulated ARTICULATED_EXAMPLES=$target/debug/examples
 beside oracles
 step python3 tests/shipped/shipped.py --sample
 step python_package

@@ -89,10 +89,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
         bound: arguments.bound,
     };
     let report = measure(robot.loaded(), &reading.description, &robot.whole_model(&built)?, &settings)?;
-    console::print(&match format {
-        Format::Text => report.text(),
-        Format::Json => crate::json(&report),
-    })?;
+    console::report(format, || report.text(), || crate::json(&report))?;
     // The report is printed even if the drawing cannot be written: it took minutes to measure.
     if let Some(file) = &arguments.chart {
         output::write(file, report.chart()).map_err(Failure::after_report)?;

@@ -65,11 +65,10 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
     if let Some(path) = &arguments.output {
         write(arguments.language, path, &generated)?;
     }
-    match (format, &arguments.output) {
-        (Format::Json, _) => console::print(&json(&generated)),
-        (Format::Text, None) => console::print(&generated.files.iter().map(|file| file.text.as_str()).collect::<String>()),
-        (Format::Text, Some(_)) => Ok(()),
+    if format == Format::Text && arguments.output.is_some() {
+        return Ok(());
     }
+    console::report(format, || generated.files.iter().map(|file| file.text.as_str()).collect(), || json(&generated))
 }
 
 /// The target language with its options. Errors: options of the other language, from the command

@@ -78,6 +78,42 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
+/// What a command says, in both formats: from one run, so that they can be compared.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// The exit status: see [`failure`].
+    pub status: u8,
+    /// The report as text; empty if there is none.
+    pub text: String,
+    /// The report as JSON, or the errors if there is no report.
+    pub json: String,
+    /// A line for each error; none if the status is 0.
+    pub errors: Vec<String>,
+    /// Warnings and notes, a line each.
+    pub warnings: Vec<String>,
+}
+
+/// Runs the command with these words, the program's own name first, and returns what it says
+/// instead of printing it. `--format` is ignored. Files that the words name are written.
+///
+/// # Errors
+/// What the command line's parser says of words that it refuses.
+pub fn answer(words: impl IntoIterator<Item = OsString>) -> Result<Answer, String> {
+    let arguments = Arguments::try_parse_from(words).map_err(|error| error.render().to_string())?;
+    let ((ended, reports), warnings) = articulated_lab::console::collect(|| console::capture(|| dispatch(&arguments)));
+    let console::Reports { text, mut json } = reports;
+    let (status, errors) = match ended {
+        Ok(status) => (status, Vec::new()),
+        Err(failure) => {
+            if !failure.reported {
+                json = crate::json(&failure);
+            }
+            (failure.status, failure.errors.into_iter().map(|error| error.message).collect())
+        }
+    };
+    Ok(Answer { status, text, json, errors, warnings })
+}
+
 /// What is wrong with the command line, with words escaped that have what a terminal would obey;
 /// none where no word has.
 fn with_plain_words(text: &str, words: &[OsString]) -> Option<String> {

@@ -96,10 +96,8 @@ pub(crate) fn run(arguments: &NewArguments, format: Format) -> Result<(), Failur
         output::write(&folder.join(file), text)?;
     }
     let run = vec![format!("cd {}", folder.display()), "cargo run --release".to_owned()];
-    match format {
-        Format::Json => console::print(&crate::json(&Report { folder: folder.display().to_string(), files: FILES.to_vec(), run })),
-        Format::Text => console::print(&format!("{}: {}\n\nNext:\n  {}\n", folder.display(), FILES.join(", "), run.join("\n  "))),
-    }
+    let text = || format!("{}: {}\n\nNext:\n  {}\n", folder.display(), FILES.join(", "), run.join("\n  "));
+    console::report(format, text, || crate::json(&Report { folder: folder.display().to_string(), files: FILES.to_vec(), run: run.clone() }))
 }
 
 /// The crate's name: the last part of the folder.

@@ -50,11 +50,8 @@ pub(crate) fn run(arguments: &ScalingArguments, format: Format) -> Result<(), Fa
         repetitions: arguments.repetitions,
     };
     let report = measure(&settings)?;
-    console::print(&match format {
-        Format::Json => crate::json(&report),
-        Format::Text if arguments.markdown => report.markdown(arguments.chart.as_deref()),
-        Format::Text => report.text(),
-    })?;
+    let text = || if arguments.markdown { report.markdown(arguments.chart.as_deref()) } else { report.text() };
+    console::report(format, text, || crate::json(&report))?;
     // The report is printed even if the drawing cannot be written: it took minutes to measure.
     arguments.chart.as_ref().map_or(Ok(()), |path| output::write(path, report.chart())).map_err(Failure::after_report)
 }

@@ -71,10 +71,7 @@ pub(crate) fn run(arguments: &StressArguments, format: Format) -> Result<u8, Fai
         }
         None => of_corpus(&settings)?,
     };
-    console::print(&match format {
-        Format::Text => report.text(arguments.rows),
-        Format::Json => crate::json(&report),
-    })?;
+    console::report(format, || report.text(arguments.rows), || crate::json(&report))?;
     report.exceeded().map_or(Ok(OK), |line| Err(Failure::bound_of_report(line)))
 }
 

@@ -108,6 +108,8 @@ pub struct Generated {
     /// where the source has a loop ([`unsolved`](articulated_core::algorithm::Function::unsolved)),
     /// since the graph is then incomplete.
     pub graphs: Vec<graph::Graph>,
+    /// The statements of each function, in the order of the ledger: what the target prints.
+    pub bodies: Vec<lir::Bodies>,
     /// Warnings about the document.
     pub warnings: Vec<Diagnostic>,
     /// Content that is understood but not used.
@@ -191,9 +193,10 @@ pub fn generate(request: &Request) -> Result<Generated, Diagnostics> {
         warnings: &warnings,
     };
     let files = request.options.target.print(&module);
+    let bodies = module.functions.into_iter().map(lir::function::Function::into_bodies).collect();
     let graphs = programs.into_iter().map(|p| if p.columns.is_some() { graph::Graph::default() } else { p.graph }).collect();
     let source = files.last().map(|file| file.text.clone()).unwrap_or_default();
-    Ok(Generated { source, files, model, parameters, level: request.options.level, ledger, graphs, warnings, unused, snapped })
+    Ok(Generated { source, files, model, parameters, level: request.options.level, ledger, graphs, bodies, warnings, unused, snapped })
 }
 
 /// Instructions beyond which straight-line code is of little use: compilation takes minutes, and

@@ -22,6 +22,9 @@ from pathlib import Path
 import shapes
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from programs import build_command  # noqa: E402
+
 REPOSITORY = HERE.parent.parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
 PLACE = TARGET / "browser"
@@ -59,8 +62,7 @@ def install():
 
 def command():
     """The path of the command, built."""
-    subprocess.check_call(["cargo", "build", "--quiet", "--release", "-p", "articulated-cli"], cwd=REPOSITORY)
-    return TARGET / "release" / "articulated"
+    return build_command()
 
 
 def write(articulated, scene, page, *words):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Generated C on microcontrollers and in WebAssembly: instructions of a call, size of its code, stack.
 
-    python3 tests/embedded/measure.py [COMMAND]     COMMAND: the articulated command; `cargo run` if absent
+    python3 tests/embedded/measure.py [COMMAND]     COMMAND: the articulated command; built if absent
 
 Cortex-M4F and M7 are emulated by QEMU, which counts instructions, not cycles. WebAssembly runs in node. Every result is compared with that of
 the same C on this machine. Needs gcc-arm-none-eabi and qemu-system-arm, or clang, lld and node (packages of Debian); what is not installed
@@ -16,6 +16,9 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from programs import build_command  # noqa: E402
+
 REPOSITORY = HERE.parent.parent
 CALLS = 200  # as in main.c
 INSTRUCTIONS_PER_TICK = 40  # the boards' clock is 25 MHz, and QEMU takes an instruction for a nanosecond
@@ -136,6 +139,6 @@ def webassembly(command):
 
 
 if __name__ == "__main__":
-    program = sys.argv[1:] or ["cargo", "run", "--quiet", "-p", "articulated-cli", "--"]
+    program = sys.argv[1:] or [build_command()]
     microcontrollers(program)
     webassembly(program)

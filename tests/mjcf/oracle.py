@@ -17,6 +17,8 @@ and dampers, and equations of joints.
 Law: nothing is taken out of MuJoCo's model unless a warning of the reader names it. What is outside of every comparison is
 printed by name. A file with flexible bodies or plugins is read where an option leaves them out, and not compared.
 
+Every command then runs on the file (tests/every_command.py): no panic, documented exit codes, and reports that are JSON.
+
 Packages are downloaded, not installed: their models are unpacked into target/mjcf. MuJoCo goes into a virtual environment
 there, with the versions of requirements.txt.
 
@@ -36,13 +38,14 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+from every_command import complaints  # noqa: E402
+from programs import COMMAND, build_command, build_example, example  # noqa: E402
 from virtual_environment import python_of  # noqa: E402
 
 REPOSITORY = HERE.parent.parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
 PLACE = TARGET / "mjcf"
-COMMAND = TARGET / "release" / ("articulated.exe" if os.name == "nt" else "articulated")
-HELPER = TARGET / "release" / "examples" / ("dynamics.exe" if os.name == "nt" else "dynamics")
+HELPER = example("dynamics")
 TABLE = REPOSITORY / "docs" / "mjcf-files.md"
 ENDINGS = {".xml", ".mjcf", ".stl", ".obj", ".msh", ".png", ".skn", ".bin", ".jpg", ".hf"}
 # Those that simulate.py moves, and of which code is generated.
@@ -65,9 +68,8 @@ def main():
     arguments = parse()
     python = environment()
     if "MJCF_ORACLE" not in os.environ:
-        build()
-        if arguments.generated:
-            build_command()
+        build_example("dynamics")
+        build_command()
         words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in sys.argv]
         # MuJoCo writes a log into the folder that it runs in.
         code = subprocess.run([str(python), *words], cwd=PLACE, env={**os.environ, "MJCF_ORACLE": "1"}).returncode
@@ -135,15 +137,6 @@ def environment():
     return python_of(PLACE / "python", HERE / "requirements.txt")
 
 
-def build():
-    command = ["cargo", "build", "--quiet", "--release", "-p", "articulated-formats", "--example", "dynamics"]
-    subprocess.run(command, check=True, cwd=REPOSITORY)
-
-
-def build_command():
-    subprocess.run(["cargo", "build", "--quiet", "--release", "-p", "articulated-cli"], check=True, cwd=REPOSITORY)
-
-
 def models():
     """The paths of MODELS."""
     wanted = argparse.Namespace(sample=False, only="")
@@ -195,6 +188,8 @@ def files_of(folder):
             continue
         try:
             verdict, numbers, counts = compare(path)
+            wrong = complaints(path) if verdict == "equal" else []
+            verdict = f"differs: {'; '.join(wrong)}" if wrong else verdict
         except subprocess.TimeoutExpired:
             verdict, numbers, counts = "differs: no answer in two minutes", {}, {}
         rows.append((path.relative_to(folder).as_posix(), verdict, numbers, counts))

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Loads generated C by casadi.external, and solves the same motion with it and with CasADi's own expressions.
 
-    python3 tests/oracles/external.py [COMMAND]     COMMAND: the articulated command; built in a debug profile if absent
+    python3 tests/oracles/external.py [COMMAND]     COMMAND: the articulated command; built if absent
 
 Checks, for the bundled six-axis arm: values of every function against CasADi's own recursion, Jacobians against those of CasADi's automatic
 differentiation, sparsity against structural zeros, a function whose arguments are left out, and the solution of a reach by IPOPT. Prints the
@@ -16,7 +16,8 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parent.parent
-sys.path[:0] = [str(HERE), str(HERE.parent / "peers")]
+sys.path[:0] = [str(HERE), str(HERE.parent / "peers"), str(HERE.parent)]
+from programs import build_command  # noqa: E402
 
 ROBOT = "ur5_like"
 FUNCTIONS = ["inverse_dynamics", "inverse_dynamics_derivatives", "forward_dynamics", "forward_dynamics_derivatives", "mass_matrix", "placements"]
@@ -114,7 +115,7 @@ def main():
     import numpy
     from casadi_code import Robot
 
-    command = sys.argv[1:] or ["cargo", "run", "--quiet", "-p", "articulated-cli", "--"]
+    command = sys.argv[1:] or [build_command()]
     read = Robot(REPOSITORY / "models" / "urdf" / f"{ROBOT}.urdf", False)
     own = {name: casadi.Function(name, arguments, outputs(), {"cse": True}) for name, (arguments, outputs) in read.functions().items()
            if name in ("inverse_dynamics", "forward_dynamics")}

@@ -32,12 +32,14 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+from every_command import complaints  # noqa: E402
+from programs import build_command, build_example, example  # noqa: E402
 from virtual_environment import python_of  # noqa: E402
 
 REPOSITORY = HERE.parent.parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
 PLACE = TARGET / "sdf"
-HELPER = TARGET / "release" / "examples" / ("dynamics.exe" if os.name == "nt" else "dynamics")
+HELPER = example("dynamics")
 PAGE = REPOSITORY / "docs" / "sdf.md"
 BEGIN, END = "<!-- files: written by tests/sdf/oracle.py --write -->", "<!-- end of files -->"
 ENDINGS = {".sdf", ".config"}
@@ -50,7 +52,8 @@ def main():
     arguments = parse()
     python = environment()
     if "SDF_ORACLE" not in os.environ:
-        build()
+        build_example("dynamics")
+        build_command()
         words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in sys.argv]
         sys.exit(subprocess.run([str(python), *words], cwd=PLACE, env={**os.environ, "SDF_ORACLE": "1"}).returncode)
     if arguments.file:
@@ -61,6 +64,9 @@ def main():
     for name, folder in [("files of tests/sdf", HERE / "models"), *packages(arguments)]:
         for file in sorted(folder.rglob("*.sdf")):
             verdict, numbers = compare(file)
+            # Every command reads the file as it is.
+            wrong = complaints(file) if verdict.startswith("equal") else []
+            verdict = f"differs: {'; '.join(wrong)}" if wrong else verdict
             rows.append((name, file.relative_to(folder), verdict))
             print(f"{name}: {file.name}: {verdict}", *(f"{key} {value:.1e}" for key, value in numbers.items() if value > BOUND), flush=True)
             if verdict.startswith("equal"):
@@ -85,11 +91,6 @@ def parse():
 def environment():
     """The Python with Drake."""
     return python_of(PLACE / "python", HERE / "requirements.txt")
-
-
-def build():
-    command = ["cargo", "build", "--quiet", "--release", "-p", "articulated-formats", "--example", "dynamics"]
-    subprocess.run(command, check=True, cwd=REPOSITORY)
 
 
 def packages(arguments):

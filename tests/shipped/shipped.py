@@ -28,9 +28,12 @@ import zlib
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from every_command import complaints  # noqa: E402
+from programs import COMMAND, build_command  # noqa: E402
+
 REPOSITORY = HERE.parent.parent
 PLACE = REPOSITORY / "target" / "shipped"
-COMMAND = REPOSITORY / "target" / "release" / ("articulated.exe" if os.name == "nt" else "articulated")
 LEFT_OUT = "random_urdfs"  # a thousand blocks of random shape in pybullet: no robots
 BOUND = 1e-12  # of the scale of each number; of forward dynamics also ten times what Pinocchio's own are off
 STATES = 3
@@ -200,6 +203,7 @@ def examine(task):
     entry["degrees_of_freedom"] = report["totals"]["degrees_of_freedom"]
     if not entry["robot"]:
         return entry
+    entry["complaints"] = complaints(path, ["--fixed"])
     entry["fixed"] = compare(path, "--fixed", report)
     status, floating = articulated(path, "--floating", "check")
     entry["floating"] = compare(path, "--floating", floating) if status == 0 else {"not_compared": "no mass on a floating base"}
@@ -220,6 +224,7 @@ def verdict(entry, listed):
         wrong.append(f"{entry['file']}: refused, and not in refused.txt: {entry['reason']}")
     if entry["usable"] and entry["file"] in listed:
         wrong.append(f"{entry['file']}: usable, but still in refused.txt")
+    wrong += [f"{entry['file']}: {sentence}" for sentence in entry.get("complaints", [])]
     for base in ("fixed", "floating"):
         found = entry.get(base, {})
         if "failed" in found:
@@ -273,7 +278,7 @@ def main():
     arguments = parser.parse_args()
     ensure_packages()
     sys.path.insert(0, str(HERE))
-    subprocess.check_call(["cargo", "build", "--quiet", "--release", "-p", "articulated-cli"], cwd=REPOSITORY)
+    build_command()
     tasks = [(package, path) for package in packages(arguments.sample, arguments.only) for path in unpack(package)]
     if not tasks:
         parser.error("no package matches")

@@ -26,12 +26,13 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+from programs import build_example, example  # noqa: E402
 from virtual_environment import python_of  # noqa: E402
 
 REPOSITORY = HERE.parent.parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
 PLACE = TARGET / "xacro"
-HELPER = TARGET / "debug" / "examples" / ("urdf_of.exe" if os.name == "nt" else "urdf_of")
+HELPER = example("urdf_of")
 
 
 def main():
@@ -67,9 +68,8 @@ def parse():
 
 
 def prepare():
-    command = ["cargo", "build", "-q", "-p", "articulated-formats", "--example", "urdf_of"]
     if not os.environ.get("XACRO_HELPER"):
-        subprocess.run(command, cwd=REPOSITORY, check=True)
+        build_example("urdf_of")
 
 
 def environment():

@@ -22,10 +22,7 @@ pub(crate) fn run(arguments: &CheckArguments, format: Format) -> Result<u8, Fail
     let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     let scene = robot.scene.is_some().then_some(arguments.robot.robot.as_path());
     let report = examine(&robot, scene, &crate::names::flat(&arguments.function));
-    console::print(&match format {
-        Format::Text => text::text(&report),
-        Format::Json => crate::json(&report),
-    })?;
+    console::report(format, || text::text(&report), || crate::json(&report))?;
     Ok(if report.usable { crate::failure::OK } else { crate::failure::INPUT })
 }
 

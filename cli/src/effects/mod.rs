@@ -70,8 +70,5 @@ pub(crate) fn run(arguments: &EffectsArguments, format: Format) -> Result<(), Fa
     }
     report.costs.sort_by_key(|cost| functions.iter().position(|name| *name == cost.function));
     drop(progress);
-    console::print(&match format {
-        Format::Text => text::text(&report),
-        Format::Json => crate::json(&report),
-    })
+    console::report(format, || text::text(&report), || crate::json(&report))
 }

@@ -51,10 +51,7 @@ pub(crate) fn run(arguments: &EvalArguments, format: Format) -> Result<u8, Failu
     let found = warnings::of_results(&report.functions, &states.states, &model, &arguments.states.to_string_lossy());
     found.iter().for_each(|w| console::warn(w));
     report.warnings.extend(found);
-    console::print(&match format {
-        Format::Text => text::text(&report, &model),
-        Format::Json => crate::json(&report.json(&model)),
-    })?;
+    console::report(format, || text::text(&report, &model), || crate::json(&report.json(&model)))?;
     match report.functions.iter().find(|f| f.exceeded()) {
         None => Ok(OK),
         Some(f) if f.largest.is_some_and(|d| d.exceeded()) => {

@@ -53,11 +53,8 @@ pub(crate) fn run(arguments: &FunctionsArguments, format: Format) -> Result<(), 
         let costs = cells.by_ref().take(subjects.len()).collect::<Result<_, _>>()?;
         report.functions.push(FunctionRow::new(f, costs));
     }
-    console::print(&match format {
-        Format::Json => crate::json(&report),
-        Format::Text if arguments.markdown => text::markdown(&report),
-        Format::Text => text::text(&report),
-    })
+    let text = || if arguments.markdown { text::markdown(&report) } else { text::text(&report) };
+    console::report(format, text, || crate::json(&report))
 }
 
 fn subject(name: &Path, arguments: &FunctionsArguments) -> Result<(Subject, RobotRow), Failure> {

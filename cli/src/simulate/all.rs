@@ -46,10 +46,7 @@ pub(super) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
         progress.step();
     }
     drop(progress);
-    console::print(&match format {
-        Format::Text => text(&rows),
-        Format::Json => crate::json(&rows),
-    })?;
+    console::report(format, || text(&rows), || crate::json(&rows))?;
     Ok(status(&rows))
 }
 

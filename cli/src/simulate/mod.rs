@@ -23,6 +23,7 @@ use articulated_lab::compiled::Rustc;
 use articulated_lab::session::{Code, Session};
 use articulated_lab::straight::Straight;
 use articulated_motion::InitialState;
+use serde::Serialize;
 
 use crate::arguments::Format;
 use crate::console::{self, Progress};
@@ -35,6 +36,13 @@ use motion::Motion;
 use size::Size;
 use summary::Summary;
 
+/// What `--print-scene` prints as JSON.
+#[derive(Serialize)]
+struct PrintedScene<'a> {
+    /// The scene, as TOML.
+    scene: &'a str,
+}
+
 /// Simulates and writes.
 pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
     let Some(scene) = &arguments.scene else { return all::run(arguments, format) };
@@ -45,7 +53,8 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
                 scene.display()
             )]));
         }
-        console::print(&robot_scene::text(scene)?)?;
+        let text = robot_scene::text(scene)?;
+        console::report(format, || text.clone(), || crate::json(&PrintedScene { scene: &text }))?;
         return Ok(OK);
     }
     let session = named_scene::session(scene)?;
@@ -57,10 +66,7 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     let (mut settings, initial) = Failure::both(settings, session.start().map_err(Failure::from))?;
     if let Some(file) = &arguments.against {
         let report = against::measure(&session, &initial, &settings, file)?;
-        console::print(&match format {
-            Format::Text => report.text(),
-            Format::Json => crate::json(&report),
-        })?;
+        console::report(format, || report.text(), || crate::json(&report))?;
         return Ok(OK);
     }
     motion::solvable(&session)?;
@@ -84,10 +90,7 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
         files::write_mcap(&session, &motion, &mut summary, path, size::allowed(arguments))?;
     }
     drop(progress);
-    console::print(&match format {
-        Format::Text => text::text(&summary),
-        Format::Json => crate::json(&summary),
-    })?;
+    console::report(format, || text::text(&summary), || crate::json(&summary))?;
     if let Some(warning) = summary.out_of_balance() {
         console::warn(&format!("{}: {warning}", session.scene.file));
     }

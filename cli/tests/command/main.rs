@@ -9,6 +9,7 @@ mod edits;
 mod effects;
 mod eval;
 mod events;
+mod every_model;
 mod functions;
 mod generate;
 mod inputs;

@@ -13,7 +13,7 @@ use crate::lir::pass::outline::outline;
 use crate::lir::pass::pair_stores::pair_stores;
 use crate::lir::pass::rows::WIDTH;
 use crate::lir::pass::spill::{self, spill};
-use crate::lir::{Array, Body, Stmt, Ty};
+use crate::lir::{Array, Bodies, Body, Stmt, Ty};
 use crate::program::{MultiRhsSolve, Program};
 use crate::spec::FunctionSpec;
 use crate::{Arithmetic, Precision};
@@ -141,6 +141,22 @@ impl<'a> Function<'a> {
     /// Whether the values are vectors.
     pub(crate) fn in_lanes(&self) -> bool {
         matches!(self.body.ty, Ty::Vector(_))
+    }
+
+    /// Its bodies alone.
+    pub(crate) fn into_bodies(self) -> Bodies {
+        let (states, states_few_registers) = match self.states {
+            Some(States { body, few_registers }) => (Some(body), few_registers),
+            None => (None, None),
+        };
+        Bodies {
+            single: self.body,
+            few_registers: self.few_registers,
+            scalar: self.scalar.map(|(body, _)| body),
+            states,
+            states_few_registers,
+            is_followed_by_columns: self.columns.is_some(),
+        }
     }
 }
 

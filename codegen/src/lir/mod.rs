@@ -265,6 +265,35 @@ pub struct Body {
     pub is_partial: bool,
 }
 
+/// The lowered bodies of a generated function: targets print these, and print nothing else but a
+/// loop over columns.
+#[derive(Clone, Debug)]
+pub struct Bodies {
+    /// The function of one state.
+    pub single: Body,
+    /// The same with spill slots, for processors with few registers.
+    pub few_registers: Option<Body>,
+    /// The same with plain numbers, where the values of the first are vectors.
+    pub scalar: Option<Body>,
+    /// The function of many states.
+    pub states: Option<Body>,
+    /// The same with spill slots.
+    pub states_few_registers: Option<Body>,
+    /// Whether a loop over the columns of a system of equations follows the function of one state.
+    /// The loop is not part of a body.
+    pub is_followed_by_columns: bool,
+}
+
+impl Bodies {
+    /// All of them with their names.
+    pub fn all(&self) -> impl Iterator<Item = (&'static str, &Body)> {
+        let Self { single, few_registers, scalar, states, states_few_registers, .. } = self;
+        let rest = [few_registers, scalar, states, states_few_registers].map(Option::as_ref);
+        let names = ["few registers", "scalar", "states", "states, few registers"];
+        std::iter::once(("single", single)).chain(names.into_iter().zip(rest).filter_map(|(name, body)| Some((name, body?))))
+    }
+}
+
 impl Body {
     /// How many different values are stored in the result: constants and copies of the same value
     /// are not computed.

@@ -8,38 +8,58 @@ use articulated_tests::random_limbs::random_limbs;
 use articulated_tests::urdf_text;
 
 use crate::equals_generic::compare;
+use crate::interpreted::{self, kinds};
 use crate::robots::{Robot, with};
 
-/// How many are compiled, and by how many a longer test goes on.
-const ROBOTS: [std::ops::Range<u64>; 2] = [0..12, 12..32];
+/// The random robots, and those of them that are compiled: together these have every kind of
+/// statement that all of them have.
+const ROBOTS: std::ops::Range<u64> = 0..32;
+const COMPILED: [u64; 4] = [0, 1, 2, 3];
 
 /// One of each way in which code is made: lanes alone, matrices in lanes, pieces, frames, and what
 /// all limbs add to.
 const FUNCTIONS: [&str; 5] =
     ["inverse_dynamics", "mass_matrix", "inverse_dynamics_derivatives", "jacobians_body", "centroidal_momentum_matrix"];
 
-#[test]
-fn limbs_of_every_kind_are_those_of_the_generic_library() {
-    compare_limbs(ROBOTS[0].clone());
-}
-
-#[test]
-#[ignore = "more robots of the kinds above; rustc takes a minute: cargo test … -- --ignored"]
-fn so_are_further_limbs() {
-    compare_limbs(ROBOTS[1].clone());
-}
-
-fn compare_limbs(seeds: std::ops::Range<u64>) {
+fn robots(seeds: impl Iterator<Item = u64>) -> Vec<Robot> {
     let robot = |seed| {
         let urdf = urdf_text(&random_limbs(seed));
         with(format!("limbs_{seed}"), &urdf, Base::Floating, false, Options::default(), |name| FUNCTIONS.contains(&name))
     };
-    let robots: Vec<Robot> = seeds.map(robot).collect();
-    let modules: Vec<(&str, &Generated)> = robots.iter().map(|r| (r.name.as_str(), &r.generated)).collect();
-    let program = Program::build(&modules, &["-C", "target-cpu=native"]);
+    seeds.map(robot).collect()
+}
+
+#[test]
+fn limbs_of_every_kind_are_those_of_the_generic_library() {
+    let robots = robots(ROBOTS);
     let lanes = |robot: &&Robot| robot.generated.ledger.functions.iter().any(|f| f.lanes > 1);
     let with_lanes = robots.iter().filter(lanes).count();
-    println!("{with_lanes} of {} robots have something in lanes; compiled in {:.1?}", robots.len(), program.time);
+    for robot in &robots {
+        println!("{}: {:.1} units of roundoff", robot.name, interpreted::compare(robot).0);
+    }
+    assert!(with_lanes > robots.len() / 2, "{with_lanes} of {} robots have something in lanes", robots.len());
+    let is_compiled = |robot: &&Robot| COMPILED.iter().any(|seed| robot.name == format!("limbs_{seed}"));
+    let [all, compiled] = [kinds(robots.iter()), kinds(robots.iter().filter(is_compiled))];
+    let missing: Vec<&String> = all.difference(&compiled).collect();
+    assert!(missing.is_empty(), "no compiled robot has {missing:?}");
+}
+
+#[test]
+fn limbs_are_compiled_as_they_are_interpreted() {
+    compile(COMPILED.into_iter());
+}
+
+#[test]
+#[ignore = "all robots, of which the test above compiles some; rustc takes minutes: cargo test … -- --ignored"]
+fn so_are_all_limbs() {
+    compile(ROBOTS);
+}
+
+fn compile(seeds: impl Iterator<Item = u64>) {
+    let robots = robots(seeds);
+    let modules: Vec<(&str, &Generated)> = robots.iter().map(|r| (r.name.as_str(), &r.generated)).collect();
+    let program = Program::build(&modules, &["-C", "target-cpu=native"]);
+    println!("compiled {} robots in {:.1?}", robots.len(), program.time);
     for robot in &robots {
         println!("{}: {:.1} units of roundoff", robot.name, compare(&program, robot));
     }

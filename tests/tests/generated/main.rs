@@ -7,6 +7,7 @@ mod c;
 mod choices;
 mod effects;
 mod equals_generic;
+mod interpreted;
 mod limbs;
 mod odd_robots;
 mod oracles;

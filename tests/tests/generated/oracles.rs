@@ -8,7 +8,8 @@ use articulated_models::ROBOTS as BUNDLED;
 use articulated_tests::case::{Case, State, placements};
 use articulated_tests::fixture::{Fixture, Reference, fixture};
 
-use crate::robots::{NATIVE, ROBOTS};
+use crate::interpreted;
+use crate::robots::ROBOTS;
 
 /// Error allowed relative to the fixture's own scale, and, of placements, to a metre. The fixtures
 /// are good to the last bit.
@@ -79,8 +80,10 @@ fn generated_torques_and_placements_are_the_oracles() {
     each(|case, reference| {
         let torques: Vec<Vec<&[f64]>> = reference.states.iter().map(|s| vec![&s.q[..], &s.v, &s.a]).collect();
         let poses: Vec<Vec<&[f64]>> = reference.states.iter().map(|s| vec![&s.q[..]]).collect();
-        let found = NATIVE.run(&case.name, "inverse_dynamics", &torques).into_iter().zip(NATIVE.run(&case.name, "placements", &poses));
-        let robot = &ROBOTS.iter().find(|r| r.name == case.name).unwrap().case;
+        let generated = ROBOTS.iter().find(|r| r.name == case.name).unwrap();
+        let robot = &generated.case;
+        let found = interpreted::run(generated, "inverse_dynamics", &torques);
+        let found = found.into_iter().zip(interpreted::run(generated, "placements", &poses));
         for (s, (tau, placed)) in reference.states.iter().zip(found) {
             torques_hold(&case.name, &tau, s);
             placements_hold(robot, &reference.links, &placed, s);
