@@ -24,6 +24,7 @@ step() { # NAME COMMAND...
 
 step lints cargo clippy --quiet --workspace --all-targets -- -D warnings
 # Those in 96 digits take an hour without optimisation.
+step trees env ARTICULATED_TREES=all cargo test -p articulated-core
 step ignored-tests cargo test --release --workspace --exclude articulated-python -- --ignored
 step urdf python3 tests/shipped/shipped.py
 step mjcf python3 tests/mjcf/oracle.py
