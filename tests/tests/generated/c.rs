@@ -51,13 +51,16 @@ fn robots(header_only: bool) -> Vec<Robot> {
     ]
 }
 
-static PROGRAM: LazyLock<Program> = LazyLock::new(|| {
+/// Without optimisation, which takes a minute: a test that is ignored optimises.
+static PROGRAM: LazyLock<Program> = LazyLock::new(|| program("-O0"));
+
+fn program(level: &str) -> Program {
     let shape = |robot: &Robot| robot.case.model.shape();
     let all: Vec<(&str, Shape, _)> = ROBOTS.iter().map(|r| (r.name.as_str(), shape(r), &r.generated)).collect();
-    let program = c_program::build(&all, Vectors::Any, "-O1");
+    let program = c_program::build(&all, Vectors::Any, level);
     println!("compiled {} robots in {:.1?}", all.len(), program.time);
     program
-});
+}
 
 /// Functions of every kind of argument and result; few, since they are compiled in three ways.
 const SOME: [&str; 10] = [
@@ -197,6 +200,16 @@ const STATES: usize = 8;
 
 #[test]
 fn c_gives_what_the_generic_library_gives() {
+    compare(&PROGRAM);
+}
+
+#[test]
+#[ignore = "the same as optimised code, which takes a compiler minutes: cargo test … -- --ignored"]
+fn so_does_optimised_c() {
+    compare(&program("-O2"));
+}
+
+fn compare(program: &Program) {
     for robot in ROBOTS.iter() {
         let single = robot.generated.level.is_single();
         // In doubles 14 units of roundoff were seen, in singles 40.
@@ -205,7 +218,7 @@ fn c_gives_what_the_generic_library_gives() {
         let mut worst = (0.0, "");
         for name in robot.functions() {
             let given: Vec<Vec<&[f64]>> = states.iter().map(|s| arguments(name, s)).collect();
-            for (state, found) in states.iter().zip(PROGRAM.run(&robot.name, name, &given)) {
+            for (state, found) in states.iter().zip(program.run(&robot.name, name, &given)) {
                 let far = error(&robot.case, name, state, &found) / unit;
                 worst = if far > worst.0 { (far, name) } else { worst };
             }
