@@ -43,7 +43,15 @@ pub(crate) static ROBOTS: LazyLock<Vec<Robot>> = LazyLock::new(|| {
     let strider = robot("strider".into(), include_str!("../../robots/strider.urdf"), Base::Floating, false);
     let humanoid = articulated_models::robot("humanoid").expect("it is bundled");
     let humanoid = only_derivatives("humanoid_derivatives", humanoid.urdf, humanoid.base);
-    bundled.chain(trees).chain([humanoid, walker, strider, robot("stone".into(), stone, Base::Fixed, false)]).collect()
+    // Functions with kinds of statements that the other robots that are compiled do not have.
+    let some = |name: &str, of: &str, wanted: &'static [&str]| {
+        let bundled = articulated_models::robot(of).expect("it is bundled");
+        with(name.into(), bundled.urdf, bundled.base, false, Options::default(), |name| wanted.contains(&name))
+    };
+    let six_axes = some("six_axes", "ur5_like", &["inverse_dynamics"]);
+    let four_legs = some("four_legs", "quadruped", &["mass_matrix"]);
+    let stone = robot("stone".into(), stone, Base::Fixed, false);
+    bundled.chain(trees).chain([humanoid, walker, strider, six_axes, four_legs, stone]).collect()
 });
 
 fn only_derivatives(name: &str, urdf: &str, base: Base) -> Robot {
@@ -109,7 +117,7 @@ fn has(model: &Model<f64>, frames: &[String], function: &Function<f64>, singular
 
 /// Some of them for this machine.
 pub(crate) static NATIVE: LazyLock<Program> =
-    LazyLock::new(|| native(ROBOTS.iter().filter(|r| COMPILED.contains(&r.name.as_str()))));
+    LazyLock::new(|| native(ROBOTS.iter().filter(is_compiled)));
 
 /// Robots as one program for this machine.
 pub(crate) fn native<'a>(robots: impl Iterator<Item = &'a Robot>) -> Program {
@@ -138,7 +146,12 @@ pub(crate) static ELSEWHERE: LazyLock<Program> = LazyLock::new(|| {
 
 /// The robots that are compiled: together they have every kind of statement, which
 /// `interpreted.rs` tests.
-pub(crate) const COMPILED: [&str; 7] = ["panda_like", "gripper_arm", "tree_1", "stone", LANES[0].0, LANES[1].0, LANES[2].0];
+pub(crate) const COMPILED: [&str; 9] =
+    ["panda_like", "gripper_arm", "tree_1", "stone", "six_axes", "four_legs", LANES[0].0, LANES[1].0, LANES[2].0];
+
+pub(crate) fn is_compiled(robot: &&Robot) -> bool {
+    COMPILED.contains(&robot.name.as_str())
+}
 
 /// Those with limbs in lanes, and how many.
 pub(crate) const LANES: [(&str, usize); 3] = [("walker", 4), ("strider", 2), ("humanoid_derivatives", 2)];
