@@ -297,7 +297,8 @@ impl Robot {
         let (allowed, leave_out, snap_angles) = reading;
         options.snap_angles = snap_angles;
         (options.allow_unphysical_inertia, options.first_of_duplicates, options.allow_unknown_version) = allowed;
-        let kinds = leave_out.iter().map(|kind| kind.parse::<LeaveOut>().map_err(|error| PyValueError::new_err(format!("leave_out: {error}"))));
+        let kinds =
+            leave_out.iter().map(|kind| kind.parse::<LeaveOut>().map_err(|error| PyValueError::new_err(format!("leave_out: {error}"))));
         options.leave_out = kinds.collect::<PyResult<_>>()?;
         options.file_coupling = coupling.0;
         let follower = |(joint, leaders, offset)| Coupling { joint, leaders, offset }.into();

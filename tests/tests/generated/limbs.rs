@@ -14,14 +14,8 @@ use crate::robots::{self, Robot, is_compiled, with};
 /// The random robots, and those of them that are compiled: with the compiled robots of
 /// [`crate::robots`] these have every kind of statement that all of them have.
 const ROBOTS: std::ops::Range<u64> = 0..32;
-const COMPILED: [(u64, &[&str]); 6] = [
-    (0, &FUNCTIONS),
-    (1, &FUNCTIONS),
-    (2, &FUNCTIONS),
-    (3, &FUNCTIONS),
-    (5, &["inverse_dynamics_derivatives"]),
-    (26, &["mass_matrix"]),
-];
+const COMPILED: [(u64, &[&str]); 6] =
+    [(0, &FUNCTIONS), (1, &FUNCTIONS), (2, &FUNCTIONS), (3, &FUNCTIONS), (5, &["inverse_dynamics_derivatives"]), (26, &["mass_matrix"])];
 
 /// One of each way in which code is made: lanes alone, matrices in lanes, pieces, frames, and what
 /// all limbs add to.

@@ -116,8 +116,7 @@ fn has(model: &Model<f64>, frames: &[String], function: &Function<f64>, singular
 }
 
 /// Some of them for this machine.
-pub(crate) static NATIVE: LazyLock<Program> =
-    LazyLock::new(|| native(ROBOTS.iter().filter(is_compiled)));
+pub(crate) static NATIVE: LazyLock<Program> = LazyLock::new(|| native(ROBOTS.iter().filter(is_compiled)));
 
 /// Robots as one program for this machine.
 pub(crate) fn native<'a>(robots: impl Iterator<Item = &'a Robot>) -> Program {
