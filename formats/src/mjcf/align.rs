@@ -2,12 +2,12 @@
 
 use super::axes::{in_axes, principal};
 use super::bodies::{Body, Kind};
-use super::inertia::Own;
+use super::mass::Mass;
 use crate::pose::{IDENTITY, Pose, conjugate, rotate, scale};
 
 /// Moves the frames of free bodies without children to their centres of mass and principal axes,
 /// where the file says so. Coordinates of the free joint are those of that frame.
-pub(crate) fn align(bodies: &mut [Body<'_>], inertials: &mut [Option<Own>]) {
+pub(crate) fn align(bodies: &mut [Body<'_>], inertials: &mut [Option<Mass>]) {
     let mut has_child = vec![false; bodies.len()];
     bodies.iter().skip(1).for_each(|body| has_child[body.parent] = true);
     for ((body, inertial), has_child) in bodies.iter_mut().zip(inertials).zip(has_child).skip(1) {

@@ -11,10 +11,10 @@ use super::documents::Documents;
 use super::element::Element;
 use super::geometry::{self, Geom};
 use super::grammar::subject;
-use super::inertia::Own;
 use super::left_out::Gate;
+use super::mass::Mass;
 use super::settings::{Compiler, Settings};
-use super::simulation::Flags;
+use super::simulation::{Flags, Rules};
 use super::values::Values;
 use crate::LeaveOut;
 use crate::pose::{IDENTITY, Pose, Vector, about, diagonal, multiply, rotate, unit};
@@ -94,19 +94,9 @@ pub(crate) struct Site<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Explicit<'a> {
     pub(crate) element: &'a Element,
-    pub(crate) own: Own,
+    pub(crate) own: Mass,
     /// Whether it has moments of inertia.
     pub(crate) has_inertia: bool,
-}
-
-/// What holds for all bodies, of the main file.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Rules {
-    pub(crate) flags: Flags,
-    /// Whether shapes are fitted to the corners of meshes, rather than to their inertia.
-    pub(crate) fit_corners: bool,
-    /// Whether there is no gravity.
-    pub(crate) is_weightless: bool,
 }
 
 fn explicit<'a>(values: &Values<'a>, compiler: &Compiler, log: &mut Diagnostics) -> Option<Explicit<'a>> {
@@ -127,7 +117,7 @@ fn explicit<'a>(values: &Values<'a>, compiler: &Compiler, log: &mut Diagnostics)
         None => (diagonal(values.exactly::<3>("diaginertia", log).unwrap_or_default()), Some(IDENTITY)),
     };
     let has_inertia = values.has_numbers("fullinertia") || values.has_numbers("diaginertia");
-    Some(Explicit { element: values.element, own: Own { pose, mass, inertia, axes }, has_inertia })
+    Some(Explicit { element: values.element, own: Mass { pose, mass, inertia, axes }, has_inertia })
 }
 
 /// The bodies of a model, and the documents that they are from.

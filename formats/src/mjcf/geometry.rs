@@ -7,13 +7,13 @@ use articulated_core::description::CollisionShape;
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
 use super::axes;
-use super::bodies::Rules;
 use super::element::Element;
 use super::grammar::subject;
-use super::inertia::Own;
 use super::left_out::Gate;
+use super::mass::Mass;
 use super::mesh::{self, Meshes};
 use super::settings::Settings;
+use super::simulation::Rules;
 use super::values::Values;
 use crate::pose::{IDENTITY, Pose, TINY, Vector, add, diagonal, norm, of_z_axis, rotate, scale, subtract};
 use crate::world::ContactMask;
@@ -216,7 +216,7 @@ fn size(values: &Values<'_>, kind: Kind, has_mesh: bool, settings: &Settings<'_>
 
 impl Geom<'_> {
     /// Its mass, centre and inertia; `None` if it has no mass, or an error was reported.
-    pub(crate) fn mass(&self, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Option<Own> {
+    pub(crate) fn mass(&self, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Option<Mass> {
         if self.mass == Some(0.0) || (self.mass.is_none() && self.density == 0.0) {
             return None;
         }
@@ -256,7 +256,7 @@ impl Geom<'_> {
             return None;
         }
         let mass = self.mass.unwrap_or(self.density * volume);
-        (mass > TINY).then(|| Own { mass, pose, inertia: inertia.map(|x| mass * x), axes: Some(axes) })
+        (mass > TINY).then(|| Mass { mass, pose, inertia: inertia.map(|x| mass * x), axes: Some(axes) })
     }
 
     /// Moves it, as the frame of its body moves the other way.

@@ -1,46 +1,20 @@
 //! The mass of a body: from `<inertial>` or from its geoms.
 
-use articulated_core::description::{Inertial, PrincipalMoments};
+use articulated_core::description::PrincipalMoments;
 use articulated_core::diagnostic::{Code, Diagnostics};
 
 use super::axes;
 use super::bodies::{Body, Explicit};
 use super::grammar::subject;
+use super::mass::Mass;
 use super::mesh::Meshes;
 use super::settings::{Compiler, InertiaFromGeom};
 use crate::mass::beyond_any_mass;
-use crate::pose::{IDENTITY, Pose, Quaternion, Symmetric, add, diagonal, of_point, scale, subtract, turned};
-
-/// MuJoCo refuses bodies that move and have less mass, kg, or moments of inertia, kg·m².
-const LEAST: f64 = 1e-15;
-
-/// The mass of a body, with its centre and its inertia about it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Own {
-    pub(crate) pose: Pose,
-    pub(crate) mass: f64,
-    /// In the axes of the pose.
-    pub(crate) inertia: Symmetric,
-    /// The rotation from the pose to the principal axes, where it is not that of the inertia.
-    pub(crate) axes: Option<Quaternion>,
-}
-
-impl Own {
-    /// As a description has it.
-    pub(crate) fn inertial(&self) -> Inertial {
-        Inertial { origin: self.pose.origin(), mass: self.mass, inertia: self.inertia }
-    }
-
-    /// Whether MuJoCo accepts it for a body that moves.
-    fn can_move(&self) -> bool {
-        let (moments, _) = axes::principal(self.inertia);
-        self.mass >= LEAST && moments.iter().all(|moment| *moment >= LEAST)
-    }
-}
+use crate::pose::{IDENTITY, Pose, Symmetric, add, diagonal, of_point, scale, subtract, turned};
 
 /// The masses of all bodies; `None` for bodies without.
-pub(crate) fn of_bodies(bodies: &[Body<'_>], meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Vec<Option<Own>> {
-    let mut all: Vec<Option<Own>> = Vec::with_capacity(bodies.len());
+pub(crate) fn of_bodies(bodies: &[Body<'_>], meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Vec<Option<Mass>> {
+    let mut all: Vec<Option<Mass>> = Vec::with_capacity(bodies.len());
     // Without its inertia
     let mut points: Vec<Option<&Explicit<'_>>> = vec![None; bodies.len()];
     all.push(None);
@@ -56,7 +30,7 @@ pub(crate) fn of_bodies(bodies: &[Body<'_>], meshes: &mut Meshes<'_>, log: &mut 
 }
 
 /// Warns of masses that no body has.
-fn warn_of_masses(bodies: &[Body<'_>], all: &[Option<Own>], log: &mut Diagnostics) {
+fn warn_of_masses(bodies: &[Body<'_>], all: &[Option<Mass>], log: &mut Diagnostics) {
     for (body, own) in bodies.iter().zip(all) {
         if let Some((found, expected)) = own.and_then(|own| beyond_any_mass(own.mass)) {
             body.element.warning((&subject(body.element), "mass"), Code::Units, found, expected, log);
@@ -65,7 +39,7 @@ fn warn_of_masses(bodies: &[Body<'_>], all: &[Option<Own>], log: &mut Diagnostic
 }
 
 /// Refuses masses without inertia of what moves as one, unless another body of it has inertia.
-fn refuse_points(bodies: &[Body<'_>], all: &[Option<Own>], points: &[Option<&Explicit<'_>>], log: &mut Diagnostics) {
+fn refuse_points(bodies: &[Body<'_>], all: &[Option<Mass>], points: &[Option<&Explicit<'_>>], log: &mut Diagnostics) {
     // The body with joints that carries each body; the world carries the rest
     let mut carriers = vec![0; bodies.len()];
     let mut can_move = vec![false; bodies.len()];
@@ -82,7 +56,7 @@ fn refuse_points(bodies: &[Body<'_>], all: &[Option<Own>], points: &[Option<&Exp
 }
 
 /// Scales all masses so that they are the `settotalmass` of the main file.
-fn set_total_mass(bodies: &[Body<'_>], all: &mut [Option<Own>]) {
+fn set_total_mass(bodies: &[Body<'_>], all: &mut [Option<Mass>]) {
     let Some(wanted) = bodies.first().and_then(|world| world.settings.compiler.total_mass) else { return };
     let total: f64 = all.iter().flatten().map(|own| own.mass).sum();
     if total <= 0.0 {
@@ -97,7 +71,7 @@ fn set_total_mass(bodies: &[Body<'_>], all: &mut [Option<Own>]) {
 
 /// The mass of a body, bounds included, and the `<inertial>` that gives it; `None` for a body
 /// without.
-fn of_body<'b>(body: &'b Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> (Option<Own>, Option<&'b Explicit<'b>>) {
+fn of_body<'b>(body: &'b Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> (Option<Mass>, Option<&'b Explicit<'b>>) {
     let compiler = &body.settings.compiler;
     let from_geoms = match compiler.inertia_from_geom {
         InertiaFromGeom::Never => false,
@@ -108,7 +82,7 @@ fn of_body<'b>(body: &'b Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostic
     let given = body.inertial.as_ref().filter(|_| geoms.is_none());
     let found = geoms.or_else(|| given.map(|given| given.own)).unwrap_or_default();
     let mass = found.mass.max(compiler.bound_mass);
-    let own = Own { mass, ..bounded(body, compiler, found, log) };
+    let own = Mass { mass, ..bounded(body, compiler, found, log) };
     if found.mass < 0.0 {
         let found = format!("a negative mass, {} kg", found.mass);
         body.element.error((&subject(body.element), "mass"), Code::NegativeMass, found, "a mass of zero or more", log);
@@ -117,7 +91,7 @@ fn of_body<'b>(body: &'b Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostic
 }
 
 /// The masses of all geoms of the groups that count, as one.
-fn of_geoms(body: &Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Option<Own> {
+fn of_geoms(body: &Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Option<Mass> {
     let [first, last] = body.settings.compiler.groups;
     let counted = body.geoms.iter().filter(|geom| (first..=last).contains(&geom.group));
     let masses: Vec<_> = counted.filter_map(|geom| geom.mass(meshes, log)).collect();
@@ -136,12 +110,12 @@ fn of_geoms(body: &Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> 
         let shifted = of_point(part.mass, subtract(part.pose.position, center));
         inertia.iter_mut().zip(own.iter().zip(shifted)).for_each(|(sum, (own, shifted))| *sum += own + shifted);
     }
-    Some(Own { pose: Pose::at(center), mass, inertia, axes: None })
+    Some(Mass { pose: Pose::at(center), mass, inertia, axes: None })
 }
 
 /// The inertia with `boundinertia` and `balanceinertia`, and what is wrong with it.
-fn bounded(body: &Body<'_>, compiler: &Compiler, own: Own, log: &mut Diagnostics) -> Own {
-    let Own { pose, inertia, .. } = own;
+fn bounded(body: &Body<'_>, compiler: &Compiler, own: Mass, log: &mut Diagnostics) -> Mass {
+    let Mass { pose, inertia, .. } = own;
     let is_diagonal = inertia[1] == 0.0 && inertia[2] == 0.0 && inertia[4] == 0.0;
     let (mut moments, axes) = if is_diagonal {
         ([inertia[0], inertia[3], inertia[5]], pose)
@@ -151,7 +125,7 @@ fn bounded(body: &Body<'_>, compiler: &Compiler, own: Own, log: &mut Diagnostics
     };
     let before = moments;
     moments = moments.map(|moment| moment.max(compiler.bound_inertia));
-    let balanced = |moments| Own { pose: axes, inertia: balanced(compiler, moments), axes: Some(IDENTITY), ..own };
+    let balanced = |moments| Mass { pose: axes, inertia: balanced(compiler, moments), axes: Some(IDENTITY), ..own };
     if moments != before && compiler.bound_inertia > 0.0 {
         return balanced(moments);
     }

@@ -7,7 +7,7 @@ use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
 use super::bodies::{self, Body, Kind, at_reference};
 use super::grammar::subject;
-use super::inertia::Own;
+use super::mass::Mass;
 use crate::Options;
 use crate::pose::{Pose, scale, subtract};
 use crate::reading::HELD;
@@ -27,7 +27,7 @@ pub(crate) struct Lowered {
 }
 
 /// The description of all bodies with their masses.
-pub(crate) fn lower(name: &str, bodies: &[Body<'_>], inertials: &[Option<Own>], options: &Options, log: &mut Diagnostics) -> Lowered {
+pub(crate) fn lower(name: &str, bodies: &[Body<'_>], inertials: &[Option<Mass>], options: &Options, log: &mut Diagnostics) -> Lowered {
     let mut lower = Lower {
         description: Description { name: name.to_owned(), ..Description::default() },
         links: Taken::with(WORLD),
@@ -44,7 +44,7 @@ pub(crate) fn lower(name: &str, bodies: &[Body<'_>], inertials: &[Option<Own>], 
             lower.link_of.push(0);
             lower.is_fixed.push(true);
         } else {
-            lower.body(index, body, own.as_ref().map(Own::inertial), options, log);
+            lower.body(index, body, own.as_ref().map(Mass::inertial), options, log);
         }
         lower.content(index, body);
     }

@@ -36,6 +36,7 @@ mod hull;
 mod inertia;
 mod left_out;
 mod lower;
+mod mass;
 mod mesh;
 mod reflected;
 mod scope;

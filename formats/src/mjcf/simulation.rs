@@ -33,6 +33,16 @@ impl Flags {
     }
 }
 
+/// What holds for all bodies, of the main file.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rules {
+    pub(crate) flags: Flags,
+    /// Whether shapes are fitted to the corners of meshes, rather than to their inertia.
+    pub(crate) fit_corners: bool,
+    /// Whether there is no gravity.
+    pub(crate) is_weightless: bool,
+}
+
 /// The flags that are read, with what is lost without a word where one is disabled; empty: it is
 /// reported elsewhere.
 const FLAGS: [(&str, &str); 10] = [
