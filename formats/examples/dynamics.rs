@@ -1,5 +1,6 @@
 //! Reads a robot and prints its numbers and its dynamics in some states, for comparisons:
-//! `dynamics FILE GX GY GZ [KIND...]`. What is of a KIND (`flex`, `composite`, `plugin`) is left out.
+//! `dynamics FILE GX GY GZ [KIND...]`. What is of a KIND (`flex`, `composite`, `plugin`) is left
+//! out.
 //!
 //! Standard input: states as little-endian doubles, q, v and a one after the other, until the end.
 //! Standard output: one line of JSON, which describes the robot, then for each state, as

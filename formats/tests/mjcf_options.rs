@@ -1,5 +1,5 @@
-//! MJCF: what options turn off or leave out, and what is refused as in MuJoCo. The right numbers are
-//! MuJoCo's (4.0.0).
+//! MJCF: what options turn off or leave out, and what is refused as in MuJoCo. The right numbers
+//! are MuJoCo's (4.0.0).
 
 use std::collections::BTreeMap;
 use std::io::{Error, ErrorKind, Result};
