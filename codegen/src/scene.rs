@@ -110,12 +110,15 @@ fn check_names_of(scene: &Scene, request: &Request, robot: &BuiltRobot, log: &mu
 /// Reports what is wrong with a request beside the mistakes of its scene's text, which were left
 /// out. `is_complete`: its documents are there.
 pub fn check_rest(request: &Request, is_complete: bool, log: &mut Diagnostics) {
-    let robot = if is_complete { request.robot().build_into(log) } else { None };
+    // Names that the robot does not have are findings of the scene's file.
+    let mut own = Diagnostics::new(request.scene.as_ref().map_or(&request.file, |scene| &scene.file));
+    let robot = if is_complete { request.robot().build_into(&mut own) } else { None };
     match (&request.scene, &robot) {
-        (Some(scene), Some(robot)) => check_names_of(scene, request, robot, log),
-        (None, Some(robot)) => check_names(request, robot, log),
-        (_, None) => check_words(request, log),
+        (Some(scene), Some(robot)) => check_names_of(scene, request, robot, &mut own),
+        (None, Some(robot)) => check_names(request, robot, &mut own),
+        (_, None) => check_words(request, &mut own),
     }
+    log.take(own);
 }
 
 /// Writes what the scene says into the options: all but the effects, which need the robot, and the

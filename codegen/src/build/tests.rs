@@ -207,6 +207,7 @@ fn mistakes_of_a_scene_and_names_that_its_robot_does_not_have_come_together() {
     let of_scene = [is(2, "sumary"), is(3, "frames"), is(4, "effects.damping.hinje")];
     assert!(of_scene.iter().all(|one| fields(&all).contains(one)) && all.errors.len() == 4, "{all}");
     assert!(all.to_string().contains("did you mean `mass_matrix`?"), "{all}");
+    assert!(all.errors.iter().filter(|error| error.line().is_some()).all(|error| error.file().ends_with("arm.toml")), "{all}");
     let without = told("amr.urdf");
     assert!([is(1, "urdf"), is(2, "sumary")].iter().all(|one| fields(&without).contains(one)) && without.errors.len() == 3, "{without}");
     assert!(without.to_string().contains("did you mean \"arm.urdf\"?") && without.to_string().contains("mass_matrix"), "{without}");
