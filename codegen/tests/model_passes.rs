@@ -4,7 +4,7 @@
 use articulated_codegen::model_pass::{FoldedRotations, ModelPass, View, model_passes, no_joint_moves_origin};
 use articulated_core::Scalar;
 use articulated_core::algorithm::{AngularKinematics, Function, function, functions};
-use articulated_core::description::{self, Base, Description, Inertial, JointKind, Link, Origin};
+use articulated_core::description::{self, Base, Description, Inertial, JointKind, Link, LinkId, Origin};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::joint::{Angle, Joint};
 use articulated_core::model::{Body, Model};
@@ -406,15 +406,15 @@ fn a_round_wheel_turns_the_float_on_its_rim() {
     let joint = description::Joint {
         name: "axle".into(),
         kind: JointKind::Continuous,
-        parent: 0,
-        child: 1,
+        parent: LinkId(0),
+        child: LinkId(1),
         axis: [0.0, 1.0, 0.0],
         ..description::Joint::default()
     };
     let description = Description {
         name: "wheel".into(),
-        links: vec![link("base", None), link("wheel", Some(round))],
-        joints: vec![joint],
+        links: [link("base", None), link("wheel", Some(round))].into(),
+        joints: [joint].into(),
         frames: Vec::new(),
     };
     let wheel = Model::new(&description, Base::Fixed).expect("a wheel").with_gravity([0.0, 0.0, -9.81]);

@@ -5,7 +5,7 @@ use articulated_codegen::formats::world::Document;
 use articulated_codegen::formats::{Format, Formats, Input};
 use articulated_codegen::{Origin, Request, generate};
 use articulated_core::algorithm::{Workspace, function};
-use articulated_core::description::{Description, Frame, Inertial, Joint, JointKind, Link, Rotation};
+use articulated_core::description::{ById, Description, Frame, Inertial, Joint, JointId, JointKind, Link, LinkId, Rotation};
 use articulated_core::diagnostic::{At, Code, Diagnostics, Place, Subject};
 use articulated_core::model::Model;
 use toml::{Table, Value};
@@ -37,8 +37,8 @@ impl Format for Tiny {
         let tables = |key: &str| -> Vec<&Table> {
             table.get(key).and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_table).collect()
         };
-        let links: Vec<Link> = tables("link").into_iter().map(|link| read_link(link, diagnostics)).collect();
-        let index = |name: &str| links.iter().position(|link| link.name == name);
+        let links: ById<LinkId, Link> = tables("link").into_iter().map(|link| read_link(link, diagnostics)).collect();
+        let index = |name: &str| links.position(|link| link.name == name);
         let joint = |joint: &Table| {
             let name = text_of(joint, "name");
             let end = |key: &str| index(&text_of(joint, key));
@@ -51,7 +51,7 @@ impl Format for Tiny {
             let origin = read_origin(joint);
             Some(Joint { name, kind: JointKind::Continuous, parent, child, origin, axis: numbers(joint, "axis"), ..Joint::default() })
         };
-        let joints: Vec<Joint> = tables("joint").into_iter().filter_map(joint).collect();
+        let joints: ById<JointId, Joint> = tables("joint").into_iter().filter_map(joint).collect();
         let frame =
             |frame: &Table| Some(Frame { name: text_of(frame, "name"), link: index(&text_of(frame, "link"))?, origin: read_origin(frame) });
         let frames = tables("frame").into_iter().filter_map(frame).collect();

@@ -14,7 +14,7 @@
 //!   <joint name="hinge" type="continuous"><parent link="frame"/><child link="leaf"/><axis xyz="0 0 1"/></joint>
 //! </robot>"#;
 //! let reading = read(bytes, &Options::default()).unwrap();
-//! assert_eq!(reading.description.joints[0].axis, [0.0, 0.0, 1.0]);
+//! assert_eq!(reading.description.joints[JointId(0)].axis, [0.0, 0.0, 1.0]);
 //! let text = articulated_formats::urdf::write(&reading.description);
 //! assert_eq!(read(text.as_bytes(), &Options::default()).unwrap().description, reading.description);
 //!
@@ -25,6 +25,7 @@
 //! A file of at most [`MOST_BYTES`], with its name in all messages:
 //!
 //! ```no_run
+//! use articulated_core::description::JointId;
 //! use articulated_formats::{MOST_BYTES, Options, read, read_file};
 //!
 //! let bytes = read_file("arm.urdf".as_ref(), MOST_BYTES)?;

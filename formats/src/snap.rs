@@ -49,7 +49,7 @@ mod tests {
         let right = std::f64::consts::FRAC_PI_2;
         let printed: f64 = "1.57079632679".parse().unwrap();
         let joints = vec![joint("a", [right, 0.0, -2.0 * right]), joint("b", [printed, 0.1, 0.0]), joint("c", [0.0, 3e-9, 1.5718])];
-        let description = Description { joints, ..Description::default() };
+        let description = Description { joints: joints.into(), ..Description::default() };
         assert_eq!(nearly_right_angles(&description), [("b", printed), ("c", 3e-9)]);
     }
 

@@ -4,7 +4,7 @@ mod corpus;
 
 use std::f64::consts::FRAC_PI_2;
 
-use articulated_core::description::{Collision, CollisionShape, JointDynamics, JointKind, Limit, Mimic, Origin, Visual};
+use articulated_core::description::{Collision, CollisionShape, JointDynamics, JointId, JointKind, Limit, LinkId, Mimic, Origin, Visual};
 use articulated_core::diagnostic::{Code, Subject};
 use articulated_formats::{Options, read};
 use corpus::{CRANE, accepted, crane, described, joint, options};
@@ -15,17 +15,17 @@ fn the_description_says_what_the_file_says() {
     assert_eq!(crane.name, "crane");
     let names: Vec<&str> = crane.links.iter().map(|l| l.name.as_str()).collect();
     assert_eq!(names, ["tower", "boom", "trolley", "hook", "lamp"]);
-    let boom = crane.links[1].inertial.unwrap();
+    let boom = crane.links[LinkId(1)].inertial.unwrap();
     assert_eq!(boom.origin, Origin::new([1.5, 0.0, 0.1], [0.0, 0.1, 0.0]));
     assert_eq!((boom.mass, boom.inertia), (40.0, [2.0, 0.1, 0.0, 30.0, 0.0, 31.0]));
-    assert!(crane.links[0].inertial.is_none());
-    let swing = &crane.joints[2];
-    assert_eq!((swing.kind, swing.parent, swing.child, swing.axis), (JointKind::Revolute, 2, 3, [0.0, 1.0, 0.0]));
+    assert!(crane.links[LinkId(0)].inertial.is_none());
+    let swing = &crane.joints[JointId(2)];
+    assert_eq!((swing.kind, swing.parent, swing.child, swing.axis), (JointKind::Revolute, LinkId(2), LinkId(3), [0.0, 1.0, 0.0]));
     assert_eq!(swing.limit, Some(Limit { lower: -1.0, upper: 1.0, effort: 10.0, velocity: 2.0, ..Limit::NONE }));
     assert_eq!(swing.dynamics, JointDynamics { damping: Some(0.5), friction: Some(0.1), ..JointDynamics::default() });
-    assert_eq!((crane.joints[0].limit, crane.joints[0].mimic), (None, None));
-    assert_eq!(crane.joints[0].origin.xyz, [0.0, 0.0, 12.0]);
-    assert_eq!(crane.joints[3].kind, JointKind::Fixed);
+    assert_eq!((crane.joints[JointId(0)].limit, crane.joints[JointId(0)].mimic), (None, None));
+    assert_eq!(crane.joints[JointId(0)].origin.xyz, [0.0, 0.0, 12.0]);
+    assert_eq!(crane.joints[JointId(3)].kind, JointKind::Fixed);
 }
 
 #[test]
@@ -93,8 +93,8 @@ fn names_may_be_anything_and_links_and_joints_may_share_them() {
     for name in ["left arm", " a ", "a/b:c[0]", "π-Gelenk", "🦾", "&lt;&amp;&quot;", "fn", "1", "a&#10;b"] {
         let text = CRANE.replace("\"boom\"", &format!("\"{name}\"")).replace("\"slew\"", &format!("\"{name}\""));
         let description = described(&text);
-        assert_eq!(description.links[1].name, description.joints[0].name);
-        assert_eq!(description.joints[1].parent, 1);
+        assert_eq!(description.links[LinkId(1)].name, description.joints[JointId(0)].name);
+        assert_eq!(description.joints[JointId(1)].parent, LinkId(1));
     }
 }
 
@@ -108,7 +108,7 @@ fn axes_stay_as_written_and_default_to_x() {
 fn what_a_joint_has_no_use_for_is_reported_and_not_read() {
     let text = crane("<child link=\"lamp\"/>", "<child link=\"lamp\"/><axis xyz=\"0 0 0\"/><limit/><dynamics/>");
     let reading = accepted(&text);
-    let mount = &reading.description.joints[3];
+    let mount = &reading.description.joints[JointId(3)];
     assert_eq!((mount.axis, mount.limit, mount.dynamics), ([1.0, 0.0, 0.0], None, JointDynamics::default()));
     let tags: Vec<&str> = reading.unused.iter().filter(|u| u.subject == Subject::Joint("mount".into())).map(|u| u.tag.as_str()).collect();
     assert_eq!(tags, ["axis", "limit", "dynamics"]);
@@ -170,7 +170,7 @@ fn a_moment_that_is_negative_by_rounding_is_a_warning() {
         let warned: Vec<Code> = reading.warnings.iter().map(|w| w.code).collect();
         assert_eq!(warned, [Code::InertiaNotPositive], "{mass} {moments:?}");
         assert!(reading.warnings[0].to_string().contains("negative by rounding alone"), "{}", reading.warnings[0]);
-        let kept = reading.description.links[2].inertial.unwrap().inertia;
+        let kept = reading.description.links[LinkId(2)].inertial.unwrap().inertia;
         assert_eq!(kept, moments.map(|m| m.parse::<f64>().unwrap()));
     }
     for (mass, moments) in [
@@ -257,7 +257,7 @@ fn a_quarter_turn_as_a_quaternion_is_exact() {
     for (version, half, warned) in [("1.1", "0.7071067811865476", 0), ("1.2", "0.70710678", 0), ("1.1", "0.707", 1)] {
         let text = crane("xyz=\"0 0 12\" rpy=\"0 0 0\"", &format!("xyz='0 0 12' quat_xyzw='{half} 0 0 {half}'"));
         let reading = accepted(&text.replace("<robot ", &format!("<robot version='{version}' ")));
-        let origin = reading.description.joints[0].origin;
+        let origin = reading.description.joints[JointId(0)].origin;
         let quarter = Origin::new([0.0, 0.0, 12.0], [FRAC_PI_2, 0.0, 0.0]);
         assert_eq!(origin.placement::<f64>().rotation, quarter.placement().rotation, "{half}");
         let kinds: Vec<Code> = reading.warnings.iter().map(|w| w.code).collect();
@@ -273,10 +273,10 @@ fn expressions_of_xacro_in_names_of_files_play_no_part() {
     assert!(reading.warnings.is_empty(), "{:?}", reading.warnings);
     let mut description = reading.description;
     // Meshes are named, and that is all.
-    let named = std::mem::take(&mut description.links[3].collision);
+    let named = std::mem::take(&mut description.links[LinkId(3)].collision);
     let shape = CollisionShape::Mesh { file: "$(arg folder)/hook.stl".into(), scale: [1.0; 3] };
     assert_eq!(named, [Collision { origin: Origin::default(), shape }]);
-    let seen = std::mem::take(&mut description.links[3].visual);
+    let seen = std::mem::take(&mut description.links[LinkId(3)].visual);
     assert!(matches!(&seen[..], [Visual { shape: CollisionShape::Mesh { file, .. }, .. }] if file.ends_with("${name}.stl")), "{seen:?}");
     assert_eq!(description, described(CRANE));
 }
@@ -323,7 +323,7 @@ fn a_helical_joint_leads_and_follows() {
     let text = slew("helical", "<thread pitch='0.01'/><limit effort='1' velocity='1' lower='-1' upper='1'/><mimic joint='travel'/>")
         .replace("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"slew\"/>");
     let crane = described(&text);
-    assert_eq!([0, 2].map(|i| crane.joints[i].mimic.unwrap().joint), [1, 0]);
+    assert_eq!([0, 2].map(|i| crane.joints[JointId(i)].mimic.unwrap().joint), [JointId(1), JointId(0)]);
 }
 
 #[test]
@@ -346,7 +346,7 @@ fn a_pitch_of_zero_is_a_warning_and_no_limit_too() {
 fn limits_that_are_left_open_are_infinite() {
     let text = crane("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 1\"/><limit lower=\"-1\" effort=\"9\" velocity=\"2\"/>");
     let reading = accepted(&text);
-    let limit = reading.description.joints[0].limit.unwrap();
+    let limit = reading.description.joints[JointId(0)].limit.unwrap();
     assert_eq!(limit, Limit { lower: f64::NEG_INFINITY, upper: f64::INFINITY, effort: 9.0, velocity: 2.0, ..Limit::NONE });
     assert!(reading.unused.iter().any(|u| u.tag == "limit lower" && u.line == Some(23)));
     assert!(reading.warnings.is_empty());
@@ -362,7 +362,7 @@ fn bounds_that_are_left_out_are_zero_before_version_1_2_and_open_from_then_on() 
     let travel = |version: &str, given: &str| {
         let text = crane("lower=\"0\" upper=\"3\" effort=\"100\" velocity=\"0.5\"", given);
         let reading = accepted(&text.replace("<robot ", &format!("<robot version='{version}' ")));
-        let limit = reading.description.joints[1].limit.unwrap();
+        let limit = reading.description.joints[JointId(1)].limit.unwrap();
         let warned: Vec<String> = reading.warnings.iter().map(|w| w.field.clone()).collect();
         ([limit.lower, limit.upper, limit.effort, limit.velocity], warned.join(", "))
     };
@@ -391,8 +391,8 @@ fn mimics_have_defaults_and_chains() {
     let text = crane("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"travel\"/>")
         .replace("<axis xyz=\"1 0 0\"/>", "<axis xyz=\"1 0 0\"/><mimic joint=\"slew\" multiplier=\"-2\" offset=\".5\"/>");
     let crane = described(&text);
-    assert_eq!(crane.joints[2].mimic, Some(Mimic { joint: 1, multiplier: 1.0, offset: 0.0 }));
-    assert_eq!(crane.joints[1].mimic, Some(Mimic { joint: 0, multiplier: -2.0, offset: 0.5 }));
+    assert_eq!(crane.joints[JointId(2)].mimic, Some(Mimic { joint: JointId(1), multiplier: 1.0, offset: 0.0 }));
+    assert_eq!(crane.joints[JointId(1)].mimic, Some(Mimic { joint: JointId(0), multiplier: -2.0, offset: 0.5 }));
 }
 
 #[test]
@@ -400,10 +400,10 @@ fn angles_snap_only_where_that_is_asked_for() {
     let text = crane("rpy=\"0 0 0\"", "rpy=\"1.5708 0 -3.1416\"");
     let plain = accepted(&text);
     assert!(plain.snapped.is_empty());
-    assert_eq!(plain.description.joints[0].origin.rotation.rpy()[0].to_string(), "1.5708");
+    assert_eq!(plain.description.joints[JointId(0)].origin.rotation.rpy()[0].to_string(), "1.5708");
     let snapping = Options { snap_angles: Some(1e-5), ..options() };
     let reading = read(text.as_bytes(), &snapping).unwrap();
-    assert_eq!(reading.description.joints[0].origin.rotation.rpy(), [FRAC_PI_2, 0.0, -2.0 * FRAC_PI_2]);
+    assert_eq!(reading.description.joints[JointId(0)].origin.rotation.rpy(), [FRAC_PI_2, 0.0, -2.0 * FRAC_PI_2]);
     assert_eq!(reading.snapped.len(), 2);
     assert!(reading.snapped[0].to_string().contains("\"slew\": origin rpy: found 1.5708"), "{}", reading.snapped[0]);
     let fine = Options { snap_angles: Some(1e-6), ..options() };

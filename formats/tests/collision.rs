@@ -5,7 +5,7 @@ mod corpus;
 
 use std::f64::consts::FRAC_PI_2;
 
-use articulated_core::description::{Collision, CollisionShape, Origin};
+use articulated_core::description::{Collision, CollisionShape, LinkId, Origin};
 use articulated_core::diagnostic::{Code, Subject};
 use articulated_formats::{Reading, read};
 use corpus::{CRANE, accepted, crane, described, options};
@@ -16,7 +16,7 @@ fn hook(content: &str) -> Reading {
 }
 
 fn of_hook(reading: &Reading) -> &[Collision] {
-    &reading.description.links[3].collision
+    &reading.description.links[LinkId(3)].collision
 }
 
 fn geometry(shape: &str) -> String {
@@ -46,7 +46,7 @@ fn shapes_are_read_with_their_places_in_the_order_of_the_file() {
     assert_eq!(of_hook(&reading), expected.map(|(origin, shape)| Collision { origin, shape }));
     // All else is as it was, and the geometry is listed among what is not used.
     let mut description = reading.description;
-    description.links[3].collision.clear();
+    description.links[LinkId(3)].collision.clear();
     assert_eq!(description, described(CRANE));
     let unused = reading.unused.iter().filter(|u| u.tag == "collision" && u.subject == Subject::Link("hook".into()));
     assert_eq!(unused.count(), 6);
@@ -128,7 +128,7 @@ fn appearance_is_read_with_the_colours_of_materials_and_is_never_a_finding() {
     let end = "</robot>";
     let reading = accepted(&with_link.replace(end, &format!("<material name='steel'><color rgba='0.5 0.5 2 1'/></material>{end}")));
     assert!(reading.warnings.is_empty(), "{:?}", reading.warnings);
-    let [boxed, mesh, cone] = &reading.description.links[3].visual[..] else { panic!("three pieces") };
+    let [boxed, mesh, cone] = &reading.description.links[LinkId(3)].visual[..] else { panic!("three pieces") };
     assert_eq!((boxed.origin, &boxed.shape), (Origin::at([0.0, 0.0, 1.0]), &CollisionShape::Box { size: [1.0, 2.0, 3.0] }));
     assert_eq!((boxed.material.as_str(), boxed.color), ("steel", Some([0.5, 0.5, 1.0, 1.0])));
     assert_eq!(mesh.shape, CollisionShape::Mesh { file: "hook.dae".into(), scale: [1.0; 3] });

@@ -2,6 +2,7 @@
 
 mod corpus;
 
+use articulated_core::description::{JointId, LinkId};
 use articulated_core::diagnostic::{Code, Subject};
 use articulated_formats::{MOST_SNAPPED, Options, read};
 use corpus::{CRANE, as_kept, crane, only_error, options, refused, refused_bytes};
@@ -281,7 +282,7 @@ fn what_may_change_the_law_of_a_follower_is_an_error_that_names_joint_and_attrib
     ] {
         let reading = read(with(mimic).as_bytes(), &options()).unwrap();
         assert!(
-            reading.warnings.iter().all(|w| w.code == Code::Unknown) && reading.description.joints[2].mimic.is_some(),
+            reading.warnings.iter().all(|w| w.code == Code::Unknown) && reading.description.joints[JointId(2)].mimic.is_some(),
             "{:?}",
             reading.warnings
         );
@@ -305,9 +306,9 @@ fn two_laws_for_one_leader_are_an_error() {
     let first = Options { first_of_duplicates: true, ..options() };
     for (again, options) in [("<mimic joint='slew' multiplier='3'/>", first), ("<mimic multiplier='2' joint='slew'/>", options())] {
         let reading = read(twice(again).as_bytes(), &options).unwrap();
-        let swing = &reading.description.joints[2];
+        let swing = &reading.description.joints[JointId(2)];
         let laws: Vec<_> = swing.mimic.iter().chain(&swing.also).map(|law| (law.joint, law.multiplier)).collect();
-        assert_eq!(laws, [(0, 2.0), (1, 1.0)]);
+        assert_eq!(laws, [(JointId(0), 2.0), (JointId(1), 1.0)]);
         assert_eq!(reading.warnings.iter().map(|w| w.code).collect::<Vec<_>>(), [Code::DuplicateTag]);
     }
 }
@@ -405,7 +406,7 @@ fn an_inertia_may_be_unphysical_where_that_is_asked_for() {
     let reading = read(text.as_bytes(), &options).unwrap();
     assert_eq!(reading.warnings.len(), 1);
     assert_eq!(reading.warnings[0].code, Code::InertiaNotPositive);
-    assert_eq!(reading.description.links[1].inertial.unwrap().inertia[5], -31.0);
+    assert_eq!(reading.description.links[LinkId(1)].inertial.unwrap().inertia[5], -31.0);
 }
 
 /// What a later version changes is not known.
@@ -440,7 +441,7 @@ fn the_first_of_tags_that_contradict_each_other_counts_where_that_is_asked_for()
     assert!(told.errors[0].expected.contains("`--first-of-duplicates` (key `first_of_duplicates`"), "{}", told.errors[0]);
     let reading = read(text.as_bytes(), &Options { first_of_duplicates: true, ..options() }).unwrap();
     assert_eq!(reading.warnings.iter().filter(|w| w.code == Code::DuplicateTag && w.expected.ends_with("the first is used")).count(), 1);
-    assert_eq!(reading.description.links[1].inertial.unwrap().mass, 40.0);
+    assert_eq!(reading.description.links[LinkId(1)].inertial.unwrap().mass, 40.0);
 }
 
 #[test]

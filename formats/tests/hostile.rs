@@ -2,6 +2,7 @@
 
 mod corpus;
 
+use articulated_core::description::{JointId, LinkId};
 use std::fmt::Write;
 
 use articulated_core::diagnostic::Code;
@@ -174,7 +175,7 @@ fn chain(links: usize, close: bool, kind: &str) -> String {
 fn a_long_chain_is_read() {
     let reading = read(chain(5_000, false, "fixed").as_bytes(), &Options::default()).unwrap();
     assert_eq!(reading.description.joints.len(), 4_999);
-    assert_eq!(reading.description.joints[4_998].child, 4_999);
+    assert_eq!(reading.description.joints[JointId(4_998)].child, LinkId(4_999));
 }
 
 /// The second reader is left out by an error at the end; all of this crate is walked.

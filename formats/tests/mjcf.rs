@@ -5,7 +5,7 @@ use std::io::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
 
 use articulated_core::algorithm::{Workspace, function};
-use articulated_core::description::{Base, Description, JointDynamics, JointKind};
+use articulated_core::description::{Base, Description, JointDynamics, JointId, JointKind, LinkId};
 use articulated_core::diagnostic::{Code, Diagnostics};
 use articulated_core::model::Model;
 use articulated_formats::{Included, NoFiles, Options, Reading, Sources, included, read, read_with};
@@ -69,10 +69,10 @@ fn content_decides_which_format_a_file_has() {
     let text = "<?xml version=\"1.0\"?><!-- <robot> --><mujoco><worldbody><body name=\"b\"><joint name=\"j\"/><geom size=\"1\"/></body></worldbody></mujoco>";
     for file in ["robot.urdf", "robot.xml", "-"] {
         let options = Options { file: file.to_owned(), ..Options::default() };
-        assert_eq!(read(text.as_bytes(), &options).unwrap().description.joints[0].name, "j", "{file}");
+        assert_eq!(read(text.as_bytes(), &options).unwrap().description.joints[JointId(0)].name, "j", "{file}");
     }
     let urdf = "<robot name='r'><link name='a'/></robot>";
-    assert_eq!(described(urdf).links[0].name, "a");
+    assert_eq!(described(urdf).links[LinkId(0)].name, "a");
 }
 
 #[test]
@@ -85,8 +85,12 @@ fn bodies_hang_on_the_world_by_their_joints() {
     assert_eq!(links, ["world", "a", "b", "c", "body_4"]);
     let joints: Vec<_> = robot.joints.iter().map(|joint| (joint.name.as_str(), joint.kind, joint.parent)).collect();
     use JointKind::{Fixed, Floating, Prismatic, Spherical};
-    assert_eq!(joints, [("a_fixed", Fixed, 0), ("slide", Prismatic, 1), ("root", Floating, 0), ("body_4_ball", Spherical, 3)]);
-    assert_eq!(robot.joints[1].limit.map(|limit| (limit.lower, limit.upper)), Some((-1.0, 1.0)));
+    assert_eq!(
+        joints,
+        [("a_fixed", Fixed, 0), ("slide", Prismatic, 1), ("root", Floating, 0), ("body_4_ball", Spherical, 3)]
+            .map(|(name, kind, parent)| (name, kind, LinkId(parent)))
+    );
+    assert_eq!(robot.joints[JointId(1)].limit.map(|limit| (limit.lower, limit.upper)), Some((-1.0, 1.0)));
     assert_eq!(robot.name, "arm");
 }
 
@@ -139,7 +143,7 @@ fn masses_come_from_geoms_or_from_the_file() {
     let body = |compiler: &str, inertial: &str| {
         let text =
             format!("<mujoco><compiler {compiler}/><worldbody><body name=\"a\"><joint/>{inertial}{geoms}</body></worldbody></mujoco>");
-        described(&text).links[1].inertial.unwrap()
+        described(&text).links[LinkId(1)].inertial.unwrap()
     };
     // A box of 12 kg and a ball of 6 kg, 3 m apart: the centre is a third of the way.
     let both = body("", "");
@@ -211,13 +215,13 @@ fn what_acts_on_ball_joints_is_kept() {
     let reading =
         accepted(&ball("stiffness=\"3\" damping=\"0.5\" armature=\"0.02\" frictionloss=\"0.1\" springref=\"0.7\" range=\"0 90\""));
     assert!(reading.warnings.is_empty(), "{:?}", reading.warnings);
-    let joint = &reading.description.joints[0];
+    let joint = &reading.description.joints[JointId(0)];
     let expected =
         JointDynamics { stiffness: Some(3.0), damping: Some(0.5), armature: Some(0.02), friction: Some(0.1), ..JointDynamics::default() };
     assert_eq!((joint.kind, joint.dynamics), (JointKind::Spherical, expected));
     let limit = joint.limit.expect("a range");
     assert_eq!((limit.lower, limit.upper), (f64::NEG_INFINITY, std::f64::consts::FRAC_PI_2));
-    let without = accepted(&ball("")).description.joints[0].clone();
+    let without = accepted(&ball("")).description.joints[JointId(0)].clone();
     assert_eq!((without.limit, without.dynamics), (None, JointDynamics::default()));
     // As MuJoCo does.
     let found = refused(&ball("range=\"-10 90\""));
@@ -268,7 +272,7 @@ const MESH: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 
 fn included_files_are_in_the_place_of_their_tags() {
     let files = Files::of(&[("robots/parts/common.xml", COMMON), ("robots/parts/more.xml", MORE), ("robots/m.obj", MESH)]);
     let reading = read_with(&files, MAIN.as_bytes(), &options()).unwrap();
-    let mass = reading.description.links[1].inertial.unwrap().mass;
+    let mass = reading.description.links[LinkId(1)].inertial.unwrap().mass;
     assert!((mass - 1000.0 * (32.0 * std::f64::consts::PI / 3.0 + 1.0 / 6.0)).abs() < 1e-9, "{mass}");
     // Kept files are as good as those that they were.
     let kept = included(&files, Path::new(""), MAIN.as_bytes(), &options());
@@ -295,7 +299,7 @@ fn mistakes_in_included_files_name_them() {
 #[test]
 fn a_mesh_that_gives_no_mass_is_not_read() {
     let text = "<mujoco><asset><mesh name=\"m\" file=\"none.stl\"/></asset><worldbody><body name=\"a\"><joint/><inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/><geom type=\"mesh\" mesh=\"m\"/></body></worldbody></mujoco>";
-    assert_eq!(described(text).links[1].visual.len(), 1);
+    assert_eq!(described(text).links[LinkId(1)].visual.len(), 1);
     let without = text.replace("<inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/>", "");
     assert_eq!(refused(&without).errors[0].code, Code::File);
 }

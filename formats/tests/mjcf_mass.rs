@@ -5,7 +5,7 @@ use std::io::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
 
 use articulated_core::algorithm::{Workspace, function};
-use articulated_core::description::{Base, Inertial, Origin};
+use articulated_core::description::{Base, Inertial, JointId, Origin};
 use articulated_core::diagnostic::{Code, Diagnostics};
 use articulated_core::model::Model;
 use articulated_formats::{Options, Reading, Sources, read_with};
@@ -255,7 +255,7 @@ fn an_empty_list_is_an_absent_one() {
         <geom rgba=\"\" size=\"\" mass=\"\" density=\"\" contype=\"\" fromto=\"\" pos=\"0.1 0 0\"/></body></worldbody></mujoco>";
     let reading = accepted(text);
     assert!(near(&[inertial(&reading, "b").mass], &[4.1887902047863905]));
-    let joint = &reading.description.joints[0];
+    let joint = &reading.description.joints[JointId(0)];
     assert_eq!((joint.axis, joint.dynamics.damping, joint.dynamics.stiffness), ([0.0, 0.0, 1.0], Some(2.0), None));
     let found =
         refused(&text.replace("size=\"\"", "size=\"0.1\"").replace("<joint name=\"j\"", "<inertial pos=\"\" mass=\"\"/><joint name=\"j\""));

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::io::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
 
-use articulated_core::description::{JointDynamics, JointKind};
+use articulated_core::description::{JointDynamics, JointId, JointKind, LinkId};
 use articulated_core::diagnostic::{Code, Diagnostics};
 use articulated_formats::{LeaveOut, Options, Reading, Sources, read_with};
 
@@ -130,7 +130,7 @@ fn options_of_an_attached_model_are_merged_where_the_file_says_so() {
     let world = &merged.world;
     let found = (world.gravity, world.step, world.integrator.as_deref(), world.actuators.len());
     assert_eq!(found, (Some([0.0, 0.0, -1.0]), Some(0.001), Some("RK4"), 0));
-    assert_eq!(merged.description.joints[0].dynamics.stiffness, None);
+    assert_eq!(merged.description.joints[JointId(0)].dynamics.stiffness, None);
     assert!(warnings(&merged).iter().any(|warning| warning.contains("a medium")), "{:?}", warnings(&merged));
     assert_eq!(attaching("conflict=\"merge\"", "timestep=\"0.0001\"").unwrap().world.step, Some(0.0001));
     // Two values of what has no order
@@ -146,7 +146,7 @@ fn options_of_an_attached_model_are_merged_where_the_file_says_so() {
     for conflict in ["", "conflict=\"warning\"", "conflict=\"error\""] {
         let kept = attaching(conflict, "").unwrap();
         assert_eq!((kept.world.gravity, kept.world.step, kept.world.integrator.as_deref()), (None, None, None));
-        assert_eq!((kept.description.joints[0].dynamics.stiffness, kept.world.actuators.len()), (Some(1.0), 1));
+        assert_eq!((kept.description.joints[JointId(0)].dynamics.stiffness, kept.world.actuators.len()), (Some(1.0), 1));
         let found = warnings(&kept);
         for name in ["gravity", "timestep", "integrator", "density", "spring", "actuatorgroupdisable"] {
             assert!(
@@ -195,7 +195,7 @@ fn what_changes_the_motion_and_is_not_read_is_an_error_unless_it_is_left_out() {
         let found: Vec<_> = reading.warnings.iter().map(|warning| (warning.code, warning.line())).collect();
         assert_eq!(found, [(Code::LostDynamics, Some(2))], "{:?}", warnings(&reading));
         assert!(warnings(&reading)[0].contains(part));
-        let mass = reading.description.links[1].inertial.unwrap().mass;
+        let mass = reading.description.links[LinkId(1)].inertial.unwrap().mass;
         assert!((mass - 4.1887902047863905).abs() < 1e-12, "{mass}");
     }
     // Copies of one tag are one finding.
@@ -236,10 +236,10 @@ fn a_ball_joint_may_be_limited_to_zero() {
     // MuJoCo takes the greater of both numbers.
     for text in [ball("range=\"0 0\"", ""), ball("", "range=\"0 0\""), ball("", "range=\"0 -5\"")] {
         let reading = accepted(&text);
-        assert_eq!(reading.description.joints[0].limit.unwrap().upper, 0.0, "{text}");
+        assert_eq!(reading.description.joints[JointId(0)].limit.unwrap().upper, 0.0, "{text}");
         assert!(warnings(&reading)[0].contains("a ball joint that is limited to 0"), "{:?}", warnings(&reading));
     }
-    assert_eq!(accepted(&ball("", "range=\"0 0\" limited=\"auto\"")).description.joints[0].limit, None);
+    assert_eq!(accepted(&ball("", "range=\"0 0\" limited=\"auto\"")).description.joints[JointId(0)].limit, None);
     assert_eq!(refused(&ball("", "")).errors[0].code, Code::LimitOrder);
 }
 

@@ -1,5 +1,6 @@
 //! MJCF: what a file says beside its robot.
 
+use articulated_core::description::JointId;
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 use std::io::{Error, ErrorKind, Result};
@@ -197,22 +198,22 @@ fn a_springdamper_is_a_spring_and_a_damper() {
     let joints = |world: &str| accepted(&format!("<mujoco><worldbody>{world}</worldbody></mujoco>")).description.joints;
     // About x: 0.3 + 2 · 0.5² + armature.
     let hinge = "axis=\"1 0 0\" armature=\"0.2\" springref=\"90\" stiffness=\"7\" springdamper=\"0.1 0.5\"";
-    let found = joints(&rod(hinge, ""))[0].dynamics;
+    let found = joints(&rod(hinge, ""))[JointId(0)].dynamics;
     assert!((found.stiffness.unwrap() - 400.0).abs() < 1e-12 && (found.damping.unwrap() - 20.0).abs() < 1e-13, "{found:?}");
     assert_eq!((found.rest, found.armature), (Some(FRAC_PI_2), Some(0.2)));
     // Of a ball the mean of the diagonal of M⁻¹, over all three axes.
-    let found = joints(&rod("type=\"ball\" springdamper=\"0.1 0.5\"", ""))[0].dynamics;
+    let found = joints(&rod("type=\"ball\" springdamper=\"0.1 0.5\"", ""))[JointId(0)].dynamics;
     let mass = 3.0 / (2.0 / 0.8 + 1.0 / 0.1);
     assert!((found.stiffness.unwrap() - 400.0 * mass).abs() < 1e-11 && (found.damping.unwrap() - 20.0 * mass).abs() < 1e-12, "{found:?}");
     assert_eq!(found.rest, None);
     // Two hinges of one axis: M⁻¹ is that of a double pendulum, hanging straight.
     let inner = rod("axis=\"1 0 0\" springdamper=\"0.1 0.5\"", "");
     let found = joints(&rod("axis=\"1 0 0\"", &inner));
-    let ([a, b, c], own) = ([0.8 + 0.3 + 2.0 * 1.5 * 1.5, 0.3 + 2.0 * 1.5 * 0.5, 0.8_f64], found[1].dynamics.damping.unwrap());
+    let ([a, b, c], own) = ([0.8 + 0.3 + 2.0 * 1.5 * 1.5, 0.3 + 2.0 * 1.5 * 0.5, 0.8_f64], found[JointId(1)].dynamics.damping.unwrap());
     assert!((own - 20.0 * (a * c - b * b) / a).abs() < 1e-12, "{own}");
-    assert_eq!(found[0].dynamics.damping, None);
+    assert_eq!(found[JointId(0)].dynamics.damping, None);
     // Both numbers have to be above zero.
-    assert_eq!(joints(&rod("stiffness=\"7\" springdamper=\"0.1 0\"", ""))[0].dynamics.stiffness, Some(7.0));
+    assert_eq!(joints(&rod("stiffness=\"7\" springdamper=\"0.1 0\"", ""))[JointId(0)].dynamics.stiffness, Some(7.0));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 mod corpus;
 
-use articulated_core::description::Base;
+use articulated_core::description::{Base, LinkId};
 use articulated_core::diagnostic::{Code, Subject};
 use articulated_formats::{Options, Reading, read};
 use corpus::{CRANE, accepted, crane, described, joint, options};
@@ -127,7 +127,7 @@ fn mass_on_a_fixed_base_is_told_as_not_used() {
     };
     assert!(reading.warnings.is_empty());
     assert_eq!(held(&reading), ["link \"tower\"", "link \"lamp\""]);
-    assert_eq!(reading.description.links[0].inertial.unwrap().mass, 1.0);
+    assert_eq!(reading.description.links[LinkId(0)].inertial.unwrap().mass, 1.0);
     let mut edited = reading.clone();
     edited.release(|link| link == "tower");
     assert_eq!(held(&edited), ["link \"lamp\""]);

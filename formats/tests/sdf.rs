@@ -6,7 +6,7 @@ use std::io::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
 
 use articulated_core::algorithm::{Workspace, function};
-use articulated_core::description::{Base, Description, JointKind};
+use articulated_core::description::{Base, Description, JointId, JointKind, LinkId};
 use articulated_core::diagnostic::{Code, Diagnostics};
 use articulated_core::model::Model;
 use articulated_formats::{Included, NoFiles, Options, Reading, Sources, included, read, read_with};
@@ -134,7 +134,7 @@ fn an_arm_has_the_dynamics_of_its_urdf() {
     let sdf = described(ARM);
     assert_eq!(kinds(&sdf)[1..], kinds(&urdf));
     assert_eq!(
-        sdf.joints[1..].iter().map(|joint| joint.limit).collect::<Vec<_>>(),
+        sdf.joints.iter().skip(1).map(|joint| joint.limit).collect::<Vec<_>>(),
         urdf.joints.iter().map(|joint| joint.limit).collect::<Vec<_>>()
     );
     for k in 0..5 {
@@ -291,7 +291,7 @@ fn joints_of_all_types_are_read() {
     assert_eq!(kinds(&cardan), [("j", Universal)]);
     let split = robot("universal", &two("<dynamics><damping>3</damping></dynamics>"));
     assert_eq!(kinds(&split), [("j", Continuous), ("j_2", Continuous)]);
-    assert_eq!(split.joints[0].dynamics.damping, Some(3.0));
+    assert_eq!(split.joints[JointId(0)].dynamics.damping, Some(3.0));
     let series = robot("revolute2", &two(""));
     let q = [0.3, 0.7];
     for other in [&split, &series] {
@@ -317,7 +317,7 @@ fn limits_and_forces_are_kept() {
     let axis = "<axis><xyz>0 0 1</xyz><limit><lower>-inf</lower><upper>1e16</upper><effort>-1</effort><velocity>4</velocity><stiffness>1</stiffness></limit>
         <dynamics><damping>1</damping><friction>2</friction><spring_stiffness>3</spring_stiffness><spring_reference>0.5</spring_reference></dynamics></axis>";
     let reading = accepted(&model("1.9", &(link("a", "") + &joint("j", "revolute", ["world", "a"], axis))));
-    let joint = &reading.description.joints[0];
+    let joint = &reading.description.joints[JointId(0)];
     let limit = joint.limit.unwrap();
     assert_eq!(
         (joint.kind, limit.lower, limit.upper, limit.effort, limit.velocity),
@@ -337,11 +337,11 @@ fn a_rotor_behind_its_gear_is_kept() {
     let tags = "<axis><xyz>0 0 1</xyz></axis><drake:rotor_inertia>5.5e-6</drake:rotor_inertia><drake:gear_ratio>113.9</drake:gear_ratio>";
     let read = |kind: &str, tags: &str| accepted(&model("1.9", &(link("a", "") + &joint("j", kind, ["world", "a"], tags))));
     let reading = read("revolute", tags);
-    let found = reading.description.joints[0].dynamics.armature.unwrap();
+    let found = reading.description.joints[JointId(0)].dynamics.armature.unwrap();
     assert!((found - 0.071352655).abs() < 1e-15 && reading.warnings.is_empty(), "{found} {:?}", reading.warnings);
     assert!(reading.unused.iter().any(|unused| unused.tag == "joint armature") && reading.unused.len() == 1, "{:?}", reading.unused);
     let negative = read("revolute", &tags.replace("5.5e-6", "-1"));
-    assert!(negative.warnings.len() == 1 && negative.description.joints[0].dynamics.armature.is_none(), "{:?}", negative.warnings);
+    assert!(negative.warnings.len() == 1 && negative.description.joints[JointId(0)].dynamics.armature.is_none(), "{:?}", negative.warnings);
     let ball = read("ball", &tags.replace("<axis><xyz>0 0 1</xyz></axis>", ""));
     assert_eq!(ball.unused.iter().map(|unused| unused.tag.as_str()).collect::<Vec<_>>(), ["drake:rotor_inertia", "drake:gear_ratio"]);
 }
@@ -365,7 +365,7 @@ fn a_follower_follows() {
 #[test]
 fn links_without_mass_properties_have_the_defaults_of_the_format() {
     let reading = accepted(&model("1.9", &("<link name=\"a\"/>".to_owned() + &joint("j", "continuous", ["world", "a"], "<axis/>"))));
-    let inertial = reading.description.links[1].inertial.unwrap();
+    let inertial = reading.description.links[LinkId(1)].inertial.unwrap();
     assert_eq!((inertial.mass, inertial.inertia), (1.0, [1.0, 0.0, 0.0, 1.0, 0.0, 1.0]));
     assert_eq!(reading.warnings.iter().map(|warning| warning.code).collect::<Vec<_>>(), [Code::MissingTag]);
     let auto = error(&model("1.11", "<link name=\"a\"><inertial auto=\"true\"/></link>"));
@@ -609,7 +609,10 @@ fn a_urdf_in_an_include_is_read() {
         "<robot name='r'><link name='world'/><link name='a'/><joint name='j' type='continuous'><parent link='world'/><child link='a'/></joint></robot>",
     );
     let held = held.unwrap().description;
-    assert_eq!(held.joints.iter().map(|j| (j.name.as_str(), j.parent)).collect::<Vec<_>>(), [("cart_free", 0), ("c::j", 0)]);
+    assert_eq!(
+        held.joints.iter().map(|j| (j.name.as_str(), j.parent)).collect::<Vec<_>>(),
+        [("cart_free", LinkId(0)), ("c::j", LinkId(0))]
+    );
     let wrong =
         of(include, "<robot name='r'>\n<link name='a'><inertial><mass value='x'/></inertial></link></robot>").unwrap_err().to_string();
     assert!(wrong.contains("robots/crane/crane.urdf:2: link \"a\": mass value: found \"x\""), "{wrong}");
@@ -625,7 +628,7 @@ fn inertias_are_computed_of_shapes_where_the_file_says_so() {
         format!("<collision name='c'>{pose}{density}<geometry>{geometry}</geometry></collision>")
     };
     let of = |inertial: &str, shapes: &str| model("1.11", &format!("<link name='a'>{inertial}{shapes}</link>"));
-    let own = |text: &str| accepted(text).description.links[1].inertial.unwrap();
+    let own = |text: &str| accepted(text).description.links[LinkId(1)].inertial.unwrap();
     let auto = "<inertial auto='true'/>";
     let pi = std::f64::consts::PI;
     // One shape of density 800 in its own frame: volume, squared radii of gyration, centre.
@@ -665,14 +668,14 @@ fn inertias_are_computed_of_shapes_where_the_file_says_so() {
     let scaled =
         "<inertial auto='true'><mass>1.5</mass><pose>9 9 9 0 0 0</pose><inertia><ixx>7</ixx></inertia><density>1</density></inertial>";
     let reading = accepted(&of(scaled, &(ball + &boxed)));
-    let half = reading.description.links[1].inertial.unwrap();
+    let half = reading.description.links[LinkId(1)].inertial.unwrap();
     assert!(
         near(&[half.mass], &[1.5]) && near(&half.inertia, &turned.map(|moment| moment / 2.0)) && near(&half.origin.xyz, &[0.0, 0.0, 1.0])
     );
     assert_eq!(reading.unused.iter().filter(|u| matches!(u.tag.as_str(), "pose" | "inertia")).count(), 2);
     // Without a density, water's, with a warning.
     let reading = accepted(&of(auto, &shape("", "", "<box><size>1 1 1</size></box>")));
-    assert_eq!(reading.description.links[1].inertial.unwrap().mass, 1000.0);
+    assert_eq!(reading.description.links[LinkId(1)].inertial.unwrap().mass, 1000.0);
     assert!(reading.warnings.len() == 1 && reading.warnings[0].to_string().contains("1000 kg/m³"), "{:?}", reading.warnings);
     // What cannot be computed.
     let mesh = shape("", "<density>1</density>", "<mesh><uri>a.stl</uri></mesh>");
@@ -689,7 +692,7 @@ fn inertias_are_computed_of_shapes_where_the_file_says_so() {
     }
     // Nothing depends on the mass of what does not move.
     let still = "<sdf version='1.11'><model name='m'><static>true</static><link name='a'><inertial auto='true'/><collision name='c'><geometry><plane/></geometry></collision></link></model></sdf>";
-    assert!(accepted(still).description.links[1].inertial.is_none());
+    assert!(accepted(still).description.links[LinkId(1)].inertial.is_none());
 }
 
 /// A law that is not read is an error, and a plugin that couples joints is called so.
@@ -742,7 +745,7 @@ fn the_first_of_tags_that_contradict_each_other_counts_where_that_is_asked_for()
     let first = Options { first_of_duplicates: true, ..options() };
     for (text, options, word) in [(of("2"), first, "the first is used"), (of("1"), options(), "used once")] {
         let reading = read(text.as_bytes(), &options).unwrap();
-        assert_eq!(reading.description.links[1].inertial.unwrap().mass, 1.0);
+        assert_eq!(reading.description.links[LinkId(1)].inertial.unwrap().mass, 1.0);
         assert!(reading.warnings.len() == 1 && reading.warnings[0].expected.ends_with(word), "{:?}", reading.warnings);
     }
 }
@@ -794,7 +797,7 @@ fn what_is_not_used_is_listed_with_its_line() {
     }
     let codes: Vec<_> = reading.warnings.iter().map(|warning| (warning.line().unwrap_or(0), warning.code)).collect();
     assert_eq!(codes, [(7, Code::LostDynamics), (8, Code::Misspelt)]);
-    assert_eq!(reading.description.links[1].visual[0].color, Some([1.0, 0.0, 0.0, 1.0]));
+    assert_eq!(reading.description.links[LinkId(1)].visual[0].color, Some([1.0, 0.0, 0.0, 1.0]));
 }
 
 #[test]

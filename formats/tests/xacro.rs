@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
 
-use articulated_core::description::Description;
+use articulated_core::description::{Description, LinkId};
 use articulated_core::diagnostic::{Code, Diagnostics};
 use articulated_formats::{NoFiles, Options, Reading, Sources, included, read_with};
 
@@ -90,7 +90,7 @@ fn link(name: &str, mass: &str) -> String {
 fn values(before: &str, expressions: &[(&str, f64)]) {
     let all: String = expressions.iter().enumerate().map(|(k, (text, _))| link(&format!("k{k}"), text)).collect();
     let reading = expanded(&Files::default(), &format!("<link name='base'/>{before}{all}"), &[]);
-    for (link, (text, value)) in reading.description.links[1..].iter().zip(expressions) {
+    for (link, (text, value)) in reading.description.links.iter().skip(1).zip(expressions) {
         let mass = link.inertial.as_ref().unwrap().mass;
         assert!(mass == *value, "{text}: {mass:?}, not {value:?}");
     }
@@ -191,7 +191,7 @@ fn conditions_elements_attributes_and_property_blocks() {
     );
     assert_eq!(links(&body), "base, a1 2.0");
     let reading = expanded(&Files::default(), "<link name='$${x}'/><xacro:property name='unused' value='${unknown}'/>", &[]);
-    assert_eq!(reading.description.links[0].name, "${x}");
+    assert_eq!(reading.description.links[LinkId(0)].name, "${x}");
 }
 
 #[test]
@@ -221,7 +221,7 @@ fn files_packages_and_yaml_are_found_and_keep_their_names() {
     assert_eq!(shown(&reading.description), "base, left3x, l2, deep");
     let joint = &reading.description.joints[reading.description.joint("a").unwrap()];
     assert_eq!(joint.limit.map(|l| (l.upper, l.effort)), Some((std::f64::consts::FRAC_PI_2, 2.5)));
-    assert!(format!("{:?}", reading.description.links[2].visual).contains("package://my_robot/a.stl"));
+    assert!(format!("{:?}", reading.description.links[LinkId(2)].visual).contains("package://my_robot/a.stl"));
 }
 
 #[test]
@@ -292,7 +292,7 @@ fn the_working_folder_and_classes_in_patterns_are_read() {
     );
     let reading = expanded(&files, &body, &[]);
     assert_eq!(shown(&reading.description), "base, one, three, mesh");
-    assert!(format!("{:?}", reading.description.links[3].visual).contains("\"./m.stl\""));
+    assert!(format!("{:?}", reading.description.links[LinkId(3)].visual).contains("\"./m.stl\""));
     let found = errors(&files, "<link name='base'/><xacro:include filename='$(cwd)/p[ab]rts/x.xacro'/><link name='$(cwd x)'/>");
     assert!(
         found.len() == 2 && found[0].contains("[…] in the name of the file alone") && found[1].contains("none behind dirname and cwd"),
@@ -312,7 +312,7 @@ fn texts_have_the_prefixes_and_escapes_of_python() {
         (r"'\u00fc'.upper() + u'日本'[1]", "Ü本"),
     ] {
         let reading = expanded(&Files::default(), &body(expression), &[]);
-        assert_eq!(reading.description.links[0].name, name, "{expression}");
+        assert_eq!(reading.description.links[LinkId(0)].name, name, "{expression}");
     }
     for (expression, words) in [
         (r"'\x4'", r"the text \x4"),

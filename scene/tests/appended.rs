@@ -1,7 +1,7 @@
 //! Robots that are appended, with what their files say beside them, and what hangs at frames.
 
 use articulated_core::algorithm::{Workspace, inverse_dynamics};
-use articulated_core::description::Base;
+use articulated_core::description::{Base, JointId};
 use articulated_core::diagnostic::{Code, Diagnostics};
 use articulated_scene::{BuiltRobot, Controller, Opened, RobotInWorld, Scene, Signal};
 
@@ -47,7 +47,7 @@ fn equations_of_an_appended_file_couple_its_joints() {
     let warned = |robot: &BuiltRobot| robot.reading.warnings.iter().filter(|warning| warning.field == "coupling").count();
     assert_eq!((warned(&free), warned(&coupled)), (1, 0));
     let joints = &coupled.reading.description.joints;
-    let find = |name: &str| joints.iter().position(|joint| joint.name == name).unwrap();
+    let find = |name: &str| joints.position(|joint| joint.name == name).unwrap();
     let mimic = joints[find("g_foll")].mimic.unwrap();
     // q + 0.1 = 0.3 − 0.5 (q₁ − 0.2)
     assert_eq!((mimic.joint, mimic.multiplier), (find("g_lead"), -0.5));

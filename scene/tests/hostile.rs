@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link};
+use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, LinkId};
 use articulated_core::model::Model;
 use articulated_formats::world::World;
 use articulated_scene::{Bundled, Edited, Scene, open_in};
@@ -38,12 +38,13 @@ fn robot() -> Description {
     Description {
         name: "robot".into(),
         links: ["base", "tool", "club_head", "palm", "foot"].map(link).into(),
-        joints: vec![
-            joint("elbow", JointKind::Revolute, 0, 1),
-            joint("point", JointKind::Spherical, 1, 2),
-            joint("slide", JointKind::Prismatic, 2, 3),
-            joint("club_hosel", JointKind::Fixed, 3, 4),
-        ],
+        joints: [
+            joint("elbow", JointKind::Revolute, LinkId(0), LinkId(1)),
+            joint("point", JointKind::Spherical, LinkId(1), LinkId(2)),
+            joint("slide", JointKind::Prismatic, LinkId(2), LinkId(3)),
+            joint("club_hosel", JointKind::Fixed, LinkId(3), LinkId(4)),
+        ]
+        .into(),
         ..Description::default()
     }
 }

@@ -1,6 +1,6 @@
 //! What scenes say, as numbers in the order of a robot.
 
-use articulated_core::description::{Base, Description, Joint, JointDynamics, JointKind, Link};
+use articulated_core::description::{Base, Description, Joint, JointDynamics, JointKind, Link, LinkId};
 use articulated_core::diagnostic::{Subject, Unused};
 use articulated_core::effect::EffectId;
 use articulated_core::integrator::IntegratorId;
@@ -75,8 +75,14 @@ fn on(text: &str) -> Vec<(EffectId, String, Vec<f64>)> {
 fn what_is_asked_of_ten_thousand_joints_and_links_is_soon_resolved() {
     let count = 10_000;
     let dynamics = JointDynamics { damping: Some(0.5), friction: Some(0.0), ..JointDynamics::default() };
-    let joint =
-        |k| Joint { name: format!("joint_{k}"), kind: JointKind::Continuous, parent: k, child: k + 1, dynamics, ..Joint::default() };
+    let joint = |k: usize| Joint {
+        name: format!("joint_{k}"),
+        kind: JointKind::Continuous,
+        parent: LinkId(k),
+        child: LinkId(k + 1),
+        dynamics,
+        ..Joint::default()
+    };
     let description = Description {
         links: (0..=count).map(|k| Link { name: format!("link_{k}"), ..Link::default() }).collect(),
         joints: (0..count).map(joint).collect(),

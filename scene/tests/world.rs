@@ -1,6 +1,6 @@
 //! States, actuators, gravity and steps of the robot's file, as scenes use them.
 
-use articulated_core::description::Base;
+use articulated_core::description::{Base, JointId};
 use articulated_core::model::Model;
 use articulated_formats::world::{Actuator, Keyframe, World};
 use articulated_scene::{Controller, RobotInWorld, Scene, Signal};
@@ -215,8 +215,8 @@ fn equations_of_the_file_are_couplings_where_the_scene_says_so() {
     assert_eq!((free.model.nv(), coupled.model.nv()), (2, 1));
     let warned = |robot: &articulated_scene::BuiltRobot| robot.reading.warnings.iter().filter(|w| w.field == "coupling").count();
     assert_eq!((warned(&free), warned(&coupled)), (1, 0));
-    let mimic = coupled.reading.description.joints[1].mimic.unwrap();
-    assert_eq!((mimic.joint, mimic.multiplier, mimic.offset), (0, -2.0, 10.0_f64.to_radians()));
+    let mimic = coupled.reading.description.joints[JointId(1)].mimic.unwrap();
+    assert_eq!((mimic.joint, mimic.multiplier, mimic.offset), (JointId(0), -2.0, 10.0_f64.to_radians()));
     // A servo of the follower, q = −2 q₁ + 10°: its torque on the leader is −2 f.
     let servo =
         Actuator { drives: vec![("two".into(), vec![3.0])], gain: [0.5, 0.25, 0.0], bias: [1.0, -7.0, -0.5], ..Actuator::default() };

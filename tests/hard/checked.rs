@@ -2,7 +2,7 @@
 
 use articulated::algorithm::checked::{Factor, Measure, Solver, Unsolved, least_pivot};
 use articulated::{Dynamics, Workspace, algorithm};
-use articulated_core::description::{Base, JointKind, Mimic, Origin};
+use articulated_core::description::{Base, JointId, JointKind, Mimic, Origin};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
 use articulated_lab::stress::robots::{Shape, built, chain, rods, state, states};
@@ -126,8 +126,8 @@ fn what_overflows_or_is_not_a_number_is_an_error_too() {
 #[test]
 fn robots_whose_joints_follow_others_are_checked_too() {
     let mut robot = rods();
-    robot.joints[2].mimic = Some(Mimic { joint: 1, multiplier: 1.0, offset: 0.0 });
-    robot.joints[2].kind = JointKind::Continuous;
+    robot.joints[JointId(2)].mimic = Some(Mimic { joint: JointId(1), multiplier: 1.0, offset: 0.0 });
+    robot.joints[JointId(2)].kind = JointKind::Continuous;
     let model = built(&robot, Base::Fixed);
     let (mut ws, mut a) = (Workspace::new(&model), [0.0; 2]);
     let mut solve = |bend: f64| algorithm::checked_forward_dynamics(&model, &mut ws, &[0.4, bend], &[0.1; 2], &[1.0; 2], &mut a);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Mimic, Origin};
+use articulated_core::description::{Base, Description, Inertial, Joint, JointId, JointKind, Link, LinkId, Mimic, Origin};
 use articulated_core::spatial::Reference;
 use serde::Deserialize;
 
@@ -107,13 +107,13 @@ impl DrawnJoint {
         Joint {
             name: self.name.clone(),
             kind: *JointKind::ALL.iter().find(|k| k.name() == self.kind).expect("a kind of joint"),
-            parent: self.parent,
-            child: self.child,
+            parent: LinkId(self.parent),
+            child: LinkId(self.child),
             origin: Origin::new(self.xyz, self.rpy),
             axis: self.axis,
             second_axis: self.second_axis,
             pitch: self.pitch,
-            mimic: self.mimic.map(|m| Mimic { joint: m.joint, multiplier: m.multiplier, offset: m.offset }),
+            mimic: self.mimic.map(|m| Mimic { joint: JointId(m.joint), multiplier: m.multiplier, offset: m.offset }),
             ..Joint::default()
         }
     }

@@ -1,6 +1,6 @@
 //! What there is to say of a robot, as data.
 
-use articulated_core::description::{Description, Joint, JointKind, Link, Mimic};
+use articulated_core::description::{ById, Description, Joint, JointKind, Link, LinkId, Mimic};
 use articulated_core::diagnostic::{Diagnostic as Finding, summary};
 use articulated_core::eigen::eigenvalues;
 use articulated_core::model::{FLOATING_BASE, Model};
@@ -213,7 +213,7 @@ fn link_row(link: &Link, body: usize, model: &Model<f64>) -> LinkRow {
 
 /// The floating base first, then the joints in the order of their coordinates, then those that have
 /// none of their own, as the file has them.
-fn joint_rows(description: &Description, model: &Model<f64>, bodies: &[usize]) -> Vec<JointRow> {
+fn joint_rows(description: &Description, model: &Model<f64>, bodies: &ById<LinkId, usize>) -> Vec<JointRow> {
     let carried = model.carried();
     let base = model.joints().iter().find(|j| j.name == FLOATING_BASE).map(|j| JointRow {
         joint: j.name.clone(),
@@ -232,7 +232,7 @@ fn joint_rows(description: &Description, model: &Model<f64>, bodies: &[usize]) -
     });
     let places: std::collections::BTreeMap<&str, _> = model.joints().iter().map(|j| (j.name.as_str(), (j.q, j.v))).collect();
     let rows = description.joints.iter().map(|joint| {
-        let name = |link: usize| Some(description.links[link].name.clone());
+        let name = |link: LinkId| Some(description.links[link].name.clone());
         let place = places.get(joint.name.as_str()).filter(|_| joint.name != FLOATING_BASE);
         let body = bodies[joint.child];
         let limit = joint.limit;
@@ -258,6 +258,6 @@ fn joint_rows(description: &Description, model: &Model<f64>, bodies: &[usize]) -
 }
 
 /// Joints that join links of one body.
-fn merged(description: &Description, bodies: &[usize]) -> usize {
+fn merged(description: &Description, bodies: &ById<LinkId, usize>) -> usize {
     description.joints.iter().filter(|j| bodies[j.child] == bodies[j.parent]).count()
 }

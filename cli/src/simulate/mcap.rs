@@ -128,8 +128,7 @@ pub(super) fn bytes(
 /// The frame that placements are given in: the root link of a fixed base, else the world, under a
 /// name that no link has.
 fn root(description: &Description, base: Base) -> String {
-    let root = (0..description.links.len()).find(|&link| description.joints.iter().all(|joint| joint.child != link));
-    match (base, root) {
+    match (base, description.root()) {
         (Base::Fixed, Some(root)) => description.links[root].name.clone(),
         _ => ["world", "map", "odom"].into_iter().find(|name| description.link(name).is_none()).unwrap_or("world_frame").to_owned(),
     }

@@ -106,7 +106,7 @@ fn branch_kinds(model: &Model, root: usize, size: usize) -> Option<Vec<Kind>> {
 
 #[cfg(test)]
 mod tests {
-    use articulated_core::description::{Base, Description, JointKind, Link, Mimic};
+    use articulated_core::description::{Base, Description, JointId, JointKind, Link, LinkId, Mimic};
     use articulated_core::effect::JointEffect;
     use articulated_core::model::ModelParts;
 
@@ -117,9 +117,17 @@ mod tests {
         let link = |k: usize| Link { name: format!("{k}"), ..Link::default() };
         let joint = |(k, &parent): (usize, &usize)| {
             let leader = follows.iter().find(|(follower, _)| *follower == k + 1);
-            let mimic = leader.map(|(_, leader)| Mimic { joint: leader - 1, multiplier: 2.0, offset: 0.5 });
+            let mimic = leader.map(|(_, leader)| Mimic { joint: JointId(leader - 1), multiplier: 2.0, offset: 0.5 });
             let (name, kind, axis) = (format!("{}", k + 1), JointKind::Continuous, [0.0, 0.0, 1.0]);
-            articulated_core::description::Joint { name, kind, parent, child: k + 1, axis, mimic, ..Default::default() }
+            articulated_core::description::Joint {
+                name,
+                kind,
+                parent: LinkId(parent),
+                child: LinkId(k + 1),
+                axis,
+                mimic,
+                ..Default::default()
+            }
         };
         let links = (0..=parents.len()).map(link).collect();
         let joints = parents.iter().enumerate().map(joint).collect();

@@ -16,7 +16,7 @@ use std::collections::HashMap;
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::PARAMETERS;
-use articulated_core::description::Description;
+use articulated_core::description::{Description, JointId, LinkId};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::effect::{Applied, Effect, EffectId, On, effect};
 use articulated_core::model::{Model, ModelParts};
@@ -127,8 +127,8 @@ fn parts(text: &str) -> Option<(&str, &str)> {
 struct Robot<'a> {
     description: &'a mut Description,
     model: &'a Model<f64>,
-    links: HashMap<String, usize>,
-    joints: HashMap<String, usize>,
+    links: HashMap<String, LinkId>,
+    joints: HashMap<String, JointId>,
     frames: HashMap<String, usize>,
     /// The first body of each joint: a planar or universal joint has several.
     bodies: HashMap<String, usize>,
@@ -136,11 +136,10 @@ struct Robot<'a> {
 
 impl<'a> Robot<'a> {
     fn of(description: &'a mut Description, model: &'a Model<f64>) -> Self {
-        let links = indices(description.links.iter().map(|l| &l.name));
-        let joints = indices(description.joints.iter().map(|j| &j.name));
-        let frames = indices(model.frames().iter().map(|f| &f.name));
-        let mut bodies = indices(model.bodies().iter().skip(1).map(|b| &b.name));
-        bodies.values_mut().for_each(|k| *k += 1);
+        let links = indices(description.links.iter().map(|l| &l.name), LinkId);
+        let joints = indices(description.joints.iter().map(|j| &j.name), JointId);
+        let frames = indices(model.frames().iter().map(|f| &f.name), |k| k);
+        let bodies = indices(model.bodies().iter().skip(1).map(|b| &b.name), |k| k + 1);
         Self { description, model, links, joints, frames, bodies }
     }
 
@@ -234,10 +233,10 @@ impl<'a> Robot<'a> {
 }
 
 /// Index of each name; the first, where there are several.
-fn indices<'a>(names: impl Iterator<Item = &'a String>) -> HashMap<String, usize> {
+fn indices<'a, I>(names: impl Iterator<Item = &'a String>, of: impl Fn(usize) -> I) -> HashMap<String, I> {
     let mut indices = HashMap::new();
     names.enumerate().for_each(|(k, name)| {
-        indices.entry(name.clone()).or_insert(k);
+        indices.entry(name.clone()).or_insert(of(k));
     });
     indices
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use articulated_core::description::{Base, Collision, Description, Frame, Inertial, Joint, JointKind, Link, Origin, Visual};
+use articulated_core::description::{Base, Collision, Description, Frame, Inertial, Joint, JointKind, Link, LinkId, Origin, Visual};
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
 use super::bodies::{self, Body, Kind, at_reference};
@@ -40,8 +40,8 @@ pub(crate) fn lower(name: &str, bodies: &[Body<'_>], inertials: &[Option<Mass>],
     lower.reserve(bodies, log);
     for (index, (body, own)) in bodies.iter().zip(inertials).enumerate() {
         if index == 0 {
-            lower.description.links.push(Link { name: WORLD.to_owned(), ..Link::default() });
-            lower.link_of.push(0);
+            let world = lower.description.links.push(Link { name: WORLD.to_owned(), ..Link::default() });
+            lower.link_of.push(world);
             lower.is_fixed.push(true);
         } else {
             lower.body(index, body, own.as_ref().map(Mass::inertial), options, log);
@@ -57,7 +57,7 @@ struct Lower {
     /// Names of links and frames, and of joints, that are taken.
     links: Taken,
     joints: Taken,
-    link_of: Vec<usize>,
+    link_of: Vec<LinkId>,
     /// Whether nothing moves the body.
     is_fixed: Vec<bool>,
     /// Names of joints of the file, or made for them.
@@ -128,12 +128,11 @@ impl Lower {
         } else {
             self.sequence(body, parent, link, log);
         }
-        self.link_of.push(self.description.links.len() - 1);
+        self.link_of.push(LinkId(self.description.links.len() - 1));
     }
 
-    fn add_link(&mut self, link: Link) -> usize {
-        self.description.links.push(link);
-        self.description.links.len() - 1
+    fn add_link(&mut self, link: Link) -> LinkId {
+        self.description.links.push(link)
     }
 
     fn add_joint(&mut self, joint: Joint) {
@@ -150,12 +149,12 @@ impl Lower {
         // One beside others is an error.
         self.names.extend(body.joints.iter().map(|_| name.clone()));
         let child = self.add_link(link);
-        self.add_joint(Joint { name, kind: JointKind::Floating, parent: 0, child, ..Joint::default() });
+        self.add_joint(Joint { name, kind: JointKind::Floating, parent: LinkId(0), child, ..Joint::default() });
     }
 
     /// Hinges, slides and balls, one after the other. The frame of each link in between is at the
     /// anchor of its joint.
-    fn sequence(&mut self, body: &Body<'_>, mut parent: usize, link: Link, log: &mut Diagnostics) {
+    fn sequence(&mut self, body: &Body<'_>, mut parent: LinkId, link: Link, log: &mut Diagnostics) {
         let mut link = Some(link);
         let body_name = link.as_ref().map(|link| link.name.clone()).unwrap_or_default();
         let mut anchor = [0.0; 3];

@@ -5,7 +5,9 @@
 
 use std::rc::Rc;
 
-use articulated_core::description::{CollisionShape, Description, Inertial, Joint, JointDynamics, JointKind, Limit, Origin, Rotation};
+use articulated_core::description::{
+    CollisionShape, Description, Inertial, Joint, JointDynamics, JointKind, Limit, LinkId, Origin, Rotation,
+};
 use articulated_core::diagnostic::{At, Code, Diagnostics, Place, Subject, quote};
 
 use super::names::{ROOT, WORLD_NAME};
@@ -24,7 +26,7 @@ pub(crate) fn document(robot: &Description, file: &Rc<File>, log: &mut Diagnosti
     let root = robot.root();
     let world = root.filter(|root| robot.links[*root].name == WORLD_NAME);
     let mut parts: Vec<Element> = Vec::new();
-    let others = (0..robot.links.len()).filter(|link| Some(*link) != root);
+    let others = robot.links.ids().filter(|link| Some(*link) != root);
     for link in root.into_iter().chain(others).filter(|link| Some(*link) != world) {
         let above = robot.joints.iter().find(|joint| joint.child == link);
         parts.push(maker.link(link, above, world));
@@ -68,7 +70,7 @@ impl Maker<'_> {
         Element { content: Some(spelled(&numbers)), ..self.tag("pose", &attributes, Vec::new()) }
     }
 
-    fn link(&self, index: usize, above: Option<&Joint>, world: Option<usize>) -> Element {
+    fn link(&self, index: LinkId, above: Option<&Joint>, world: Option<LinkId>) -> Element {
         let link = &self.robot.links[index];
         let mut parts = Vec::new();
         if let Some(joint) = above {

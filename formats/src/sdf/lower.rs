@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeSet, HashMap, VecDeque};
 
-use articulated_core::description::{Base, Description, Frame, Joint, JointKind, Limit, Link, Mimic, Origin};
+use articulated_core::description::{Base, Description, Frame, Joint, JointId, JointKind, Limit, Link, LinkId, Mimic, Origin};
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 use articulated_core::listed;
 
@@ -209,8 +209,8 @@ struct Lower<'a, 'g> {
     /// Names of links and frames, and of joints, that are taken.
     links: Taken,
     joints: Taken,
-    /// For each joint, the index of that of its first axis and of its second.
-    first: Vec<Option<[usize; 2]>>,
+    /// For each joint, the one of the description of its first axis and of its second.
+    first: Vec<Option<[JointId; 2]>>,
     /// Names of `<frame>`s, in their order.
     frames: Vec<String>,
     /// The coordinates of free joints at the poses of the file, where they are not zero.
@@ -246,7 +246,7 @@ impl Lower<'_, '_> {
     /// Free joints, and fixed ones for the links of static models.
     fn hang_on_the_world(&mut self, tree: &Tree) {
         for body in tree.order.iter().copied().filter(|body| *body != WORLD && tree.above[*body].joint.is_none()) {
-            let name = self.description.links[body].name.clone();
+            let name = self.description.links[link_id(body)].name.clone();
             let pose = self.graph.relative(WORLD, self.node(body));
             let (kind, word, origin) = match tree.is_static[body] {
                 true => (JointKind::Fixed, "fixed", pose.origin()),
@@ -257,7 +257,7 @@ impl Lower<'_, '_> {
                 let ([x, y, z, w], [px, py, pz]) = (scalar_last(pose.rotation), pose.position);
                 self.start.push((name.clone(), vec![px, py, pz, x, y, z, w]));
             }
-            self.description.joints.push(Joint { name, kind, parent: 0, child: body, origin, ..Joint::default() });
+            self.description.joints.push(Joint { name, kind, parent: LinkId(0), child: link_id(body), origin, ..Joint::default() });
         }
     }
 
@@ -283,22 +283,22 @@ impl Lower<'_, '_> {
         if !pose.position.iter().chain(&pose.rotation).chain(&anchor).all(|x| x.is_finite()) {
             joint.element.error((&subject(joint.element), "pose"), Code::NotFinite, "a pose beyond all numbers", "finite poses", log);
         }
+        let (on, body) = (link_id(on), link_id(body));
         let link = self.description.links[body].name.clone();
         let (mut parent, mut origin) = (on, pose.origin());
-        let mut indices = [self.description.joints.len(); 2];
+        let mut indices = [self.description.joints.next_id(); 2];
         let last = motions.len();
         let dummy = |lower: &mut Self, number: usize| {
             let name = lower.links.free(format!("{link}_{number}"));
-            lower.description.links.push(Link { name, intermediate: true, ..Link::default() });
-            lower.description.links.len() - 1
+            lower.description.links.push(Link { name, intermediate: true, ..Link::default() })
         };
         for (k, motion) in motions.into_iter().enumerate() {
             let child = if k + 1 == last && !is_beside { body } else { dummy(self, k + 1) };
-            indices[motion.of] = self.description.joints.len();
+            let of = motion.of;
             let Motion { name, kind, axis, second_axis, limit, dynamics, .. } = motion;
             let pitch = if kind == JointKind::Helical { joint.pitch } else { 0.0 };
             let joint = Joint { name, kind, parent, child, origin, axis, second_axis, pitch, limit, dynamics, ..Joint::default() };
-            self.description.joints.push(joint);
+            indices[of] = self.description.joints.push(joint);
             (parent, origin) = (child, Origin::default());
         }
         if is_beside || last == 0 {
@@ -393,7 +393,7 @@ impl Lower<'_, '_> {
                     continue;
                 };
                 let moves = self.first[leader].map(|first| first[mimic.axis]);
-                let is_one = |j: usize| self.description.joints[j].kind.sizes() == (1, 1);
+                let is_one = |j: JointId| self.description.joints[j].kind.sizes() == (1, 1);
                 let has_axis = mimic.axis < graph.joints[leader].axes.len();
                 let Some(leads) = moves.filter(|leads| has_axis && is_one(*leads)) else {
                     let found = format!("{}, which has no such coordinate", quote(mimic.leader.name));
@@ -405,9 +405,9 @@ impl Lower<'_, '_> {
             }
         }
         let joints = &self.description.joints;
-        let on = |joint: usize| joints[joint].mimic.map(|mimic| mimic.joint);
-        for joint in cycles(joints.len(), on) {
-            let names = listed(around(joint, on).take(MOST_LISTED).map(|joint| quote(&joints[joint].name)));
+        let on = |joint: usize| joints[JointId(joint)].mimic.map(|mimic| mimic.joint.0);
+        for joint in cycles(joints.len(), on).into_iter().map(JointId) {
+            let names = listed(around(joint.0, on).take(MOST_LISTED).map(|joint| quote(&joints[JointId(joint)].name)));
             let about = Subject::Joint(joints[joint].name.clone());
             let node = graph.joints.iter().zip(&self.first).find(|(_, first)| first.is_some_and(|first| first.contains(&joint)));
             let element = node.map_or(graph.nodes[WORLD].element, |(joint, _)| joint.element);
@@ -425,8 +425,8 @@ impl Lower<'_, '_> {
         let names = std::mem::take(&mut self.frames);
         let frames = self.graph.nodes.iter().enumerate().filter(|(_, node)| node.what == What::Frame);
         for ((index, node), name) in frames.zip(names) {
-            let link = self.graph.bodies[index];
-            let origin = self.graph.relative(self.node(link), index).origin();
+            let body = self.graph.bodies[index];
+            let (link, origin) = (link_id(body), self.graph.relative(self.node(body), index).origin());
             if name != node.name {
                 let why = format!("a link has this name: the frame is called {}", quote(&name));
                 node.element.unused(&Subject::Document, node.element.attribute("name"), &why, log);
@@ -434,6 +434,11 @@ impl Lower<'_, '_> {
             self.description.frames.push(Frame { name, link, origin });
         }
     }
+}
+
+/// The link of a body of the graph: the world is the first of both.
+fn link_id(body: usize) -> LinkId {
+    LinkId(body)
 }
 
 /// Reports mass that the fixed world carries.

@@ -1,6 +1,8 @@
 //! From `urdf-rs`'s robot to a [`Description`], which has to be what this crate found itself.
 
-use articulated_core::description::{Description, Inertial, Joint, JointDynamics, JointKind, Limit, Link, Mimic, Origin, Rotation};
+use articulated_core::description::{
+    Description, Inertial, Joint, JointDynamics, JointId, JointKind, Limit, Link, LinkId, Mimic, Origin, Rotation,
+};
 use articulated_core::diagnostic::{Code, Diagnostics, Place};
 use urdf_rs::{JointType, Pose, Robot};
 
@@ -78,8 +80,8 @@ fn read_joint(joint: &urdf_rs::Joint, index: usize, draft: &Draft) -> Option<Joi
     (read_index(&joint.name)? == index).then_some(Joint {
         name,
         kind: read_kind(&joint.joint_type, found.kind?),
-        parent: read_index(&joint.parent.link)?,
-        child: read_index(&joint.child.link)?,
+        parent: LinkId(read_index(&joint.parent.link)?),
+        child: LinkId(read_index(&joint.child.link)?),
         origin: read_origin(&joint.origin),
         axis: *joint.axis.xyz,
         // What urdf-rs does not know has nobody to agree with.
@@ -131,5 +133,9 @@ fn read_limit(limit: &urdf_rs::JointLimit, found: Limit) -> Limit {
 }
 
 fn read_mimic(mimic: &urdf_rs::Mimic) -> Option<Mimic> {
-    Some(Mimic { joint: read_index(&mimic.joint)?, multiplier: mimic.multiplier.unwrap_or(1.0), offset: mimic.offset.unwrap_or(0.0) })
+    Some(Mimic {
+        joint: JointId(read_index(&mimic.joint)?),
+        multiplier: mimic.multiplier.unwrap_or(1.0),
+        offset: mimic.offset.unwrap_or(0.0),
+    })
 }

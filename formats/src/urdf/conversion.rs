@@ -50,6 +50,8 @@ pub fn to_urdf_rs(description: &Description) -> Result<Robot, ConversionError> {
 
 #[cfg(test)]
 mod tests {
+    use articulated_core::description::{JointId, LinkId};
+
     use super::*;
 
     const ROBOT: &str = "<robot name='door'><link name='frame'/><link name='leaf'><inertial><origin xyz='0.4 0 0.1'/><mass value='0.30000000000000004'/>\
@@ -64,8 +66,8 @@ mod tests {
         assert_eq!((robot.links.len(), robot.joints[0].limit.upper), (2, 2.0));
         let mut back = from_urdf_rs(&robot, &Options::default()).unwrap().description;
         // A link without <inertial> comes back with one of zeros.
-        back.links[0].inertial = None;
-        back.joints[0].dynamics = description.joints[0].dynamics;
+        back.links[LinkId(0)].inertial = None;
+        back.joints[JointId(0)].dynamics = description.joints[JointId(0)].dynamics;
         assert_eq!(back, description);
     }
 

@@ -1,6 +1,6 @@
 //! From a draft to a [`Description`].
 
-use articulated_core::description::{Description, Joint, Link, Mimic};
+use articulated_core::description::{Description, Joint, JointId, Link, LinkId, Mimic};
 
 use super::ast::{Draft, DraftMimic};
 use super::mimic::Leaders;
@@ -15,7 +15,7 @@ pub(crate) fn lower(draft: &Draft, tree: &Tree, leaders: &Leaders) -> Option<Des
     });
     let joints = draft.joints.iter().enumerate().map(|(i, joint)| {
         let follow = |mimic: &DraftMimic, leader: usize| Mimic {
-            joint: leader,
+            joint: JointId(leader),
             multiplier: mimic.multiplier.unwrap_or(1.0),
             offset: mimic.offset.unwrap_or(0.0),
         };
@@ -24,8 +24,8 @@ pub(crate) fn lower(draft: &Draft, tree: &Tree, leaders: &Leaders) -> Option<Des
         Some(Joint {
             name: joint.name.clone()?,
             kind: joint.kind?,
-            parent: tree.parent[i],
-            child: tree.child[i],
+            parent: LinkId(tree.parent[i]),
+            child: LinkId(tree.child[i]),
             origin: joint.origin,
             axis: joint.axis,
             second_axis: joint.second_axis,

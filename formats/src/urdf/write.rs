@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use articulated_core::description::{Description, Inertial, Joint, JointKind, Origin};
+use articulated_core::description::{Description, Inertial, Joint, JointKind, LinkId, Origin};
 
 /// The robot as a URDF, without collision geometry and appearance. Every number is printed so that
 /// reading gives the same double.
@@ -73,7 +73,7 @@ fn triple([x, y, z]: [f64; 3]) -> String {
 }
 
 fn joint(out: &mut String, description: &Description, j: &Joint) {
-    let link = |l: usize| escaped(&description.links[l].name);
+    let link = |l: LinkId| escaped(&description.links[l].name);
     let _ = writeln!(out, "  <joint name=\"{}\" type=\"{}\">", escaped(&j.name), j.kind.name());
     let _ = writeln!(out, "    <parent link=\"{}\"/>\n    <child link=\"{}\"/>\n    {}", link(j.parent), link(j.child), origin(&j.origin));
     if j.kind.has_axis() {

@@ -9,7 +9,7 @@
 //! functions of [`Dynamics`](dynamics::Dynamics) compute:
 //!
 //! ```
-//! use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Origin};
+//! use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, LinkId, Origin};
 //! use articulated_core::dynamics::Dynamics;
 //! use articulated_core::model::Model;
 //!
@@ -17,18 +17,20 @@
 //! let bob = Inertial { origin: Origin::new([0.0, 0.0, -0.5], [0.0; 3]), mass: 2.0, inertia: [0.0; 6] };
 //! let pendulum = Description {
 //!     name: "pendulum".into(),
-//!     links: vec![
+//!     links: [
 //!         Link { name: "base".into(), ..Link::default() },
 //!         Link { name: "bob".into(), inertial: Some(bob), ..Link::default() },
-//!     ],
-//!     joints: vec![Joint {
+//!     ]
+//!     .into(),
+//!     joints: [Joint {
 //!         name: "swing".into(),
 //!         kind: JointKind::Continuous,
-//!         parent: 0,
-//!         child: 1,
+//!         parent: LinkId(0),
+//!         child: LinkId(1),
 //!         axis: [0.0, 1.0, 0.0],
 //!         ..Joint::default()
-//!     }],
+//!     }]
+//!     .into(),
 //!     frames: vec![],
 //! };
 //! let model = Model::new(&pendulum, Base::Fixed)?;
@@ -70,6 +72,8 @@ pub mod diagnostic;
 pub mod dynamics;
 #[cfg(feature = "alloc")]
 pub mod effect;
+#[cfg(feature = "alloc")]
+pub mod index;
 #[cfg(feature = "alloc")]
 pub mod integrator;
 pub mod joint;

@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use articulated_core::description::{Id, JointId, LinkId};
 use articulated_core::effect::{Applied, EffectId};
 
 use super::resolve::Edited;
@@ -10,8 +11,8 @@ use crate::shaft::ShaftRequest;
 
 /// Links, joints and shafts by their names.
 pub(super) struct Index<'a> {
-    pub(super) joints: HashMap<&'a str, usize>,
-    pub(super) links: HashMap<&'a str, usize>,
+    pub(super) joints: HashMap<&'a str, JointId>,
+    pub(super) links: HashMap<&'a str, LinkId>,
     /// The joints of shafts.
     pub(super) of_shafts: HashSet<&'a str>,
     /// Effects of shafts on their joints.
@@ -36,10 +37,10 @@ impl<'a> Index<'a> {
 }
 
 /// Index of each name; the first, where there are several.
-pub(crate) fn indices<'a>(names: impl Iterator<Item = &'a str>) -> HashMap<&'a str, usize> {
+pub(crate) fn indices<'a, I: Id>(names: impl Iterator<Item = &'a str>) -> HashMap<&'a str, I> {
     let mut indices = HashMap::new();
     names.enumerate().for_each(|(k, name)| {
-        indices.entry(name).or_insert(k);
+        indices.entry(name).or_insert(I::of(k));
     });
     indices
 }

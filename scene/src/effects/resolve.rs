@@ -5,7 +5,7 @@ use crate::table::bare;
 use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Subject, Unused};
 use std::collections::HashSet;
 
-use articulated_core::description::{Base, Description, Joint, JointKind, Origin};
+use articulated_core::description::{Base, ById, Description, Joint, JointId, JointKind, LinkId, Origin};
 
 use super::index::{Index, Named};
 use super::still::{moving, still};
@@ -92,9 +92,9 @@ pub(super) struct Resolving<'a> {
     requests: &'a [EffectRequest],
     pub(super) robot: &'a Edited<'a>,
     /// Links fixed to the base.
-    still: Vec<bool>,
+    still: ById<LinkId, bool>,
     /// Joints that let their links move.
-    moving: Vec<bool>,
+    moving: ById<JointId, bool>,
     index: Index<'a>,
     pub(super) resolved: Resolved,
     /// (joint or link, tag) of the robot's file that is used.
@@ -236,8 +236,8 @@ impl<'a> Resolving<'a> {
     fn on_links(&mut self, row: &'static Effect, asked: &[&'a EffectRequest], log: &mut Diagnostics) {
         let (all, by_name) = (for_all(asked), Named::of(asked));
         let description = self.robot.description;
-        for (i, link) in description.links.iter().enumerate() {
-            if self.still[i] {
+        for (id, link) in description.links.with_ids() {
+            if self.still[id] {
                 continue;
             }
             let mut ones = by_name.get(&link.name).to_vec();

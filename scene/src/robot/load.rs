@@ -418,7 +418,7 @@ mod tests {
         let reading = opened.robot().read().unwrap_or_else(|found| panic!("{found}"));
         let links: Vec<&str> = reading.description.links.iter().map(|link| link.name.as_str()).collect();
         assert_eq!(links, ["left", "t_big"]);
-        assert_eq!(reading.description.links[0].inertial.map(|inertial| inertial.mass), Some(2.0));
+        assert_eq!(reading.description.links[articulated_core::description::LinkId(0)].inertial.map(|inertial| inertial.mass), Some(2.0));
         assert!(reading.warnings.iter().all(|warning| warning.field != "args"), "{:?}", reading.warnings);
         assert!(opened.files.contains(&"here/parts/part.xacro".into()), "{:?}", opened.files);
     }

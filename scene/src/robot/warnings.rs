@@ -1,9 +1,9 @@
 //! Warnings that robot edits raise or clear.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use articulated_core::Plain;
-use articulated_core::description::{Collision, ContactSphere, JointKind, PrincipalMoments};
+use articulated_core::description::{Collision, ContactSphere, JointKind, LinkId, PrincipalMoments};
 use articulated_core::diagnostic::{At, Code, Diagnostic, Place, Subject, Unused};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
@@ -147,8 +147,9 @@ impl Editing<'_> {
         let (options, description) = (&self.request.options, &self.reading.description);
         let still = still(description, options.base);
         let links = indices(description.links.iter().map(|l| l.name.as_str()));
-        let frames = indices(description.frames.iter().map(|frame| frame.name.as_str()));
-        let carrier = |name: &str| links.get(name).copied().or_else(|| Some(description.frames[*frames.get(name)?].link));
+        // The first of a name is the last that is kept.
+        let frames: HashMap<&str, LinkId> = description.frames.iter().rev().map(|frame| (frame.name.as_str(), frame.link)).collect();
+        let carrier = |name: &str| links.get(name).copied().or_else(|| frames.get(name).copied());
         let held = |name: &str| carrier(name).is_some_and(|at| still.get(at).copied().unwrap_or_default());
         let loads = options.payloads.iter().filter(|load| load.mass != 0.0 && held(&load.link)).map(|load| {
             warning(

@@ -1,7 +1,7 @@
 //! Robots at random whose limbs are alike, or nearly: what is evaluated in lanes, and what only
 //! looks as if it could be.
 
-use articulated_core::description::{Description, Inertial, Joint, JointKind, Link, Mimic, Origin};
+use articulated_core::description::{Description, Inertial, Joint, JointId, JointKind, Link, LinkId, Mimic, Origin};
 
 use crate::random::Random;
 use crate::random_tree::{Flavour, inertial, joint};
@@ -48,8 +48,8 @@ pub fn random_limbs(seed: u64) -> Description {
             }
             let before = robot.joints.len();
             last = attach(&mut robot, &format!("{limb}_{k}"), last, joint, body);
-            if mimic && k == 1 && [before - 1, before].iter().all(|&j| robot.joints[j].kind.sizes() == (1, 1)) {
-                robot.joints[before].mimic = Some(Mimic { joint: before - 1, multiplier: -0.7, offset: 0.2 });
+            if mimic && k == 1 && [before - 1, before].iter().all(|&j| robot.joints[JointId(j)].kind.sizes() == (1, 1)) {
+                robot.joints[JointId(before)].mimic = Some(Mimic { joint: JointId(before - 1), multiplier: -0.7, offset: 0.2 });
             }
         }
     }
@@ -85,7 +85,7 @@ fn link(name: String, inertial: Option<Inertial>) -> Link {
 fn attach(robot: &mut Description, name: &str, parent: usize, joint: Joint, body: Option<Inertial>) -> usize {
     let child = robot.links.len();
     robot.links.push(link(format!("link_{name}"), body));
-    robot.joints.push(Joint { name: format!("joint_{name}"), parent, child, ..joint });
+    robot.joints.push(Joint { name: format!("joint_{name}"), parent: LinkId(parent), child: LinkId(child), ..joint });
     child
 }
 

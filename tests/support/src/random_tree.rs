@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use articulated_core::description::{Description, Inertial, Joint, JointDynamics, JointKind, Limit, Link, Mimic, Origin};
+use articulated_core::description::{Description, Inertial, Joint, JointDynamics, JointId, JointKind, Limit, Link, LinkId, Mimic, Origin};
 
 use crate::random::Random;
 
@@ -68,8 +68,8 @@ pub(crate) fn joint(random: &mut Random, flavour: Flavour, parent: usize, child:
     Joint {
         name: format!("joint_{child}"),
         kind,
-        parent,
-        child,
+        parent: LinkId(parent),
+        child: LinkId(child),
         origin: origin(random, 0.6),
         axis,
         second_axis: if kind == Universal { second_axis(random, axis) } else { [0.0; 3] },
@@ -194,7 +194,7 @@ fn follow(random: &mut Random, joints: &mut [Joint]) {
             let leader = able[place + 1 + random.below(able.len() - place - 1)];
             let multiplier = *random.choose(&[-1.0, 1.0, 0.5, -1.7]);
             let offset = *random.choose(&[0.0, 0.0, 0.3, -1.1]);
-            joints[able[place]].mimic = Some(Mimic { joint: leader, multiplier, offset });
+            joints[able[place]].mimic = Some(Mimic { joint: JointId(leader), multiplier, offset });
         }
     }
 }
@@ -209,15 +209,15 @@ fn shuffled(random: &mut Random, tree: &Description) -> Description {
     }
     let new = |order: &[usize], old: usize| order.iter().position(|&o| o == old).expect("a permutation");
     let moved = |old: &usize| {
-        let mut joint = tree.joints[*old].clone();
-        joint.parent = new(&links, joint.parent);
-        joint.child = new(&links, joint.child);
-        joint.mimic = joint.mimic.map(|m| Mimic { joint: new(&joints, m.joint), ..m });
+        let mut joint = tree.joints[JointId(*old)].clone();
+        joint.parent = LinkId(new(&links, joint.parent.0));
+        joint.child = LinkId(new(&links, joint.child.0));
+        joint.mimic = joint.mimic.map(|m| Mimic { joint: JointId(new(&joints, m.joint.0)), ..m });
         joint
     };
     Description {
         name: tree.name.clone(),
-        links: links.iter().map(|&l| tree.links[l].clone()).collect(),
+        links: links.iter().map(|&l| tree.links[LinkId(l)].clone()).collect(),
         joints: joints.iter().map(moved).collect(),
         frames: Vec::new(),
     }

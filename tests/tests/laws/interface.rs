@@ -3,7 +3,7 @@
 use articulated::{Dynamics, FunctionError};
 use articulated_core::algorithm::checked::checked_forward_dynamics;
 use articulated_core::algorithm::{Function, Workspace, functions};
-use articulated_core::description::{Base, Description, EditError, Inertial, Joint, JointKind, Link, Mimic, Origin};
+use articulated_core::description::{Base, Description, EditError, Inertial, Joint, JointId, JointKind, Link, LinkId, Mimic, Origin};
 use articulated_core::model::{Model, ModelError};
 use articulated_tests::case::{Case, State, for_each_tree, inverse_dynamics, placements};
 use articulated_tests::measure::arguments;
@@ -78,7 +78,7 @@ fn a_workspace_of_another_robot_of_that_size_is_an_error() {
     let model = |links, joints| Model::new(&tree(links, joints), Base::Fixed).unwrap();
     let two = |second: Joint| model(3, vec![joint("a", Continuous, 0, 1), second]);
     let (chain, branches) = (two(joint("b", Continuous, 1, 2)), two(joint("b", Continuous, 0, 2)));
-    let leader = Mimic { joint: 0, multiplier: 2.0, offset: 0.0 };
+    let leader = Mimic { joint: JointId(0), multiplier: 2.0, offset: 0.0 };
     let follower = two(Joint { mimic: Some(leader), ..joint("b", Continuous, 1, 2) });
     let (planar, three) = (model(2, vec![joint("a", Planar, 0, 1)]), {
         let joints = (0..3).map(|k| joint(["a", "b", "c"][k], Continuous, k, k + 1));
@@ -157,11 +157,16 @@ fn link(name: &str) -> Link {
 
 fn joint(name: &str, kind: JointKind, parent: usize, child: usize) -> Joint {
     let (origin, axis) = (Origin::default(), [1.0, 0.0, 0.0]);
-    Joint { name: name.into(), kind, parent, child, origin, axis, mimic: None, ..Joint::default() }
+    Joint { name: name.into(), kind, parent: LinkId(parent), child: LinkId(child), origin, axis, mimic: None, ..Joint::default() }
 }
 
 fn tree(links: usize, joints: Vec<Joint>) -> Description {
-    Description { name: "odd".into(), links: (0..links).map(|k| link(&format!("l{k}"))).collect(), joints, frames: Vec::new() }
+    Description {
+        name: "odd".into(),
+        links: (0..links).map(|k| link(&format!("l{k}"))).collect(),
+        joints: joints.into(),
+        frames: Vec::new(),
+    }
 }
 
 #[test]
@@ -213,7 +218,7 @@ fn inertia_in_all_directions_is_no_number_where_joints_follow_others() {
     let chain = |follows: bool| {
         let of = |k: usize| {
             let axis = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]][k % 3];
-            let mimic = (follows && k == 3).then_some(Mimic { joint: 0, multiplier: 0.7, offset: 0.1 });
+            let mimic = (follows && k == 3).then_some(Mimic { joint: JointId(0), multiplier: 0.7, offset: 0.1 });
             let origin = Origin::at([0.1, 0.2, 0.3]);
             Joint { axis, mimic, origin, ..joint(&format!("j{k}"), JointKind::Revolute, k, k + 1) }
         };
@@ -253,7 +258,7 @@ fn who_follows_nobody_with_one_coordinate_is_an_error() {
     use JointKind::{Continuous, Fixed, Floating};
     let following = |leader: usize, other: Joint| {
         let mut first = joint("a", Continuous, 0, 1);
-        first.mimic = Some(Mimic { joint: leader, multiplier: 1.0, offset: 0.0 });
+        first.mimic = Some(Mimic { joint: JointId(leader), multiplier: 1.0, offset: 0.0 });
         Model::new(&tree(3, vec![first, other]), Base::Fixed)
     };
     let bad = |m: Result<Model, ModelError>| matches!(m, Err(ModelError::BadMimic { joint }) if joint == "a");
@@ -262,7 +267,7 @@ fn who_follows_nobody_with_one_coordinate_is_an_error() {
     assert!(bad(following(1, joint("b", Floating, 1, 2))), "a floating joint");
     assert!(bad(following(7, joint("b", Continuous, 1, 2))), "nobody");
     let mut ring = joint("b", Continuous, 1, 2);
-    ring.mimic = Some(Mimic { joint: 0, multiplier: 1.0, offset: 0.0 });
+    ring.mimic = Some(Mimic { joint: JointId(0), multiplier: 1.0, offset: 0.0 });
     assert!(matches!(following(1, ring), Err(ModelError::BadMimic { .. })), "each other");
     assert!(following(1, joint("b", Continuous, 1, 2)).is_ok());
 }
@@ -272,8 +277,8 @@ fn what_overflows_is_an_error_that_names_it() {
     let far = |mass: f64, x: f64, at: f64| {
         let origin = Origin { xyz: [x, 0.0, 0.0], ..Origin::default() };
         let mut description = tree(2, vec![joint("a", JointKind::Continuous, 0, 1)]);
-        description.links[1].inertial = Some(Inertial { origin, mass, inertia: [0.1, 0.0, 0.0, 0.1, 0.0, 0.1] });
-        description.joints[0].origin.xyz = [at, 0.0, 0.0];
+        description.links[LinkId(1)].inertial = Some(Inertial { origin, mass, inertia: [0.1, 0.0, 0.0, 0.1, 0.0, 0.1] });
+        description.joints[JointId(0)].origin.xyz = [at, 0.0, 0.0];
         Model::new(&description, Base::Fixed)
     };
     for (mass, x) in [(1.0, 1e155), (1e300, 1e10), (1e308, 9.0)] {
@@ -288,7 +293,7 @@ fn what_overflows_is_an_error_that_names_it() {
 fn multipliers_that_overflow_are_an_error_that_names_the_joint() {
     let chain = |multiplier: f64, offset: f64, locked: Option<Vec<f64>>| {
         let mut joints: Vec<Joint> = ["a", "b", "c"].iter().enumerate().map(|(k, n)| joint(n, JointKind::Continuous, k, k + 1)).collect();
-        joints.iter_mut().skip(1).enumerate().for_each(|(k, j)| j.mimic = Some(Mimic { joint: k, multiplier, offset }));
+        joints.iter_mut().skip(1).enumerate().for_each(|(k, j)| j.mimic = Some(Mimic { joint: JointId(k), multiplier, offset }));
         joints[0].locked = locked;
         Model::new(&tree(4, joints), Base::Fixed)
     };
@@ -308,8 +313,8 @@ fn a_single_link_goes_through_everything() {
     let body = Inertial { origin: Origin::default(), mass: 2.0, inertia: [0.1, 0.0, 0.0, 0.1, 0.0, 0.1] };
     let one = Description {
         name: "stone".into(),
-        links: vec![Link { name: "stone".into(), inertial: Some(body), ..Link::default() }],
-        joints: vec![],
+        links: [Link { name: "stone".into(), inertial: Some(body), ..Link::default() }].into(),
+        joints: Vec::new().into(),
         frames: vec![],
     };
     let fixed = Case::new("stone", one.clone(), Base::Fixed);

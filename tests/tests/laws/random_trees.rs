@@ -35,7 +35,7 @@ fn every_kind_of_thing_occurs() {
     );
     assert!(trees.iter().any(|t| t.links.len() == 1) && trees.iter().any(|t| t.links.len() == 12));
     assert!(
-        trees.iter().any(|t| t.joints.iter().enumerate().any(|(k, j)| t.joints[..k].iter().any(|i| i.parent == j.child))),
+        trees.iter().any(|t| t.joints.iter().enumerate().any(|(k, j)| t.joints.iter().take(k).any(|i| i.parent == j.child))),
         "a child listed before its parent"
     );
     assert!(trees.iter().flat_map(|t| &t.links).any(|l| l.inertial.is_none()));

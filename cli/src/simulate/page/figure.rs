@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use articulated_core::description::{Base, CollisionShape, Description, Inertial, Link, Origin};
+use articulated_core::description::{Base, ById, CollisionShape, Description, Inertial, Link, LinkId, Origin};
 use articulated_core::model::{Frame, Model};
 use articulated_core::spatial::Placement;
 use nalgebra::{Matrix3, Rotation3, SymmetricEigen, Vector3};
@@ -209,7 +209,7 @@ impl Figure {
     }
 
     /// Where each link is in its body; the first link of each body stands for it.
-    fn links(&mut self, description: &Description, model: &Model<f64>) -> Vec<Option<Linked>> {
+    fn links(&mut self, description: &Description, model: &Model<f64>) -> ById<LinkId, Option<Linked>> {
         let mut drawn: Vec<Option<(usize, Placement<f64>)>> = vec![None; model.bodies().len()];
         drawn[0] = Some((0, Placement::identity()));
         let mut place = |frame: &Frame<f64>| {

@@ -272,7 +272,7 @@ mod tests {
 
     #[test]
     fn a_function_without_a_way_is_told_and_gives_nothing() {
-        let robot = Description { links: Vec::from([Link::default()]), ..Description::default() };
+        let robot = Description { links: Vec::from([Link::default()]).into(), ..Description::default() };
         let model = Model::<f64>::new(&robot, Base::Floating).unwrap();
         let without = Function { ways: &[], unsolved: None, ..*super::super::function::<f64>("mass_matrix").unwrap() };
         let found = without.call(&model, &mut Workspace::new(&model), &[&[0.0; 7]], &mut [0.0; 36]);

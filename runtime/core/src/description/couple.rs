@@ -8,7 +8,7 @@ use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
-use super::{Description, EditError, Editor, Joint, Link, Mimic, Origin};
+use super::{Description, EditError, Editor, Joint, JointId, Link, Mimic, Origin};
 
 /// How a joint follows others.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,12 +35,11 @@ impl Description {
     /// the other on an axis: R(Σ qᵢ) = Π R(qᵢ), and so for slides and screws.
     pub(crate) fn in_sequence(&self) -> Self {
         let mut robot = self.clone();
-        for (j, joint) in self.joints.iter().enumerate().filter(|(_, joint)| joint.locked.is_none()) {
+        for (j, joint) in self.joints.with_ids().filter(|(_, joint)| joint.locked.is_none()) {
             let mut parent = joint.child;
             for (k, mimic) in joint.also.iter().enumerate() {
                 // The first of them keeps the place among the joints of the parent link.
-                let between = robot.links.len();
-                robot.links.push(Link { name: format!("{} {k}", joint.name), intermediate: true, ..Link::default() });
+                let between = robot.links.push(Link { name: format!("{} {k}", joint.name), intermediate: true, ..Link::default() });
                 if k == 0 {
                     robot.joints[j].child = between;
                 } else if let Some(last) = robot.joints.last_mut() {
@@ -77,7 +76,7 @@ impl Editor<'_> {
             terms.push(Mimic { joint: leader, multiplier: *coefficient, offset: 0.0 });
         }
         let joints = &self.robot.joints;
-        let one = |j: usize| joints[j].kind.sizes() == (1, 1);
+        let one = |j: JointId| joints[j].kind.sizes() == (1, 1);
         if let Some(other) = [index].into_iter().chain(terms.iter().map(|term| term.joint)).find(|j| !one(*j)) {
             let Joint { name, kind, .. } = &joints[other];
             return refuse(format!("found {name:?}, a {} joint, expected joints of one coordinate", kind.name()));

@@ -8,7 +8,7 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use super::names::Names;
-use super::{Description, EditError, Frame, Inertial, Joint, JointKind, Link, Mimic, Origin, PrincipalMoments, Shaft};
+use super::{Description, EditError, Frame, Inertial, Joint, JointId, JointKind, Link, LinkId, Mimic, Origin, PrincipalMoments, Shaft};
 use crate::effect::Applied;
 use crate::model::FLOATING_BASE;
 use crate::spatial::normalise_input;
@@ -142,51 +142,50 @@ impl<'a> Editor<'a> {
         if !names.is_empty() {
             return Err(EditError::NamesTaken { names });
         }
-        let (first_link, first_joint) = (self.robot.links.len(), self.robot.joints.len());
+        let (links, joints) = (self.robot.links.len(), self.robot.joints.len());
+        let (link_of, joint_of) = (|link: LinkId| LinkId(link.0 + links), |joint: JointId| JointId(joint.0 + joints));
         for link in &other.links {
             self.add_link(Link { name: named(&link.name), ..link.clone() });
         }
         for joint in &other.joints {
             self.add_joint(Joint {
                 name: named(&joint.name),
-                parent: joint.parent + first_link,
-                child: joint.child + first_link,
-                mimic: joint.mimic.map(|m| Mimic { joint: m.joint + first_joint, ..m }),
-                also: joint.also.iter().map(|m| Mimic { joint: m.joint + first_joint, ..*m }).collect(),
+                parent: link_of(joint.parent),
+                child: link_of(joint.child),
+                mimic: joint.mimic.map(|m| Mimic { joint: joint_of(m.joint), ..m }),
+                also: joint.also.iter().map(|m| Mimic { joint: joint_of(m.joint), ..*m }).collect(),
                 ..joint.clone()
             });
         }
         for frame in &other.frames {
-            let frame = Frame { name: named(&frame.name), link: frame.link + first_link, ..frame.clone() };
+            let frame = Frame { name: named(&frame.name), link: link_of(frame.link), ..frame.clone() };
             self.names.add_frame(&frame.name, self.robot.frames.len());
             self.robot.frames.push(frame);
         }
-        let root = first_link + root;
+        let root = link_of(root);
         let name = self.names.free(&format!("{}_mount", self.robot.links[root].name));
         self.join(name, parent, root, place.then(&origin));
         Ok(())
     }
 
     /// Adds a link, and gives its index.
-    pub(super) fn add_link(&mut self, link: Link) -> usize {
-        let index = self.robot.links.len();
-        self.names.add_link(&link.name, index);
-        self.robot.links.push(link);
-        index
+    pub(super) fn add_link(&mut self, link: Link) -> LinkId {
+        self.names.add_link(&link.name, self.robot.links.next_id());
+        self.robot.links.push(link)
     }
 
     pub(super) fn add_joint(&mut self, joint: Joint) {
-        self.names.add_joint(&joint.name, self.robot.joints.len());
+        self.names.add_joint(&joint.name, self.robot.joints.next_id());
         self.robot.joints.push(joint);
     }
 
-    fn join(&mut self, name: String, parent: usize, child: usize, origin: Origin) {
+    fn join(&mut self, name: String, parent: LinkId, child: LinkId, origin: Origin) {
         self.add_joint(Joint { name, parent, child, origin, axis: [1.0, 0.0, 0.0], ..Joint::default() });
     }
 
     /// The link called `name`, or that of the frame called so, and the pose in its frame; or the
     /// refusal that names the nearest.
-    fn place(&mut self, name: &str) -> Result<(usize, Origin), EditError> {
+    fn place(&mut self, name: &str) -> Result<(LinkId, Origin), EditError> {
         if let Some(link) = self.names.link(name) {
             return Ok((link, Origin::default()));
         }
@@ -244,7 +243,13 @@ mod tests {
     /// A base and a chain of `count` links on it, the root last.
     fn chain(count: usize) -> Description {
         let links = (0..=count).map(|k| Link { name: format!("link_{k}"), ..Link::default() }).collect();
-        let joint = |k| Joint { name: format!("joint_{k}"), kind: JointKind::Continuous, parent: k + 1, child: k, ..Joint::default() };
+        let joint = |k: usize| Joint {
+            name: format!("joint_{k}"),
+            kind: JointKind::Continuous,
+            parent: LinkId(k + 1),
+            child: LinkId(k),
+            ..Joint::default()
+        };
         Description { name: "chain".into(), links, joints: (0..count).map(joint).collect(), ..Description::default() }
     }
 
@@ -263,16 +268,16 @@ mod tests {
     #[test]
     fn long_chains_are_soon_appended_wherever_their_root_is() {
         let (mut robot, other) = (chain(20_000), chain(20_000));
-        assert_eq!(robot.root(), Some(20_000));
+        assert_eq!(robot.root(), Some(LinkId(20_000)));
         robot.append("link_0", &other, "other_", Origin::default()).unwrap();
-        assert_eq!((robot.root(), robot.link("other_link_20000")), (Some(20_000), Some(40_001)));
-        assert_eq!(robot.joints.last().map(|j| (j.name.as_str(), j.child)), Some(("other_link_20000_mount", 40_001)));
+        assert_eq!((robot.root(), robot.link("other_link_20000")), (Some(LinkId(20_000)), Some(LinkId(40_001))));
+        assert_eq!(robot.joints.last().map(|j| (j.name.as_str(), j.child)), Some(("other_link_20000_mount", LinkId(40_001))));
     }
 
     /// A site of a link, a quarter turn about x and half a metre along y from it.
     fn with_site() -> Description {
         let origin = Origin::new([0.0, 0.5, 0.0], [core::f64::consts::FRAC_PI_2, 0.0, 0.0]);
-        let frames = vec![Frame { name: "site".into(), link: 1, origin }];
+        let frames = vec![Frame { name: "site".into(), link: LinkId(1), origin }];
         Description { frames, ..chain(2) }
     }
 
@@ -284,7 +289,7 @@ mod tests {
         robot.append("site", &chain(1), "hand_", Origin::new([0.0, 0.0, 1.0], [0.0, 0.0, 0.25])).unwrap();
         let mount = |name: &str| robot.joints.iter().find(|joint| joint.name == name).unwrap();
         let [load, hand] = ["site_payload", "hand_link_1_mount"].map(mount);
-        assert_eq!([load.parent, hand.parent], [1, 1]);
+        assert_eq!([load.parent, hand.parent], [LinkId(1); 2]);
         // (x, y, z) of the site is (x, −z, y) of the link. The rotation alone keeps the file's form.
         let close = |found: [f64; 3], expected: [f64; 3]| found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15);
         assert!(close(load.origin.xyz, [1.0, 0.5 - 3.0, 2.0]) && load.origin.rotation == robot.frames[0].origin.rotation);

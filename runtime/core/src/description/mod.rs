@@ -34,17 +34,20 @@ pub use moments::PrincipalMoments;
 pub use origin::{Origin, Rotation};
 pub use shaft::Shaft;
 
+pub use crate::index::{ById, Id, JointId, LinkId};
+
 /// A tree of links and joints. Indices into `links`, `joints` and `frames` follow the order of the
 /// file.
 ///
 /// It can be edited before [`Model::new`](crate::model::Model::new) makes a model of it:
 ///
 /// ```
-/// use articulated_core::description::{Description, EditError, Joint, JointKind, Link, Payload};
+/// use articulated_core::description::{Description, EditError, Joint, JointKind, Link, LinkId, Payload};
 ///
 /// let link = |name: &str| Link { name: name.into(), ..Link::default() };
-/// let slide = Joint { name: "slide".into(), kind: JointKind::Prismatic, parent: 0, child: 1, axis: [0.0, 0.0, 1.0], ..Joint::default() };
-/// let mut lift = Description { name: "lift".into(), links: vec![link("mast"), link("fork")], joints: vec![slide], frames: vec![] };
+/// let slide = Joint { name: "slide".into(), kind: JointKind::Prismatic, parent: LinkId(0), child: LinkId(1), axis: [0.0, 0.0, 1.0], ..Joint::default() };
+/// let (links, joints) = ([link("mast"), link("fork")].into(), [slide].into());
+/// let mut lift = Description { name: "lift".into(), links, joints, frames: vec![] };
 /// lift.attach(&Payload { link: "fork".into(), mass: 100.0, ..Payload::default() })?;
 /// lift.lock("slide", &[0.3])?; // m
 /// assert_eq!(lift.joints[lift.joint("slide").unwrap()].locked, Some(vec![0.3]));
@@ -55,9 +58,9 @@ pub struct Description {
     /// The robot's name.
     pub name: String,
     /// Links in the order of the file.
-    pub links: Vec<Link>,
+    pub links: ById<LinkId, Link>,
     /// Joints in the order of the file.
-    pub joints: Vec<Joint>,
+    pub joints: ById<JointId, Joint>,
     /// Frames beside those of the links, in the order of the file.
     pub frames: Vec<Frame>,
 }
@@ -97,7 +100,7 @@ pub struct Frame {
     /// The frame's name, unique among links and frames.
     pub name: String,
     /// Index of the link that carries it.
-    pub link: usize,
+    pub link: LinkId,
     /// The frame in the link's frame.
     pub origin: Origin,
 }
@@ -244,9 +247,9 @@ pub struct Joint {
     /// What it lets move.
     pub kind: JointKind,
     /// Index of the parent link.
-    pub parent: usize,
+    pub parent: LinkId,
     /// Index of the child link.
-    pub child: usize,
+    pub child: LinkId,
     /// The joint's frame in the parent link's frame.
     pub origin: Origin,
     /// The axis in the joint's frame, as written: not necessarily of unit length, never zero for a
@@ -275,7 +278,7 @@ pub struct Joint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mimic {
     /// Index of the joint that is followed.
-    pub joint: usize,
+    pub joint: JointId,
     /// Dimensionless, or m/rad, or rad/m.
     pub multiplier: f64,
     /// rad or m.
@@ -341,12 +344,12 @@ pub enum Base {
 
 impl Description {
     /// Index of the root link: the first that is no joint's child. `None` where there is none.
-    pub fn root(&self) -> Option<usize> {
-        let mut is_child = vec![false; self.links.len()];
+    pub fn root(&self) -> Option<LinkId> {
+        let mut is_child: ById<LinkId, bool> = vec![false; self.links.len()].into();
         for joint in &self.joints {
             is_child.get_mut(joint.child).into_iter().for_each(|is| *is = true);
         }
-        is_child.iter().position(|is| !is)
+        is_child.position(|is| !is)
     }
 
     /// The first free joint by which the robot floats already, so that a floating base would let it
@@ -355,11 +358,12 @@ impl Description {
     /// is the world. `None`: there is none, or the root is a body that may fly beside others.
     pub fn free_joint_of_root(&self) -> Option<&Joint> {
         let root = self.root()?;
-        let mut below: Vec<Vec<&Joint>> = vec![Vec::new(); self.links.len()];
+        let mut below: ById<LinkId, Vec<&Joint>> = vec![Vec::new(); self.links.len()].into();
         for joint in &self.joints {
             below.get_mut(joint.parent)?.push(joint);
         }
-        let (mut held, mut seen, mut free) = (vec![root], vec![false; self.links.len()], None);
+        let mut seen: ById<LinkId, bool> = vec![false; self.links.len()].into();
+        let (mut held, mut free) = (vec![root], None);
         let mut has_mass = false;
         while let Some(link) = held.pop() {
             if core::mem::replace(seen.get_mut(link)?, true) {
@@ -378,13 +382,13 @@ impl Description {
     }
 
     /// Index of the link called `name`.
-    pub fn link(&self, name: &str) -> Option<usize> {
-        self.links.iter().position(|l| l.name == name)
+    pub fn link(&self, name: &str) -> Option<LinkId> {
+        self.links.position(|l| l.name == name)
     }
 
     /// Index of the joint called `name`.
-    pub fn joint(&self, name: &str) -> Option<usize> {
-        self.joints.iter().position(|j| j.name == name)
+    pub fn joint(&self, name: &str) -> Option<JointId> {
+        self.joints.position(|j| j.name == name)
     }
 }
 
@@ -396,14 +400,14 @@ mod tests {
     fn the_root_is_soon_found_wherever_it_is() {
         let count = 100_000;
         let robot = |child: fn(usize) -> usize| Description {
-            links: vec![Link::default(); count + 1],
-            joints: (0..count).map(|k| Joint { child: child(k), ..Joint::default() }).collect(),
+            links: vec![Link::default(); count + 1].into(),
+            joints: (0..count).map(|k| Joint { child: LinkId(child(k)), ..Joint::default() }).collect(),
             ..Description::default()
         };
-        assert_eq!(robot(|k| k).root(), Some(count));
-        assert_eq!(robot(|k| k + 1).root(), Some(0));
-        assert_eq!(robot(|k| k.max(1)).root(), Some(0));
+        assert_eq!(robot(|k| k).root(), Some(LinkId(count)));
+        assert_eq!(robot(|k| k + 1).root(), Some(LinkId(0)));
+        assert_eq!(robot(|k| k.max(1)).root(), Some(LinkId(0)));
         // A child that is no link is nobody's.
-        assert_eq!(Description { joints: vec![Joint { child: 7, ..Joint::default() }], ..Description::default() }.root(), None);
+        assert_eq!(Description { joints: [Joint { child: LinkId(7), ..Joint::default() }].into(), ..Description::default() }.root(), None);
     }
 }

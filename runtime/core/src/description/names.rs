@@ -4,14 +4,14 @@ use alloc::collections::BTreeMap;
 use alloc::format;
 use alloc::string::{String, ToString};
 
-use super::Description;
+use super::{Description, JointId, LinkId};
 
 /// The indices of a robot's links and joints by their names.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Names {
-    links: BTreeMap<String, usize>,
+    links: BTreeMap<String, LinkId>,
     frames: BTreeMap<String, usize>,
-    joints: BTreeMap<String, usize>,
+    joints: BTreeMap<String, JointId>,
     /// For names that were asked for and taken, the first number that may be free. Names are added
     /// only, so those below stay taken.
     numbers: BTreeMap<String, usize>,
@@ -20,19 +20,19 @@ pub(super) struct Names {
 impl Names {
     pub(super) fn of(robot: &Description) -> Self {
         let mut names = Self::default();
-        robot.links.iter().enumerate().for_each(|(index, link)| names.add_link(&link.name, index));
-        robot.joints.iter().enumerate().for_each(|(index, joint)| names.add_joint(&joint.name, index));
+        robot.links.with_ids().for_each(|(index, link)| names.add_link(&link.name, index));
+        robot.joints.with_ids().for_each(|(index, joint)| names.add_joint(&joint.name, index));
         robot.frames.iter().enumerate().for_each(|(index, frame)| names.add_frame(&frame.name, index));
         names
     }
 
     /// Where several have one name, the first is found.
-    pub(super) fn add_link(&mut self, name: &str, index: usize) {
+    pub(super) fn add_link(&mut self, name: &str, index: LinkId) {
         self.links.entry(name.to_string()).or_insert(index);
     }
 
     /// As [`Self::add_link`].
-    pub(super) fn add_joint(&mut self, name: &str, index: usize) {
+    pub(super) fn add_joint(&mut self, name: &str, index: JointId) {
         self.joints.entry(name.to_string()).or_insert(index);
     }
 
@@ -46,7 +46,7 @@ impl Names {
         self.links.contains_key(name) || self.frames.contains_key(name)
     }
 
-    pub(super) fn link(&self, name: &str) -> Option<usize> {
+    pub(super) fn link(&self, name: &str) -> Option<LinkId> {
         self.links.get(name).copied()
     }
 
@@ -55,7 +55,7 @@ impl Names {
         self.frames.get(name).copied()
     }
 
-    pub(super) fn joint(&self, name: &str) -> Option<usize> {
+    pub(super) fn joint(&self, name: &str) -> Option<JointId> {
         self.joints.get(name).copied()
     }
 
@@ -88,12 +88,12 @@ mod tests {
         let mut names = Names::default();
         let taken = |names: &mut Names| {
             let name = names.free("tip");
-            names.add_link(&name, 0);
+            names.add_link(&name, LinkId(0));
             name
         };
         assert_eq!([0; 2].map(|_| taken(&mut names)), ["tip", "tip_2"]);
-        names.add_joint("tip_3", 0);
-        names.add_link("tip_5", 0);
+        names.add_joint("tip_3", JointId(0));
+        names.add_link("tip_5", LinkId(0));
         assert_eq!([0; 3].map(|_| taken(&mut names)), ["tip_4", "tip_6", "tip_7"]);
         // What was not taken stays free.
         assert_eq!([0; 2].map(|_| names.free("tip")), ["tip_8", "tip_8"]);

@@ -4,7 +4,7 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use super::{EditError, Editor, Inertial, Joint, JointKind, Link, Origin};
+use super::{EditError, Editor, Inertial, Joint, JointId, JointKind, Link, Origin};
 use crate::effect::{Applied, EffectId};
 use crate::scalar::Scalar;
 
@@ -85,7 +85,7 @@ impl Editor<'_> {
     }
 
     /// Puts the rods and their joints before the joint with this index.
-    fn bend(&mut self, index: usize, shaft: &Shaft, line: &Line) {
+    fn bend(&mut self, index: JointId, shaft: &Shaft, line: &Line) {
         let mut last = line.start;
         let mut parent = self.robot.joints[index].parent;
         for k in 0..=shaft.segments {

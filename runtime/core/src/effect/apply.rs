@@ -272,19 +272,20 @@ mod tests {
     use alloc::format;
 
     use super::*;
-    use crate::description::{Base, Description, Joint, JointKind, Link, Origin};
+    use crate::description::{Base, Description, Joint, JointKind, Link, LinkId, Origin};
 
     /// A carriage on a rail, a ball that hangs on it, and a lamp on the base.
     fn robot() -> Model<f64> {
         let link = |name: &str| Link { name: name.into(), ..Link::default() };
         let joint = |name: &str, kind, child| Joint { name: name.into(), kind, child, axis: [1.0, 0.0, 0.0], ..Joint::default() };
         let joints = vec![
-            joint("slide", JointKind::Prismatic, 1),
-            Joint { parent: 1, ..joint("hang", JointKind::Spherical, 2) },
-            joint("glue", JointKind::Fixed, 3),
+            joint("slide", JointKind::Prismatic, LinkId(1)),
+            Joint { parent: LinkId(1), ..joint("hang", JointKind::Spherical, LinkId(2)) },
+            joint("glue", JointKind::Fixed, LinkId(3)),
         ];
         let links = ["rail", "carriage", "ball", "lamp"].map(link).to_vec();
-        Model::new(&Description { name: "robot".into(), links, joints, frames: Vec::new() }, Base::Fixed).unwrap()
+        Model::new(&Description { name: "robot".into(), links: links.into(), joints: joints.into(), frames: Vec::new() }, Base::Fixed)
+            .unwrap()
     }
 
     fn on(effect: EffectId, on: &str, parameters: &[f64]) -> Applied {
@@ -295,11 +296,11 @@ mod tests {
     fn thousands_of_effects_are_soon_put_and_of_wrong_names_the_first_are_told_with_what_was_meant() {
         let count = 10_000;
         let links = (0..=count).map(|k| Link { name: format!("link_{k}"), ..Link::default() }).collect();
-        let joint = |k| Joint {
+        let joint = |k: usize| Joint {
             name: format!("joint_{k}"),
             kind: JointKind::Continuous,
-            parent: k,
-            child: k + 1,
+            parent: LinkId(k),
+            child: LinkId(k + 1),
             axis: [0.0, 0.0, 1.0],
             ..Joint::default()
         };
@@ -323,8 +324,8 @@ mod tests {
     fn a_floating_base_has_no_joint_that_effects_are_on() {
         let description = Description {
             name: "one".into(),
-            links: vec![Link { name: "body".into(), ..Link::default() }],
-            joints: Vec::new(),
+            links: [Link { name: "body".into(), ..Link::default() }].into(),
+            joints: Vec::new().into(),
             frames: Vec::new(),
         };
         let floating = Model::new(&description, Base::Floating).unwrap();

@@ -8,9 +8,9 @@ use core::fmt;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::leaders::{leads, others};
+use super::leaders::{Leads, leads, others};
 use super::{Body, BodyLink, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model};
-use crate::description::{self, Base, Description, Inertial, JointKind, Limit, Mimic};
+use crate::description::{self, Base, ById, Description, Inertial, JointId, JointKind, Limit, LinkId, Mimic};
 use crate::effect::Effects;
 use crate::joint::with_pose;
 use crate::joint::{Coordinates, Follow, Joint, JointLaw};
@@ -138,7 +138,7 @@ impl Model<f64> {
 /// A frame is on a link that exists; an intermediate link carries no mass and no geometry.
 fn check_frames(description: &Description) -> Result<(), ModelError> {
     let refused = |part: String, found: String, expected: &'static str| Err(ModelError::Structure { part, found, expected });
-    if let Some(frame) = description.frames.iter().find(|frame| frame.link >= description.links.len()) {
+    if let Some(frame) = description.frames.iter().find(|frame| description.links.get(frame.link).is_none()) {
         return refused(format!("frame {:?}", frame.name), format!("link {}", frame.link), "the index of a link");
     }
     let full = |link: &&description::Link| link.intermediate && (link.inertial.is_some() || !link.collision.is_empty());
@@ -154,14 +154,14 @@ type Seat = (usize, Placement<f64>);
 struct Builder<'a> {
     description: &'a Description,
     /// Joints under each link, in the order of the file.
-    children: Vec<Vec<usize>>,
-    seats: Vec<Option<Seat>>,
+    children: ById<LinkId, Vec<JointId>>,
+    seats: ById<LinkId, Option<Seat>>,
     /// The body of each moving joint.
-    body_of: Vec<Option<usize>>,
+    body_of: ById<JointId, Option<usize>>,
     /// For each joint that follows another, what it moves by.
-    leads: Vec<Option<Mimic>>,
+    leads: Leads,
     /// The bodies of joints that follow several: the joint, and what each body moves by.
-    followers: Vec<(usize, usize, Mimic)>,
+    followers: Vec<(usize, JointId, Mimic)>,
     model: Model<f64>,
 }
 
@@ -178,8 +178,8 @@ fn too_large(model: &Model<f64>) -> Vec<String> {
 
 impl<'a> Builder<'a> {
     fn new(description: &'a Description) -> Self {
-        let mut children = vec![Vec::new(); description.links.len()];
-        for (index, joint) in description.joints.iter().enumerate() {
+        let mut children: ById<LinkId, Vec<JointId>> = vec![Vec::new(); description.links.len()].into();
+        for (index, joint) in description.joints.with_ids() {
             if let Some(list) = children.get_mut(joint.parent) {
                 list.push(index);
             }
@@ -198,15 +198,15 @@ impl<'a> Builder<'a> {
         Self {
             description,
             children,
-            seats: vec![None; links],
-            body_of: vec![None; joints],
+            seats: vec![None; links].into(),
+            body_of: vec![None; joints].into(),
             leads: leads(&description.joints),
             followers: Vec::new(),
             model,
         }
     }
 
-    fn add_root(&mut self, root: usize, base: Base) {
+    fn add_root(&mut self, root: LinkId, base: Base) {
         let name = self.description.links[root].name.clone();
         self.push_body(name, 0, Placement::identity(), Joint::Floating, AT_ZERO);
         let body = match base {
@@ -220,8 +220,8 @@ impl<'a> Builder<'a> {
     }
 
     /// Depth-first, with a stack of its own: a chain may be as long as it likes.
-    fn add_tree(&mut self, root: usize) -> Result<(), ModelError> {
-        let mut stack: Vec<usize> = self.children[root].iter().rev().copied().collect();
+    fn add_tree(&mut self, root: LinkId) -> Result<(), ModelError> {
+        let mut stack: Vec<JointId> = self.children[root].iter().rev().copied().collect();
         while let Some(index) = stack.pop() {
             let joint = &self.description.joints[index];
             if self.seats.get(joint.child).is_none_or(Option::is_some) {
@@ -233,7 +233,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    fn add_joint(&mut self, index: usize, joint: &description::Joint) -> Result<(), ModelError> {
+    fn add_joint(&mut self, index: JointId, joint: &description::Joint) -> Result<(), ModelError> {
         let (mut parent, x_parent) = self.seats[joint.parent].expect("a parent is seated before its children");
         let mut x_joint = x_parent.compose(&joint.origin.placement());
         let stages = stages(joint);
@@ -271,7 +271,7 @@ impl<'a> Builder<'a> {
 
     /// A joint that follows several: for each of them a body, all on one axis, since
     /// R(Σ qᵢ) = Π R(qᵢ), and so for slides and screws. All have the joint's name.
-    fn add_coupled(&mut self, index: usize, joint: &description::Joint, seat: Seat, stage: &Stage) -> Result<(), ModelError> {
+    fn add_coupled(&mut self, index: JointId, joint: &description::Joint, seat: Seat, stage: &Stage) -> Result<(), ModelError> {
         let joints = &self.description.joints;
         let terms: Option<Vec<Mimic>> = core::iter::once(self.leads[index]).chain(others(joints, &self.leads, joint)).collect();
         let terms = terms.ok_or_else(|| ModelError::BadMimic { joint: joint.name.clone() })?;
@@ -306,7 +306,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The coordinates at which a joint is locked, because it is or because one that it follows is.
-    fn locked_at(&self, index: usize) -> Result<Option<Vec<f64>>, ModelError> {
+    fn locked_at(&self, index: JointId) -> Result<Option<Vec<f64>>, ModelError> {
         let (joints, lead) = (&self.description.joints, self.leads[index]);
         let joint = &joints[lead.map_or(index, |lead| lead.joint)];
         let Some(coordinates) = &joint.locked else { return Ok(None) };
@@ -336,7 +336,7 @@ impl<'a> Builder<'a> {
 
     /// Seats a link in a body and adds its mass to it. The first link of a moving body is the one
     /// that gives the body its axes and origin in results for each link.
-    fn seat(&mut self, link: usize, body: usize, placement: Placement<f64>) {
+    fn seat(&mut self, link: LinkId, body: usize, placement: Placement<f64>) {
         self.seats[link] = Some((body, placement));
         let (of_file, to) = (&self.description.links[link], &mut self.model.bodies[body]);
         if body != 0 && to.link.is_none() && !of_file.intermediate {
@@ -351,7 +351,7 @@ impl<'a> Builder<'a> {
         if self.seats.iter().any(Option::is_none) {
             return Err(self.not_a_tree());
         }
-        for (index, joint) in self.description.joints.iter().enumerate() {
+        for (index, joint) in self.description.joints.with_ids() {
             if let (Some(mimic), Some(body), true) = (&joint.mimic, self.body_of[index], joint.also.is_empty()) {
                 let lead = self.leads[index];
                 let follow = lead
@@ -373,8 +373,8 @@ impl<'a> Builder<'a> {
 
     /// The frames of the links, then those that coincide with no link.
     fn frames(&self) -> Vec<Frame<f64>> {
-        let seated = |link: usize| self.seats.get(link).copied().flatten();
-        let links = self.description.links.iter().enumerate().filter(|(_, link)| !link.intermediate);
+        let seated = |link: LinkId| self.seats.get(link).copied().flatten();
+        let links = self.description.links.with_ids().filter(|(_, link)| !link.intermediate);
         let of_links = links.filter_map(|(index, link)| {
             let (body, placement) = seated(index)?;
             Some(Frame { name: link.name.clone(), body, placement })
@@ -395,7 +395,7 @@ impl<'a> Builder<'a> {
 
     /// The coordinate that a follower moves by. The joint that it follows has to move, and so, as
     /// each follower is asked, do all down to the last.
-    fn follow(&self, follower: usize, mimic: &Mimic, lead: Mimic) -> Option<Coordinates<f64>> {
+    fn follow(&self, follower: JointId, mimic: &Mimic, lead: Mimic) -> Option<Coordinates<f64>> {
         let joints = &self.description.joints;
         self.body_of[mimic.joint]?;
         let body = self.body_of[lead.joint].filter(|_| joints[lead.joint].kind.sizes() == (1, 1))?;

@@ -3,7 +3,10 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::description::{Joint, Mimic};
+use crate::description::{ById, Joint, JointId, Mimic};
+
+/// What each joint moves by.
+pub(super) type Leads = ById<JointId, Option<Mimic>>;
 
 /// So many leaders are walked through one by one, in whose order multipliers are multiplied; what
 /// is behind them is taken as it was found.
@@ -12,9 +15,10 @@ const WALKED: usize = 16;
 /// For each joint that follows another, what it moves by: the joint at the end of its chain, which
 /// follows none or is locked. `None` where a chain has no end, and for joints that follow none.
 /// Work grows as the number of joints does, however long the chains are.
-pub(super) fn leads(joints: &[Joint]) -> Vec<Option<Mimic>> {
-    let (mut leads, mut seen) = (vec![None; joints.len()], vec![false; joints.len()]);
-    for start in 0..joints.len() {
+pub(super) fn leads(joints: &ById<JointId, Joint>) -> Leads {
+    let mut leads: Leads = vec![None; joints.len()].into();
+    let mut seen: ById<JointId, bool> = vec![false; joints.len()].into();
+    for start in joints.ids() {
         let (mut chain, mut at) = (Vec::new(), start);
         while let Some(mimic) = joints.get(at).and_then(followed).filter(|_| !seen[at]) {
             seen[at] = true;
@@ -29,13 +33,13 @@ pub(super) fn leads(joints: &[Joint]) -> Vec<Option<Mimic>> {
 }
 
 /// What each further term of a joint that follows several moves by: `None` as in [`leads`].
-pub(super) fn others(joints: &[Joint], leads: &[Option<Mimic>], joint: &Joint) -> Vec<Option<Mimic>> {
+pub(super) fn others(joints: &ById<JointId, Joint>, leads: &Leads, joint: &Joint) -> Vec<Option<Mimic>> {
     joint.also.iter().map(|term| lead(joints, leads, *term)).collect()
 }
 
 /// What is moved by at the end of the chain that begins with `first`; of its joints beyond the
 /// first few, `known` says it already.
-fn lead(joints: &[Joint], known: &[Option<Mimic>], first: Mimic) -> Option<Mimic> {
+fn lead(joints: &ById<JointId, Joint>, known: &Leads, first: Mimic) -> Option<Mimic> {
     let (mut lead, mut walked) = (first, 0);
     while let Some(own) = followed(joints.get(lead.joint)?) {
         // A joint that follows several has no single leader.
@@ -61,14 +65,18 @@ mod tests {
     use super::*;
 
     /// Joints that follow those of these indices.
-    fn joints(leaders: &[Option<usize>]) -> Vec<Joint> {
-        let follow = |(k, joint): (usize, usize)| Mimic { joint, multiplier: 1.0 + 0.3 / (k + 3) as f64, offset: 0.1 * k as f64 - 0.7 };
+    fn joints(leaders: &[Option<usize>]) -> ById<JointId, Joint> {
+        let follow = |(k, joint): (usize, usize)| Mimic {
+            joint: JointId(joint),
+            multiplier: 1.0 + 0.3 / (k + 3) as f64,
+            offset: 0.1 * k as f64 - 0.7,
+        };
         let joint = |(k, leader): (usize, &Option<usize>)| Joint { mimic: leader.map(|l| follow((k, l))), ..Default::default() };
         leaders.iter().enumerate().map(joint).collect()
     }
 
     /// From leader to leader, in their order.
-    fn walked(joints: &[Joint], start: usize) -> (f64, f64) {
+    fn walked(joints: &ById<JointId, Joint>, start: JointId) -> (f64, f64) {
         let (mut at, mut multiplier, mut offset) = (start, 1.0, 0.0);
         while let Some(next) = joints[at].mimic {
             (at, multiplier, offset) = (next.joint, multiplier * next.multiplier, multiplier * next.offset + offset);
@@ -81,9 +89,12 @@ mod tests {
         let chain: Vec<Option<usize>> = (0..200_usize).map(|k| k.checked_sub(1)).collect();
         let joints = joints(&chain);
         for (k, found) in leads(&joints).into_iter().enumerate().skip(1) {
-            let (found, (multiplier, offset)) = (found.unwrap(), walked(&joints, k));
+            let (found, (multiplier, offset)) = (found.unwrap(), walked(&joints, JointId(k)));
             let far = [found.multiplier / multiplier - 1.0, found.offset / offset - 1.0];
-            assert!(found.joint == 0 && far.iter().all(|x| x.abs() < if k < WALKED { f64::MIN_POSITIVE } else { 1e-13 }), "{k}: {far:?}");
+            assert!(
+                found.joint == JointId(0) && far.iter().all(|x| x.abs() < if k < WALKED { f64::MIN_POSITIVE } else { 1e-13 }),
+                "{k}: {far:?}"
+            );
         }
     }
 
@@ -92,7 +103,10 @@ mod tests {
         let count = 100;
         let backward: Vec<Option<usize>> = (0..count).map(|k| Some(k + 1).filter(|k| *k < count)).collect();
         let found = leads(&joints(&backward));
-        assert!(found[..count - 1].iter().all(|lead| lead.is_some_and(|lead| lead.joint == count - 1)) && found[count - 1].is_none());
+        assert!(
+            found.iter().take(count - 1).all(|lead| lead.is_some_and(|lead| lead.joint == JointId(count - 1)))
+                && found[JointId(count - 1)].is_none()
+        );
     }
 
     #[test]
@@ -101,9 +115,9 @@ mod tests {
         ring.extend([Some(7), Some(50), None, Some(52), Some(1000)]);
         let mut joints = joints(&ring);
         let found = leads(&joints);
-        let ends = |found: &[Option<Mimic>]| (0..55).filter_map(|k| Some((k, found[k]?.joint))).collect::<Vec<_>>();
+        let ends = |found: &Leads| (0..55).filter_map(|k| Some((k, found[JointId(k)]?.joint.0))).collect::<Vec<_>>();
         assert_eq!(ends(&found), [(53, 52)]);
-        joints[20].locked = Some(vec![0.5]);
+        joints[JointId(20)].locked = Some(vec![0.5]);
         let found = ends(&leads(&joints));
         assert_eq!(found.len(), 52);
         assert!(found.iter().all(|(joint, end)| *end == if *joint == 53 { 52 } else { 20 }), "{found:?}");

@@ -18,7 +18,7 @@ pub use parts::ModelParts;
 pub use regroup::{regroup, regroup_body, subtract};
 
 use crate::Scalar;
-use crate::description::{Description, EditError, JointKind, Limit};
+use crate::description::{ById, Description, EditError, JointKind, Limit, LinkId};
 use crate::effect::Effects;
 use crate::joint::{Coordinates, Joint};
 use crate::spatial::{Placement, Reference, SpatialInertia};
@@ -212,16 +212,16 @@ impl<S: Scalar> Model<S> {
 
     /// The body that each link of the model's description is part of, intermediate links too:
     /// `[links]`. 0 for links that no joint moves.
-    pub fn bodies_of_links(&self, description: &Description) -> Vec<usize> {
+    pub fn bodies_of_links(&self, description: &Description) -> ById<LinkId, usize> {
         // Of a joint of several bodies the last.
         let of_joints: BTreeMap<&str, usize> = self.outward().map(|i| (self.bodies[i].name.as_str(), i)).collect();
         let root = of_joints.get(FLOATING_BASE).copied().unwrap_or(0);
-        let mut children = vec![Vec::new(); description.links.len()];
+        let mut children: ById<LinkId, Vec<_>> = vec![Vec::new(); description.links.len()].into();
         for joint in &description.joints {
             children[joint.parent].push(joint);
         }
-        let mut bodies = vec![root; description.links.len()];
-        let mut open: Vec<usize> = description.root().into_iter().collect();
+        let mut bodies: ById<LinkId, usize> = vec![root; description.links.len()].into();
+        let mut open: Vec<LinkId> = description.root().into_iter().collect();
         while let Some(link) = open.pop() {
             for joint in core::mem::take(&mut children[link]) {
                 bodies[joint.child] = of_joints.get(joint.name.as_str()).copied().unwrap_or(bodies[link]);

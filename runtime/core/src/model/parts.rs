@@ -187,7 +187,7 @@ mod tests {
     use alloc::vec;
 
     use super::*;
-    use crate::description::{Base, Description, Joint, JointKind, Link, Mimic};
+    use crate::description::{Base, Description, Joint, JointId, JointKind, Link, LinkId, Mimic};
     use crate::effect::{EffectId, JointEffect};
 
     /// A base, a chain of three joints of which the last follows the first, and a branch.
@@ -196,13 +196,13 @@ mod tests {
         let joint = |name: &str, parent, child, mimic: Option<usize>| Joint {
             name: name.into(),
             kind: JointKind::Continuous,
-            parent,
-            child,
+            parent: LinkId(parent),
+            child: LinkId(child),
             axis: [0.0, 0.0, 1.0],
-            mimic: mimic.map(|joint| Mimic { joint, multiplier: 2.0, offset: 0.0 }),
+            mimic: mimic.map(|joint| Mimic { joint: JointId(joint), multiplier: 2.0, offset: 0.0 }),
             ..Joint::default()
         };
-        let joints = vec![joint("ja", 0, 1, None), joint("jb", 1, 2, None), joint("jc", 2, 3, Some(0)), joint("jd", 1, 4, None)];
+        let joints = [joint("ja", 0, 1, None), joint("jb", 1, 2, None), joint("jc", 2, 3, Some(0)), joint("jd", 1, 4, None)].into();
         let description = Description { name: "robot".into(), links: links.into(), joints, ..Description::default() };
         Model::new(&description, Base::Floating).unwrap()
     }

@@ -56,7 +56,7 @@ mod tests {
     use alloc::vec::Vec;
 
     use super::*;
-    use crate::description::{Base, Description, Inertial, Joint, JointKind, Link, Origin};
+    use crate::description::{Base, Description, Inertial, Joint, JointKind, Link, LinkId, Origin};
 
     /// Weights of 1 N in a level row, 8 m from one to the next: each needs a force of 1 and a
     /// moment of 4.
@@ -66,10 +66,17 @@ mod tests {
         let inertial = Some(Inertial { origin: at(4.0), mass: 1.0, inertia: [1.0, 0.0, 0.0, 1.0, 0.0, 1.0] });
         let link = |k: usize| Link { name: k.to_string(), inertial: inertial.filter(|_| k > 0), ..Link::default() };
         let hinge = Joint { kind: JointKind::Revolute, axis: [0.0, 1.0, 0.0], ..Joint::default() };
-        let joint =
-            |k: usize| Joint { name: k.to_string(), parent: k, child: k + 1, origin: at(if k > 0 { 8.0 } else { 0.0 }), ..hinge.clone() };
+        let joint = |k: usize| Joint {
+            name: k.to_string(),
+            parent: LinkId(k),
+            child: LinkId(k + 1),
+            origin: at(if k > 0 { 8.0 } else { 0.0 }),
+            ..hinge.clone()
+        };
         let (links, joints): (Vec<Link>, Vec<Joint>) = ((0..4).map(link).collect(), (0..3).map(joint).collect());
-        let mut model = Model::new(&Description { name: "row".into(), links, joints, frames: Vec::new() }, Base::Fixed).unwrap();
+        let mut model =
+            Model::new(&Description { name: "row".into(), links: links.into(), joints: joints.into(), frames: Vec::new() }, Base::Fixed)
+                .unwrap();
         model.gravity = Vector3::new(0.0, 0.0, -1.0);
         let growth = wrench_growth(&model, &mut Workspace::new(&model), [&[0.0; 3][..]; 3]);
         assert_eq!(growth, [(9.0, 3.0), (4.0, 2.0), (1.0, 1.0)]);

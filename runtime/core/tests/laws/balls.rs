@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Workspace, function};
-use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Origin};
+use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, LinkId, Origin};
 use articulated_core::effect::{Applied, EffectId, Fault};
 use articulated_core::model::Model;
 use articulated_core::spatial::screw::{Quaternion, right_jacobian_inverse};
@@ -26,14 +26,14 @@ fn pendulum() -> Model<f64> {
     let joint = |name: &str, parent: usize| Joint {
         name: name.into(),
         kind: JointKind::Spherical,
-        parent,
-        child: parent + 1,
+        parent: LinkId(parent),
+        child: LinkId(parent + 1),
         origin: Origin::new([0.0, 0.1, -0.4], [0.3, -0.2, 0.5]),
         ..Joint::default()
     };
     let links = vec![link("base", None), link("rod", Some(2.0)), link("bob", Some(0.5))];
     let joints = vec![joint("hip", 0), joint("knee", 1)];
-    let description = Description { name: "pendulum".into(), links, joints, frames: Vec::new() };
+    let description = Description { name: "pendulum".into(), links: links.into(), joints: joints.into(), frames: Vec::new() };
     Model::new(&description, Base::Fixed).expect("a pendulum").with_gravity([0.0; 3])
 }
 

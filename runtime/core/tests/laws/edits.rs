@@ -1,7 +1,7 @@
 //! What locking a joint, attaching a payload and appending a robot do to the dynamics; and what is
 //! refused.
 
-use articulated_core::description::{Base, Description, EditError, Inertial, JointKind, Link, Origin, Payload};
+use articulated_core::description::{Base, Description, EditError, Inertial, JointId, JointKind, Link, LinkId, Origin, Payload};
 use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
 use articulated_test_support::case::{Case, State, for_each_bundled, inverse_dynamics, mass_matrix, placements, read};
 use articulated_test_support::measure::{distance, scale, torque_scale};
@@ -56,7 +56,7 @@ fn a_locked_joint_leaves_the_other_rows_and_columns() {
 fn only(description: &Description, link: usize, body: Inertial) -> Description {
     let mut bare = description.clone();
     bare.links.iter_mut().for_each(|l| l.inertial = None);
-    bare.links[link].inertial = Some(body);
+    bare.links[LinkId(link)].inertial = Some(body);
     bare
 }
 
@@ -66,7 +66,7 @@ fn payload_adds_its_own_forces(case: &Case, random: &mut Random) {
     let inertia = *random.choose(&[[0.0; 6], [0.02, 0.001, 0.0, 0.03, -0.002, 0.015]]);
     let body = Inertial { origin: Origin::at(random.three(0.4)), mass: random.within(0.1, 3.0), inertia };
     let mut loaded = case.description.clone();
-    let name = case.description.links[link].name.clone();
+    let name = case.description.links[LinkId(link)].name.clone();
     let payload = Payload { link: name, mass: body.mass, center_of_mass: body.origin.xyz, inertia, name: None };
     let payload = loaded.attach(&payload).unwrap();
     let loaded = Case::new("loaded", loaded, case.base);
@@ -152,7 +152,7 @@ fn an_appended_robot_moves_as_it_does_alone() {
         let at = placements(&both.model, &[0.0]);
         let palm = both.description.link("palm").unwrap();
         // Gravity in axes of the palm: Rᵀ g.
-        [6, 7, 8].map(|k| at[12 * palm + k] * -9.81)
+        [6, 7, 8].map(|k| at[12 * palm.0 + k] * -9.81)
     };
     let alone = Case::new("alone", read(GRIPPER), Base::Fixed).with_gravity(turned);
     let state = both.state(&mut Random::new(3));
@@ -186,11 +186,11 @@ fn locks_that_mean_nothing_are_refused() {
 #[test]
 fn a_quaternion_is_normalised_if_it_nearly_is_one() {
     let mut robot = read(ARM);
-    robot.joints[0].kind = JointKind::Spherical;
+    robot.joints[JointId(0)].kind = JointKind::Spherical;
     let error = refused(&mut robot, |r| r.lock("elbow", &[0.0, 0.0, 1.0, 1.0]));
     assert!(matches!(error, EditError::Quaternion { norm, .. } if (norm - 2.0_f64.sqrt()).abs() < 1e-15));
     robot.lock("elbow", &[0.0, 0.0, 0.6, 0.8001]).unwrap();
-    let [_, _, z, w] = robot.joints[0].locked.as_deref().unwrap() else { panic!("four numbers") };
+    let [_, _, z, w] = robot.joints[JointId(0)].locked.as_deref().unwrap() else { panic!("four numbers") };
     assert!((z.hypot(*w) - 1.0).abs() < 1e-15 && (z / w - 0.6 / 0.8001).abs() < 1e-15);
 }
 
@@ -200,7 +200,7 @@ fn a_quaternion_is_normalised_if_it_nearly_is_one() {
 fn a_quaternion_may_be_off_by_a_thousandth() {
     for (by, right) in [(9e-4, true), (-9e-4, true), (1.1e-3, false), (-1.1e-3, false)] {
         let mut robot = read(ARM);
-        robot.joints[0].kind = JointKind::Spherical;
+        robot.joints[JointId(0)].kind = JointKind::Spherical;
         let found = robot.lock("elbow", &[0.0, 0.6 * (1.0 + by), 0.0, 0.8 * (1.0 + by)]);
         assert_eq!(found.is_ok(), right, "{by}: {found:?}");
     }
@@ -261,7 +261,7 @@ fn robots_that_clash_are_refused_with_every_name() {
     assert!(matches!(refused(&mut arm, |r| r.append("tip", &read(GRIPPER), "", MOUNT)), EditError::UnknownLink { .. }));
     let nothing = Description { name: "nothing".into(), ..Description::default() };
     assert!(matches!(refused(&mut arm, |r| r.append("fore", &nothing, "", MOUNT)), EditError::NoRoot { .. }));
-    let tool = Description { links: vec![Link { name: "tool".into(), ..Link::default() }], ..Description::default() };
+    let tool = Description { links: [Link { name: "tool".into(), ..Link::default() }].into(), ..Description::default() };
     arm.append("fore", &tool, "", MOUNT).unwrap();
 }
 
@@ -269,7 +269,7 @@ fn robots_that_clash_are_refused_with_every_name() {
 #[test]
 fn a_locked_spherical_joint_takes_four_coordinates_and_three_rates_away() {
     let mut robot = read(ARM);
-    robot.joints[0].kind = JointKind::Spherical;
+    robot.joints[JointId(0)].kind = JointKind::Spherical;
     let whole = Case::new("whole", robot.clone(), Base::Floating);
     robot.lock("elbow", &[0.5, 0.5, -0.5, 0.5]).unwrap();
     let locked = Case::new("locked", robot, Base::Floating);

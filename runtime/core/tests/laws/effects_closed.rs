@@ -1,7 +1,7 @@
 //! Each effect against its formula on a body of which all is known.
 
 use articulated_core::algorithm::{Workspace, function};
-use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Origin};
+use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, LinkId, Origin};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
 
@@ -16,11 +16,18 @@ fn slide() -> Model<f64> {
         inertial: mass.map(|mass| Inertial { origin: Origin::default(), mass, inertia: [INERTIA, 0.0, 0.0, INERTIA, 0.0, INERTIA] }),
         ..Link::default()
     };
-    let joint = Joint { name: "slide".into(), kind: JointKind::Prismatic, parent: 0, child: 1, axis: [1.0, 0.0, 0.0], ..Joint::default() };
+    let joint = Joint {
+        name: "slide".into(),
+        kind: JointKind::Prismatic,
+        parent: LinkId(0),
+        child: LinkId(1),
+        axis: [1.0, 0.0, 0.0],
+        ..Joint::default()
+    };
     let description = Description {
         name: "slide".into(),
-        links: vec![link("base", None), link("cart", Some(MASS))],
-        joints: vec![joint],
+        links: [link("base", None), link("cart", Some(MASS))].into(),
+        joints: [joint].into(),
         frames: Vec::new(),
     };
     Model::new(&description, Base::Fixed).expect("a slide")
@@ -31,8 +38,8 @@ fn ball() -> Model<f64> {
     let inertial = Inertial { origin: Origin::default(), mass: MASS, inertia: [INERTIA, 0.0, 0.0, INERTIA, 0.0, INERTIA] };
     let description = Description {
         name: "ball".into(),
-        links: vec![Link { name: "ball".into(), inertial: Some(inertial), ..Link::default() }],
-        joints: vec![],
+        links: [Link { name: "ball".into(), inertial: Some(inertial), ..Link::default() }].into(),
+        joints: [].into(),
         frames: Vec::new(),
     };
     Model::new(&description, Base::Floating).expect("a ball")

@@ -1,7 +1,7 @@
 //! Different descriptions of the same physics.
 
 use articulated_core::algorithm::{Dim, Needs, functions};
-use articulated_core::description::{Base, Description, Frame, Inertial, Joint, JointKind, Link, Origin, Rotation};
+use articulated_core::description::{Base, Description, Frame, Inertial, Joint, JointId, JointKind, Link, LinkId, Origin, Rotation};
 use articulated_core::spatial::from_quaternion;
 use articulated_test_support::case::{Case, State, inverse_dynamics};
 use articulated_test_support::measure::{distance, torque_scale};
@@ -19,7 +19,7 @@ const FEW: f64 = 16.0;
 fn lumped(tree: &Description) -> Description {
     let mut out = tree.clone();
     while let Some(fixed) = out.joints.iter().position(|j| j.kind.is_fixed()) {
-        let Joint { parent, child, origin, .. } = out.joints[fixed].clone();
+        let Joint { parent, child, origin, .. } = out.joints[JointId(fixed)].clone();
         let carried = out.links[child].inertial.map(|body| rigid::carried(&origin, &body));
         out.links[parent].inertial = both(out.links[parent].inertial, carried);
         for joint in out.joints.iter_mut().filter(|j| j.parent == child) {
@@ -27,7 +27,7 @@ fn lumped(tree: &Description) -> Description {
             joint.origin = rigid::compose(&origin, &joint.origin);
         }
         remove_joint(&mut out, fixed);
-        remove_link(&mut out, child);
+        remove_link(&mut out, child.0);
     }
     out
 }
@@ -40,17 +40,17 @@ fn both(a: Option<Inertial>, b: Option<Inertial>) -> Option<Inertial> {
 }
 
 fn remove_joint(tree: &mut Description, gone: usize) {
-    tree.joints.remove(gone);
+    tree.joints.remove(JointId(gone));
     for mimic in tree.joints.iter_mut().filter_map(|j| j.mimic.as_mut()) {
-        mimic.joint -= usize::from(mimic.joint > gone);
+        mimic.joint.0 -= usize::from(mimic.joint > JointId(gone));
     }
 }
 
 fn remove_link(tree: &mut Description, gone: usize) {
-    tree.links.remove(gone);
+    tree.links.remove(LinkId(gone));
     for joint in &mut tree.joints {
-        joint.parent -= usize::from(joint.parent > gone);
-        joint.child -= usize::from(joint.child > gone);
+        joint.parent.0 -= usize::from(joint.parent > LinkId(gone));
+        joint.child.0 -= usize::from(joint.child > LinkId(gone));
     }
 }
 
@@ -200,16 +200,17 @@ fn half_turns_of_a_floating_base_are_as_good_as_any() {
 fn in_sequence(tree: &Description) -> Description {
     let mut out = tree.clone();
     for k in 0..tree.joints.len() {
-        let joint = &mut out.joints[k];
+        let joint = &mut out.joints[JointId(k)];
         let matrix = joint.origin.rotation.matrix::<f64>();
         joint.origin.rotation = Rotation::Matrix([0, 1, 2].map(|i| [0, 1, 2].map(|j| matrix[(i, j)])));
         if joint.kind != JointKind::Universal {
             continue;
         }
-        let first = Joint { name: format!("{}_1", joint.name), kind: JointKind::Continuous, child: out.links.len(), ..joint.clone() };
+        let first =
+            Joint { name: format!("{}_1", joint.name), kind: JointKind::Continuous, child: LinkId(out.links.len()), ..joint.clone() };
         let second = Joint {
             name: format!("{}_2", joint.name),
-            parent: out.links.len(),
+            parent: LinkId(out.links.len()),
             origin: Origin::default(),
             axis: joint.second_axis,
             locked: joint.locked.as_ref().map(|at| vec![at[1]]),
@@ -217,7 +218,7 @@ fn in_sequence(tree: &Description) -> Description {
             ..joint.clone()
         };
         out.links.push(Link { name: first.name.clone(), intermediate: true, ..Link::default() });
-        out.joints[k] = Joint { locked: first.locked.as_ref().map(|at| vec![at[0]]), ..first };
+        out.joints[JointId(k)] = Joint { locked: first.locked.as_ref().map(|at| vec![at[0]]), ..first };
         out.joints.push(second);
     }
     out
@@ -235,9 +236,9 @@ fn a_universal_joint_is_two_joints_in_sequence() {
         // A link without mass behind a fixed joint is the same as a frame.
         let (link, origin) = (tree.links.len() - 1, Origin::new([0.1, -0.2, 0.3], [0.4, 1.2, -0.7]));
         let (name, child) = (String::from("site"), tree.links.len());
-        tree.joints.push(Joint { name: name.clone(), parent: link, child, origin, ..Joint::default() });
+        tree.joints.push(Joint { name: name.clone(), parent: LinkId(link), child: LinkId(child), origin, ..Joint::default() });
         tree.links.push(Link { name: name.clone(), ..Link::default() });
-        sequence.frames.push(Frame { name, link, origin });
+        sequence.frames.push(Frame { name, link: LinkId(link), origin });
         let [one, other] = [tree, sequence].map(|tree| Case::new("", tree, case.base));
         let names = |case: &Case| case.model.frames().iter().map(|frame| frame.name.clone()).collect::<Vec<_>>();
         assert_eq!(names(&one), names(&other));
@@ -268,8 +269,8 @@ fn a_free_body_obeys_newton_and_euler() {
     };
     let tree = Description {
         name: "body".into(),
-        links: vec![Link { name: "body".into(), inertial: Some(inertial), ..Link::default() }],
-        joints: vec![],
+        links: [Link { name: "body".into(), inertial: Some(inertial), ..Link::default() }].into(),
+        joints: [].into(),
         frames: Vec::new(),
     };
     let case = Case::new("body", tree, Base::Floating);
@@ -298,14 +299,14 @@ fn regressors_times_the_parameters_of_links_are_torques_and_energies() {
 fn beside(tree: &Description, random: &mut Random) -> Description {
     let mut out = tree.clone();
     for k in 0..tree.joints.len() {
-        if out.joints[k].kind.is_fixed() || random.below(3) == 0 {
+        if out.joints[JointId(k)].kind.is_fixed() || random.below(3) == 0 {
             continue;
         }
-        let (between, child) = (out.links.len(), out.joints[k].child);
+        let (between, child) = (out.links.len(), out.joints[JointId(k)].child);
         out.links.push(Link { name: format!("between_{k}"), intermediate: true, ..Link::default() });
-        out.joints[k].child = between;
+        out.joints[JointId(k)].child = LinkId(between);
         let origin = Origin::new(random.three(1.0), random.three(1.0));
-        out.joints.push(Joint { name: format!("fixed_{k}"), parent: between, child, origin, ..Joint::default() });
+        out.joints.push(Joint { name: format!("fixed_{k}"), parent: LinkId(between), child, origin, ..Joint::default() });
     }
     out
 }

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Workspace, neutral, random_configuration};
-use articulated_core::description::{JointKind, Limit};
+use articulated_core::description::{JointId, JointKind, Limit};
 use articulated_core::dual::Dual;
 use articulated_core::model::{JointInfo, Model};
 use articulated_core::spatial::screw::Quaternion;
@@ -267,7 +267,7 @@ fn a_continuous_joint_has_no_limits() {
         <link name="arm"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
         <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><limit lower="-0.1" upper="0.2" effort="1" velocity="1"/></joint></robot>"#;
     let mut robot = articulated_test_support::case::read(text);
-    robot.joints[0].limit = Some(Limit { lower: -0.1, upper: 0.2, effort: 1.0, velocity: 1.0, ..Limit::NONE });
+    robot.joints[JointId(0)].limit = Some(Limit { lower: -0.1, upper: 0.2, effort: 1.0, velocity: 1.0, ..Limit::NONE });
     let model = Model::new(&robot, articulated_core::description::Base::Fixed).unwrap();
     assert_eq!(model.joints()[0].limit, None);
 }
@@ -329,7 +329,7 @@ fn ball(upper: f64) -> Case {
         <link name="arm"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
         <joint name="ball" type="spherical"><parent link="base"/><child link="arm"/></joint></robot>"#;
     let mut description = articulated_test_support::case::read(text);
-    description.joints[0].limit = Some(Limit { lower: 0.0, upper, ..Limit::NONE });
+    description.joints[JointId(0)].limit = Some(Limit { lower: 0.0, upper, ..Limit::NONE });
     Case::new("ball", description, articulated_core::description::Base::Fixed)
 }
 

@@ -1,6 +1,6 @@
 //! Joints that follow others: q_full = G·q + c, so v_full = G·v and τ = Gᵀ·τ_full.
 
-use articulated_core::description::{Base, Coupling, Description, Origin};
+use articulated_core::description::{Base, Coupling, Description, JointId, Origin};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::JointInfo;
 use articulated_test_support::case::{Case, State, inverse_dynamics, placements, read};
@@ -15,10 +15,10 @@ const FEW: f64 = 16.0;
 
 /// The joint at the end of the chain, with multiplier and offset of the whole.
 fn leader(tree: &Description, joint: usize) -> (usize, f64, f64) {
-    match &tree.joints[joint].mimic {
+    match &tree.joints[JointId(joint)].mimic {
         None => (joint, 1.0, 0.0),
         Some(m) => {
-            let (end, multiplier, offset) = leader(tree, m.joint);
+            let (end, multiplier, offset) = leader(tree, m.joint.0);
             (end, m.multiplier * multiplier, m.multiplier * offset + m.offset)
         }
     }
@@ -31,8 +31,8 @@ fn rows(reduced: &Case, free: &Case) -> Vec<(JointInfo, JointInfo, f64, f64)> {
         let Some(index) = reduced.description.joint(&joint.name) else {
             return (joint.clone(), find(reduced, &joint.name), 1.0, 0.0);
         };
-        let (end, multiplier, offset) = leader(&reduced.description, index);
-        (joint.clone(), find(reduced, &reduced.description.joints[end].name), multiplier, offset)
+        let (end, multiplier, offset) = leader(&reduced.description, index.0);
+        (joint.clone(), find(reduced, &reduced.description.joints[JointId(end)].name), multiplier, offset)
     };
     free.model.joints().iter().map(row).collect()
 }
@@ -104,15 +104,15 @@ fn info(case: &Case, name: &str) -> JointInfo {
 impl<'a> Coupled<'a> {
     fn of(free: &'a Case) -> Option<Self> {
         let joints = &free.description.joints;
-        let single: Vec<usize> = (0..joints.len()).filter(|&j| joints[j].kind.sizes() == (1, 1)).collect();
+        let single: Vec<usize> = (0..joints.len()).filter(|&j| joints[JointId(j)].kind.sizes() == (1, 1)).collect();
         let [.., a, b, c, follower] = single[..] else { return None };
-        let (terms, follower) = ([(a, 0.5), (b, -1.25), (c, 2.0)], joints[follower].name.clone());
+        let (terms, follower) = ([(a, 0.5), (b, -1.25), (c, 2.0)], joints[JointId(follower)].name.clone());
         let mut tree = free.description.clone();
-        let leaders = terms.iter().map(|(j, coefficient)| (joints[*j].name.clone(), *coefficient)).collect();
+        let leaders = terms.iter().map(|(j, coefficient)| (joints[JointId(*j)].name.clone(), *coefficient)).collect();
         tree.couple(&Coupling { joint: follower.clone(), leaders, offset: OFFSET }).unwrap();
         let reduced = Case::new("", tree, free.base);
         assert_eq!(reduced.model.nv() + 1, free.model.nv());
-        let terms = terms.map(|(j, coefficient)| (info(&reduced, &joints[j].name), coefficient)).to_vec();
+        let terms = terms.map(|(j, coefficient)| (info(&reduced, &joints[JointId(j)].name), coefficient)).to_vec();
         Some(Self { free, reduced, follower, terms })
     }
 

@@ -3,7 +3,7 @@
 
 use articulated_core::algorithm::Workspace;
 use articulated_core::algorithm::checked::checked_forward_dynamics;
-use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Mimic, Origin};
+use articulated_core::description::{Base, Description, Inertial, Joint, JointId, JointKind, Link, LinkId, Mimic, Origin};
 use articulated_core::model::Model;
 
 /// A body whose three moments about its frame's origin are equal.
@@ -14,11 +14,19 @@ fn ball(name: &str, mass: f64, moment: f64) -> Link {
 
 fn hinge(name: &str, parent: usize, child: usize, x: f64) -> Joint {
     let origin = Origin::at([x, 0.0, 0.0]);
-    Joint { name: name.into(), kind: JointKind::Continuous, parent, child, origin, axis: [0.0, 0.0, 1.0], ..Joint::default() }
+    Joint {
+        name: name.into(),
+        kind: JointKind::Continuous,
+        parent: LinkId(parent),
+        child: LinkId(child),
+        origin,
+        axis: [0.0, 0.0, 1.0],
+        ..Joint::default()
+    }
 }
 
 fn smallest(links: Vec<Link>, joints: Vec<Joint>) -> f64 {
-    let description = Description { name: "robot".into(), links, joints, frames: Vec::new() };
+    let description = Description { name: "robot".into(), links: links.into(), joints: joints.into(), frames: Vec::new() };
     let model: Model<f64> = Model::new(&description, Base::Fixed).expect("a tree");
     let zero = vec![0.0; model.nv()];
     checked_forward_dynamics(&model, &mut Workspace::new(&model), &zero, &zero, &zero, &mut zero.clone()).expect("regular")
@@ -29,7 +37,7 @@ fn smallest(links: Vec<Link>, joints: Vec<Joint>) -> f64 {
 #[test]
 fn a_follower_counts_with_its_rate() {
     let (a, b, m) = (1.0, 0.01, 80.0);
-    let follower = Joint { mimic: Some(Mimic { joint: 0, multiplier: m, offset: 0.0 }), ..hinge("pinion", 0, 2, 0.5) };
+    let follower = Joint { mimic: Some(Mimic { joint: JointId(0), multiplier: m, offset: 0.0 }), ..hinge("pinion", 0, 2, 0.5) };
     let links = vec![Link { name: "base".into(), ..Link::default() }, ball("wheel", 1.0, a), ball("pinion", 1.0, b)];
     let terms = ((1.5 * a).sqrt() + m * (1.5 * b).sqrt()).powi(2);
     let left = smallest(links, vec![hinge("wheel", 0, 1, 0.0), follower]);

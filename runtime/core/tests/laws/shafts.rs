@@ -1,6 +1,6 @@
 //! Shafts that bend, against the beam of Euler and Bernoulli.
 
-use articulated_core::description::{Base, Description, EditError, Inertial, Joint, JointKind, Link, Origin, Shaft};
+use articulated_core::description::{Base, Description, EditError, Inertial, Joint, JointId, JointKind, Link, LinkId, Origin, Shaft};
 use articulated_core::effect::EffectId;
 use articulated_core::model::Model;
 use articulated_test_support::case::{inverse_dynamics, mass_matrix, placements};
@@ -16,8 +16,14 @@ fn rod(along: [f64; 3], head: f64) -> Description {
         inertial: (mass > 0.0).then(|| Inertial { origin: Origin::default(), mass, inertia: [0.0; 6] }),
         ..Link::default()
     };
-    let joint = Joint { name: "hosel".into(), parent: 0, child: 1, origin: Origin::new(along, [0.1, 0.2, 0.3]), ..Joint::default() };
-    Description { name: "rod".into(), links: vec![link("grip", 0.25), link("head", head)], joints: vec![joint], frames: Vec::new() }
+    let joint = Joint {
+        name: "hosel".into(),
+        parent: LinkId(0),
+        child: LinkId(1),
+        origin: Origin::new(along, [0.1, 0.2, 0.3]),
+        ..Joint::default()
+    };
+    Description { name: "rod".into(), links: [link("grip", 0.25), link("head", head)].into(), joints: [joint].into(), frames: Vec::new() }
 }
 
 fn shaft(segments: usize, mass: f64) -> Shaft {
@@ -105,7 +111,7 @@ fn the_lowest_frequency_becomes_that_of_a_beam() {
 fn rods_are_thin() {
     let mut description = rod([0.3, -0.5, 0.7], 0.2);
     description.shaft(&shaft(3, 0.06)).unwrap();
-    for link in &description.links[2..] {
+    for link in description.links.iter().skip(2) {
         let Inertial { origin, mass, inertia: [xx, xy, xz, yy, yz, zz] } = link.inertial.unwrap();
         let [x, y, z] = origin.xyz;
         let across = mass * (x * x + y * y + z * z) / 3.0;
@@ -134,12 +140,12 @@ fn every_joint_has_its_springs_in_both_directions() {
 fn the_mass_is_that_of_the_link_before_unless_it_is_given() {
     let mut description = rod([0.0, 0.0, -LENGTH], 0.2);
     description.shaft(&Shaft { mass: None, ..shaft(3, 0.0) }).unwrap();
-    assert_eq!(description.links[0].inertial, None);
-    let rods: f64 = description.links[2..].iter().map(|l| l.inertial.unwrap().mass).sum();
+    assert_eq!(description.links[LinkId(0)].inertial, None);
+    let rods: f64 = description.links.iter().skip(2).map(|l| l.inertial.unwrap().mass).sum();
     assert!((rods - 0.25).abs() < 1e-15);
     let names: Vec<&str> = description.joints.iter().map(|j| j.name.as_str()).collect();
     assert_eq!(names, ["hosel", "hosel_rod_0", "hosel_1", "hosel_2", "hosel_3"]);
-    assert_eq!(description.joints[0].kind, JointKind::Fixed);
+    assert_eq!(description.joints[JointId(0)].kind, JointKind::Fixed);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What every equation of motion M(q)·a + h(q, v) = τ is made of.
 
-use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Origin};
+use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, LinkId, Origin};
 use articulated_core::model::Model;
 use articulated_test_support::case::{Case, State, for_each_bundled, inverse_dynamics, mass_matrix, read};
 use articulated_test_support::measure::{arguments, distance, error, plus, scale, torque_scale};
@@ -184,11 +184,11 @@ fn a_rod_in_a_ball_joint_can_turn_about_itself() {
         let link = |name: &str, inertial| Link { name: name.into(), inertial, ..Link::default() };
         let rod = |inertia| Some(Inertial { origin: Origin::default(), mass: 1.0, inertia });
         let ball = |inertia| {
-            let joint = Joint { name: "ball".into(), kind: JointKind::Spherical, parent: 0, child: 1, ..Joint::default() };
+            let joint = Joint { name: "ball".into(), kind: JointKind::Spherical, parent: LinkId(0), child: LinkId(1), ..Joint::default() };
             let robot = Description {
                 name: "rod".into(),
-                links: vec![link("base", None), link("rod", rod(inertia))],
-                joints: vec![joint],
+                links: [link("base", None), link("rod", rod(inertia))].into(),
+                joints: [joint].into(),
                 frames: Vec::new(),
             };
             Model::new(&robot, Base::Fixed).unwrap()

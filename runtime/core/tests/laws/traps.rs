@@ -167,9 +167,9 @@ fn ad(v: &Vector6<f64>) -> Matrix6<f64> {
 /// The bundled six-axis arm without what is fixed to it: six turning joints in a row.
 fn arm() -> (Case, Chain) {
     let mut tree = read(articulated_models::robot("ur5_like").unwrap().urdf);
-    let fixed = tree.joints.iter().position(|j| j.kind.is_fixed()).unwrap();
+    let fixed = tree.joints.position(|j| j.kind.is_fixed()).unwrap();
     let tip = tree.joints.remove(fixed).child;
-    assert_eq!((tip, tree.joints.len()), (tree.links.len() - 1, 6), "a flange listed last");
+    assert_eq!((tip.0, tree.joints.len()), (tree.links.len() - 1, 6), "a flange listed last");
     tree.links.pop();
     let chain = Chain::of(&tree);
     (Case::new("arm", tree, Base::Fixed), chain)

@@ -1,6 +1,6 @@
 //! Robots that are hard, as descriptions.
 
-use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Origin};
+use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, LinkId, Origin};
 use articulated_core::model::Model;
 
 use super::judge::State;
@@ -43,7 +43,7 @@ impl Builder {
     /// A robot of a base without mass.
     pub fn new(name: &str) -> Self {
         let base = Link { name: "base".into(), ..Link::default() };
-        Self(Description { name: name.into(), links: vec![base], joints: vec![], frames: vec![] })
+        Self(Description { name: name.into(), links: [base].into(), ..Description::default() })
     }
 
     /// A link with its joint on the last link, or on the one of this index.
@@ -53,7 +53,16 @@ impl Builder {
         self.0.links.push(Link { name: format!("link_{child}"), inertial, ..Link::default() });
         let parent = on.unwrap_or(child - 1);
         let second_axis = if kind.has_second_axis() { [axis[1], axis[2], axis[0]] } else { [0.0; 3] };
-        self.0.joints.push(Joint { name: format!("joint_{child}"), kind, parent, child, origin, axis, second_axis, ..Joint::default() });
+        self.0.joints.push(Joint {
+            name: format!("joint_{child}"),
+            kind,
+            parent: LinkId(parent),
+            child: LinkId(child),
+            origin,
+            axis,
+            second_axis,
+            ..Joint::default()
+        });
         self
     }
 

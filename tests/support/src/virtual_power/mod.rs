@@ -14,7 +14,7 @@ mod pose;
 mod scale;
 
 use articulated_core::Scalar;
-use articulated_core::description::{Base, Description};
+use articulated_core::description::{Base, ById, Description, JointId, LinkId};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::jet::Jet;
@@ -52,7 +52,7 @@ impl<'a> Motions<'a> {
             this.add(None, 7, 6);
         }
         if let Some(root) = description.root() {
-            this.visit(root);
+            this.visit(root.0);
         }
         this
     }
@@ -64,24 +64,24 @@ impl<'a> Motions<'a> {
 
     /// Depth-first, in the order of the file.
     fn visit(&mut self, link: usize) {
-        for (index, joint) in self.description.joints.iter().enumerate().filter(|(_, j)| j.parent == link) {
+        for (index, joint) in self.description.joints.iter().enumerate().filter(|(_, j)| j.parent == LinkId(link)) {
             let (nq, nv) = joint.kind.sizes();
             if joint.mimic.is_none() && joint.locked.is_none() && nv > 0 {
                 self.add(Some(index), nq, nv);
             }
-            self.visit(joint.child);
+            self.visit(joint.child.0);
         }
     }
 
     /// Names of the joints that are coordinates, in their order, without the base.
     pub fn joint_names(&self) -> Vec<&str> {
-        self.coordinates.iter().filter_map(|(j, ..)| j.map(|j| self.description.joints[j].name.as_str())).collect()
+        self.coordinates.iter().filter_map(|(j, ..)| j.map(|j| self.description.joints[JointId(j)].name.as_str())).collect()
     }
 
     /// [R | p] of every link in the world frame, in the order of the file, moving as q, v and a
     /// say.
-    fn poses<S: Scalar>(&self, q: &[S], v: &[S], a: &[S]) -> Vec<Option<Pose<S>>> {
-        let mut poses = vec![None; self.description.links.len()];
+    fn poses<S: Scalar>(&self, q: &[S], v: &[S], a: &[S]) -> ById<LinkId, Option<Pose<S>>> {
+        let mut poses: ById<LinkId, Option<Pose<S>>> = vec![None; self.description.links.len()].into();
         let Some(root) = self.description.root() else { return poses };
         poses[root] = Some(match self.base {
             Base::Fixed => (Matrix3::identity(), Vector3::zeros()),
@@ -107,7 +107,7 @@ impl<'a> Motions<'a> {
     /// A joint's own coordinates, rates and their derivatives. A locked joint rests; a follower's
     /// coordinate is its leader's times and plus.
     fn numbers<S: Scalar>(&self, joint: usize, q: &[S], v: &[S], a: &[S]) -> [Vec<S>; 3] {
-        let it = &self.description.joints[joint];
+        let it = &self.description.joints[JointId(joint)];
         let (nq, nv) = it.kind.sizes();
         if let Some(locked) = &it.locked {
             let rest = vec![S::zero(); nv];
@@ -117,7 +117,7 @@ impl<'a> Motions<'a> {
             let mut own = [S::zero(); 3];
             for m in it.mimic.iter().chain(&it.also) {
                 let (multiplier, offset) = (S::from_f64(m.multiplier), S::from_f64(m.offset));
-                let [q, v, a] = self.numbers(m.joint, q, v, a);
+                let [q, v, a] = self.numbers(m.joint.0, q, v, a);
                 own = [own[0] + multiplier * q[0] + offset, own[1] + multiplier * v[0], own[2] + multiplier * a[0]];
             }
             return own.map(|x| vec![x]);

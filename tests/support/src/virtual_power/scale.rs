@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use articulated_core::description::{Base, Joint, JointKind, Mimic};
+use articulated_core::description::{Base, ById, Joint, JointId, JointKind, LinkId, Mimic};
 use nalgebra::Vector3;
 
 use super::pose::Pose;
@@ -52,8 +52,8 @@ fn elementary(kind: JointKind) -> f64 {
 
 impl Motions<'_> {
     /// The way to each link.
-    fn ways(&self, poses: &[Option<Pose<f64>>]) -> Vec<Way> {
-        let mut ways = vec![Way::default(); poses.len()];
+    fn ways(&self, poses: &ById<LinkId, Option<Pose<f64>>>) -> ById<LinkId, Way> {
+        let mut ways: ById<LinkId, Way> = vec![Way::default(); poses.len()].into();
         for link in self.outward() {
             let parent = self.description.joints.iter().find(|j| j.child == link).map(|j| j.parent);
             let before = parent.map_or_else(Way::default, |p| ways[p]);
@@ -69,8 +69,8 @@ impl Motions<'_> {
     }
 
     /// Links, parents first.
-    fn outward(&self) -> Vec<usize> {
-        let mut order: Vec<usize> = self.description.root().into_iter().collect();
+    fn outward(&self) -> Vec<LinkId> {
+        let mut order: Vec<LinkId> = self.description.root().into_iter().collect();
         let mut next = 0;
         while let Some(&link) = order.get(next) {
             order.extend(self.description.joints.iter().filter(|j| j.parent == link).map(|j| j.child));
@@ -102,7 +102,7 @@ impl Motions<'_> {
 
     /// Adds the moment and the force, each with its share of every rate from `at` on, for
     /// everything that `top` carries.
-    fn add_scale(&self, top: usize, ways: &[Way], g: f64, shares: &[Share], (at, from): (usize, f64), scale: &mut [f64]) {
+    fn add_scale(&self, top: LinkId, ways: &ById<LinkId, Way>, g: f64, shares: &[Share], (at, from): (usize, f64), scale: &mut [f64]) {
         let mut waiting = vec![top];
         while let Some(link) = waiting.pop() {
             waiting.extend(self.description.joints.iter().filter(|j| j.parent == link).map(|j| j.child));
@@ -119,7 +119,7 @@ impl Motions<'_> {
     /// The joints at the ends of chains of followers, and how far each moves this one. None where
     /// either is locked, or does not move.
     fn leaders(&self, joint: usize) -> Vec<(usize, f64)> {
-        let it = &self.description.joints[joint];
+        let it = &self.description.joints[JointId(joint)];
         if it.locked.is_some() || it.kind.is_fixed() {
             return Vec::new();
         }
@@ -127,7 +127,7 @@ impl Motions<'_> {
             return vec![(joint, 1.0)];
         }
         let further =
-            |m: &Mimic| self.leaders(m.joint).into_iter().map(|(end, multiplier)| (end, m.multiplier * multiplier)).collect::<Vec<_>>();
+            |m: &Mimic| self.leaders(m.joint.0).into_iter().map(|(end, multiplier)| (end, m.multiplier * multiplier)).collect::<Vec<_>>();
         it.mimic.iter().chain(&it.also).flat_map(further).collect()
     }
 
@@ -136,7 +136,7 @@ impl Motions<'_> {
     pub fn placement_scale(&self, q: &[f64]) -> Vec<f64> {
         let rest = vec![0.0; self.size.1];
         let ways = self.ways(&self.poses(q, &rest, &rest));
-        let mut depth = vec![1.0; ways.len()];
+        let mut depth: ById<LinkId, f64> = vec![1.0; ways.len()].into();
         for link in self.outward() {
             for joint in self.description.joints.iter().filter(|j| j.parent == link) {
                 depth[joint.child] = depth[link] + elementary(joint.kind);

@@ -10,7 +10,7 @@ use super::joint::{Joint, Motion, Seat};
 use super::matrix::{blocks, cross_matrix};
 use super::{Link, Textbook};
 use crate::Scalar;
-use crate::description::{Base, Description, Inertial, Origin};
+use crate::description::{Base, ById, Description, Inertial, JointId, LinkId, Origin};
 use crate::model::{FLOATING_BASE, JointInfo, Model, ModelError};
 use crate::spatial::{Placement, Reference};
 
@@ -21,7 +21,7 @@ impl<S: Scalar> Textbook<S> {
         // model; no number is.
         let model = Model::new(description, base)?;
         let description = &description.in_sequence();
-        let mut body_of_link = vec![0; description.links.len()];
+        let mut body_of_link: ById<LinkId, usize> = vec![0; description.links.len()].into();
         let mut bodies: Vec<Link<S>> = Vec::with_capacity(description.links.len());
         for (link, joint) in depth_first(description) {
             body_of_link[link] = bodies.len();
@@ -64,7 +64,7 @@ impl<S: Scalar> Textbook<S> {
 }
 
 /// Joint `j` of the file: the placement at which it is locked, and what remains of it as a joint.
-fn child_joint<S: Scalar>(description: &Description, model: &Model, j: usize) -> (Placement<S>, Joint<S>) {
+fn child_joint<S: Scalar>(description: &Description, model: &Model, j: JointId) -> (Placement<S>, Joint<S>) {
     let motion = Motion::of(&description.joints[j]);
     match leader(description, j) {
         Led::Still(coordinates) => (motion.placement(&motion.normalised(&coordinates)), Joint::fixed()),
@@ -81,10 +81,10 @@ enum Led<S> {
     /// Nothing: it is locked, or follows one that is, at these coordinates.
     Still(Vec<S>),
     /// The coordinate of a joint, itself perhaps, with multiplier and offset.
-    By(usize, S, S),
+    By(JointId, S, S),
 }
 
-fn leader<S: Scalar>(description: &Description, mut j: usize) -> Led<S> {
+fn leader<S: Scalar>(description: &Description, mut j: JointId) -> Led<S> {
     let (own, mut multiplier, mut offset) = (j, S::one(), S::zero());
     loop {
         let joint = &description.joints[j];
@@ -105,11 +105,11 @@ fn seat<S>(model: &Model, name: &str) -> Seat<S> {
 }
 
 /// (link, the joint that carries it), parents first.
-fn depth_first(description: &Description) -> Vec<(usize, Option<usize>)> {
+fn depth_first(description: &Description) -> Vec<(LinkId, Option<JointId>)> {
     let mut order = Vec::new();
-    let mut stack: Vec<(usize, Option<usize>)> = description.root().map(|r| (r, None)).into_iter().collect();
-    let mut children = vec![Vec::new(); description.links.len()];
-    for (j, joint) in description.joints.iter().enumerate() {
+    let mut stack: Vec<(LinkId, Option<JointId>)> = description.root().map(|r| (r, None)).into_iter().collect();
+    let mut children: ById<LinkId, Vec<_>> = vec![Vec::new(); description.links.len()].into();
+    for (j, joint) in description.joints.with_ids() {
         children[joint.parent].push((joint.child, Some(j)));
     }
     while let Some(next) = stack.pop() {

@@ -3,6 +3,7 @@
 use articulated_core::Scalar;
 use articulated_core::algorithm::Argument;
 use articulated_core::algorithm::textbook::{aba::aba, crba::crba, rnea::rnea};
+use articulated_core::description::LinkId;
 use articulated_reference::Big;
 use articulated_test_support::random_tree::Flavour;
 use nalgebra::Vector6;
@@ -145,10 +146,10 @@ fn power_through_the_joints_is_that_of_the_torques() {
             // The twist of the child against the parent, taken in world axes about the world's
             // origin, with the wrench brought there.
             let joint = case.description.joint(&case.model.bodies()[body].name).map(|j| &case.description.joints[j]);
-            let (parent, child) = joint.map_or((None, case.description.root().unwrap_or(0)), |j| (Some(j.parent), j.child));
+            let (parent, child) = joint.map_or((None, case.description.root().unwrap_or(LinkId(0))), |j| (Some(j.parent), j.child));
             let of = |link: Option<usize>, i: usize| link.map_or(Big::zero(), |l| twists[6 * l + i]);
-            let relative: Vec<Big> = (0..6).map(|i| of(Some(child), i) - of(parent, i)).collect();
-            let [x, w] = [&placed[12 * child..][..12], &wrenches[6 * k..][..6]];
+            let relative: Vec<Big> = (0..6).map(|i| of(Some(child.0), i) - of(parent.map(|parent| parent.0), i)).collect();
+            let [x, w] = [&placed[12 * child.0..][..12], &wrenches[6 * k..][..6]];
             let (moment, force) = (apply(&x[..9], &w[..3], 3), apply(&x[..9], &w[3..], 3));
             let p = &x[9..];
             let arm: Vec<Big> = (0..3).map(|i| p[(i + 1) % 3] * force[(i + 2) % 3] - p[(i + 2) % 3] * force[(i + 1) % 3]).collect();

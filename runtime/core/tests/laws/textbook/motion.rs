@@ -1,6 +1,7 @@
 //! Placements and what moves along them.
 
 use articulated_core::algorithm::Argument;
+use articulated_core::description::LinkId;
 use articulated_reference::Big;
 use num_traits::{One, Zero};
 
@@ -47,7 +48,7 @@ fn chosen_frames_are_rows_of_all() {
     for_each_scene(10, SMALL, |case, scene| {
         let (links, [q, v, ..]) = (&case.description.links, scene.motion());
         let chosen = [links.len() - 1, 0];
-        let names = chosen.map(|l| links[l].name.as_str());
+        let names = chosen.map(|l| links[LinkId(l)].name.as_str());
         let book = case.textbook::<Big>().with_frames(&names).unwrap();
         for (name, given) in [("placements", &[q][..]), ("twists_body", &[q, v]), ("jacobians_world", &[q])] {
             let (all, found) = (scene.call(name, given), call(&book, name, given));

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{FunctionId, Workspace, integrate};
-use articulated_core::description::{Base, JointKind, Origin};
+use articulated_core::description::{Base, JointKind, LinkId, Origin};
 use articulated_core::model::Model;
 use articulated_core::monitor::{orthonormality, quaternion_norms};
 use articulated_core::spatial::screw::{Quaternion, exp_rotation};
@@ -148,7 +148,7 @@ fn far_away() -> Vec<Row> {
     let robot = {
         let arm = Builder::new("walker").turn([0.0, 1.0, 0.0], [0.3, 0.0, 0.0], body()).turn([0.0, 0.0, 1.0], [0.3, 0.1, 0.0], body());
         let mut description = arm.done();
-        description.links[0].inertial = description.links[1].inertial;
+        description.links[LinkId(0)].inertial = description.links[LinkId(1)].inertial;
         built(&description, Base::Floating)
     };
     let near: Vec<State> = states(&robot, 4, 56, 5.0);
