@@ -48,7 +48,7 @@ pub fn open_in(scene: Scene, folder: &Path, bundled: &[Bundled<'_>]) -> Result<P
 }
 
 /// The request of what was opened, or what is wrong with it and with the rest of the scene.
-fn whole(opened: Result<Opened, Option<Scene>>, folder: &Path, mut log: Diagnostics) -> Result<Prepared, Diagnostics> {
+fn whole(opened: Result<Opened, Option<Box<Scene>>>, folder: &Path, mut log: Diagnostics) -> Result<Prepared, Diagnostics> {
     match opened {
         Ok(opened) => prepared(opened, Some(folder), log),
         Err(scene) => {

@@ -75,15 +75,15 @@ pub fn open(path: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, Diagnostics>
 /// # Errors
 /// A document is missing: the scene, if that could be read. A collector without errors means that
 /// nothing is wrong with the files; what is wrong was left out of the scene.
-pub fn open_into(path: &Path, bundled: &[Bundled<'_>], log: &mut Diagnostics) -> Result<Opened, Option<Scene>> {
+pub fn open_into(path: &Path, bundled: &[Bundled<'_>], log: &mut Diagnostics) -> Result<Opened, Option<Box<Scene>>> {
     let mut loader = Loader { sources: &Environment, bundled, ..Loader::default() };
     let scene = loader.scene(path, &Span::default(), log).ok_or(None)?;
-    loader.open(folder_of(path), scene.clone(), log).ok_or(Some(scene))
+    loader.open(folder_of(path), scene.clone(), log).ok_or_else(|| Some(Box::new(scene)))
 }
 
 /// What was opened if nothing is wrong. Otherwise what is wrong, with what else is wrong with the
 /// scene.
-fn whole(opened: Result<Opened, Option<Scene>>, folder: &Path, mut log: Diagnostics) -> Result<Opened, Diagnostics> {
+fn whole(opened: Result<Opened, Option<Box<Scene>>>, folder: &Path, mut log: Diagnostics) -> Result<Opened, Diagnostics> {
     let scene = match opened {
         Ok(opened) if log.is_ok() => return Ok(opened),
         Ok(opened) => {
@@ -113,9 +113,9 @@ pub fn open_in(scene: Scene, folder: &Path, bundled: &[Bundled<'_>]) -> Result<O
 ///
 /// # Errors
 /// As [`open_into`].
-pub fn open_in_into(scene: Scene, folder: &Path, bundled: &[Bundled<'_>], log: &mut Diagnostics) -> Result<Opened, Option<Scene>> {
+pub fn open_in_into(scene: Scene, folder: &Path, bundled: &[Bundled<'_>], log: &mut Diagnostics) -> Result<Opened, Option<Box<Scene>>> {
     let mut loader = Loader { sources: &Environment, bundled, ..Loader::default() };
-    loader.open(folder, scene.clone(), log).ok_or(Some(scene))
+    loader.open(folder, scene.clone(), log).ok_or_else(|| Some(Box::new(scene)))
 }
 
 impl Default for Loader<'_> {
