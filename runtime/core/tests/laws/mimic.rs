@@ -239,6 +239,8 @@ fn the_mass_matrix_of_a_differential_drive_couples_its_motors() {
     let coupling = Coupling { joint: "pitch".into(), leaders, offset: 0.0 };
     tree.couple(&coupling).unwrap();
     check(&tree);
+    let told = tree.lock("pitch", &[0.0]).unwrap_err().to_string();
+    assert_eq!(told, "joint \"pitch\" follows \"m1\", \"m2\": lock them");
     // A locked leader is a constant, of which a spring on the follower feels its part.
     tree.lock("m2", &[0.5]).unwrap();
     let case = Case::new("differential", tree.clone(), Base::Fixed);
