@@ -75,7 +75,7 @@ fn all_links_with_shapes_get_a_contact_for_each_of_their_points() {
     assert_eq!(of("palm"), [([0.0; 3], 0.5)]);
     assert_eq!(found.len(), 9 + 2 + 4 + 1);
     for one in &resolved.effects {
-        assert_eq!((&one.parameters[1..], one.at.rotation.rpy()), (&[1e4, 1.0, 0.5, 1e-5, 0.0, 0.0, 1.0, 0.25][..], [0.0; 3]));
+        assert_eq!((&one.parameters[1..], one.at.rotation.rpy()), (&[1e4, 1.0, 0.5, 1e-5, 0.0, 0.0, 1.0, 0.25, 0.0][..], [0.0; 3]));
     }
     let told: Vec<(Code, &Subject, Option<u32>)> = resolved.warnings.iter().map(|w| (w.code, &w.subject, w.line())).collect();
     let [hand, palm] = ["hand", "palm"].map(|name| Subject::Link(name.into()));
