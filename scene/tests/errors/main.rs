@@ -29,7 +29,7 @@ fn an_unknown_key_is_told_with_the_nearest() {
     let expected = "s.toml:3: effects.spring.elbow.stifness: found a key that is not known, expected one of stiffness, rest, from; did you mean \"stiffness\"?";
     assert_eq!(one("[effects.spring]\n\nelbow = { stifness = 1 }"), expected);
     let expected = "s.toml:4: effects.contact.foot.frction: found a key that is not known, expected one of radius, stiffness, damping, friction, \
-                    speed, normal, height, xyz, rpy, from, plane; did you mean \"friction\"?";
+                    speed, normal, height, damping_time, xyz, rpy, from, plane; did you mean \"friction\"?";
     assert_eq!(one("[effects.contact.foot]\nradius = 0.1\nstiffness = 1\nfrction = 1\n"), expected);
 }
 
