@@ -13,12 +13,12 @@ use crate::table::counted;
 /// What to do to the robot before anything else: append, then attach, then lock.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct Edits {
-    /// Append another robot on a link, or on a frame such as a site; may be given several times. The
-    /// placement of its root in that frame: 0 if left out
+    /// Append another robot on a link, or on a frame such as a site; may be given several times.
+    /// The placement of its root in that frame: 0 if left out
     #[arg(long, value_name = "FILE@LINK[:PREFIX[:X,Y,Z[,ROLL,PITCH,YAW]]]", value_parser = OsStringValueParser::new().try_map(|text| appended(&text)))]
     pub(crate) append: Vec<Appended>,
-    /// Attach a load, kg, to a link or frame: its centre of mass in m, its inertia about that in kg·m²; may
-    /// be given several times
+    /// Attach a load, kg, to a link or frame: its centre of mass in m, its inertia about that in
+    /// kg·m²; may be given several times
     #[arg(long, value_name = "LINK=MASS[@X,Y,Z[:XX,XY,XZ,YY,YZ,ZZ]]", value_parser = payload)]
     pub(crate) payload: Vec<Payload>,
     /// Let a joint follow others: its coordinate is the sum of coefficient times coordinate of

@@ -326,7 +326,8 @@ mod tests {
         request.scene = Some(scene.clone());
         let told = crate::generate(&request).unwrap_err().to_string();
         assert!(["elbo", "no_such", "b = 0", "nowhere", "shouder", "elbw"].iter().all(|key| told.contains(key)), "{told}");
-        // Of a robot that cannot be read the document is reported, and words that are wrong for any.
+        // Of a robot that cannot be read the document is reported, and words that are wrong for
+        // any.
         let told = prepare(scene, "arm.urdf", ARM.replace("parent link=\"base\"", "parent link=\"bse\"").into(), Base::Fixed, Vec::new());
         let told = told.unwrap_err().errors;
         let (document, words): (Vec<_>, Vec<_>) = told.iter().partition(|error| error.file() == "arm.urdf");

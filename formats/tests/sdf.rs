@@ -599,7 +599,8 @@ fn a_urdf_in_an_include_is_read() {
         let turn = |link: &articulated_core::description::Link| link.inertial.map_or([0.0; 3], |i| i.origin.rotation.rpy());
         assert!(near(&turn(own), &turn(link)), "{}", link.name);
     }
-    // It floats, and starts where the tag says. The name that a link and a joint share is no news in a URDF.
+    // It floats, and starts where the tag says. The name that a link and a joint share is no news
+    // in a URDF.
     let home = reading.world.home.unwrap();
     assert_eq!((home.q[0].0.as_str(), &home.q[0].1[..3]), ("c::foot_free", &[1.0, 2.0, 3.0][..]));
     assert!(reading.warnings.iter().all(|w| w.code != Code::DuplicateName && w.code != Code::MissingTag), "{:?}", reading.warnings);
@@ -638,7 +639,8 @@ fn inertias_are_computed_of_shapes_where_the_file_says_so() {
         ("<cylinder><radius>0.2</radius><length>0.6</length></cylinder>", 0.024 * pi, [0.04, 0.04, 0.02], 0.0),
         ("<ellipsoid><radii>1 2 3</radii></ellipsoid>", 8.0 * pi, [2.6, 2.0, 1.0], 0.0),
         ("<cone><radius>0.2</radius><length>0.6</length></cone>", 0.008 * pi, [0.0195, 0.0195, 0.012], -0.15),
-        // ∫ over the cylinder and both half balls: (0.024 · 0.04 + (4/3) 0.008 (0.016 + 0.09 + 0.045)) / (0.024 + (4/3) 0.008).
+        // ∫ over the cylinder and both half balls: (0.024 · 0.04 + (4/3) 0.008 (0.016 + 0.09 +
+        // 0.045)) / (0.024 + (4/3) 0.008).
         (
             "<capsule><radius>0.2</radius><length>0.6</length></capsule>",
             (0.024 + 0.032 / 3.0) * pi,
@@ -661,7 +663,8 @@ fn inertias_are_computed_of_shapes_where_the_file_says_so() {
         shape("<pose>1 0 0 0 0 0</pose>", &format!("<density>{}</density>", 2.0 / (pi / 6.0)), "<sphere><radius>0.5</radius></sphere>");
     let boxed = shape("<pose degrees='true'>-2 0 3 90 0 0</pose>", "", "<box><size>1 2 0.5</size></box>");
     let both = own(&of("<inertial auto='true'><density>1</density></inertial>", &(ball.clone() + &boxed)));
-    // About the centre (0, 0, 1): 0.2 of the ball itself and its 2 kg at (1, 0, -1), the box with y and z exchanged and 1 kg at (-2, 0, 2).
+    // About the centre (0, 0, 1): 0.2 of the ball itself and its 2 kg at (1, 0, -1), the box with y
+    // and z exchanged and 1 kg at (-2, 0, 2).
     let turned = [0.2 + 4.25 / 12.0 + 2.0 + 4.0, 0.0, 2.0 + 4.0, 0.2 + 5.0 / 12.0 + 4.0 + 8.0, 0.0, 0.2 + 1.25 / 12.0 + 2.0 + 4.0];
     assert!(near(&[both.mass], &[3.0]) && near(&both.origin.xyz, &[0.0, 0.0, 1.0]) && near(&both.inertia, &turned), "{both:?} {turned:?}");
     // A mass in the file scales it; pose and inertia of the file are not used.

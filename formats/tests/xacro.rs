@@ -273,7 +273,8 @@ fn mistakes_have_the_line_of_the_source_file() {
     }
 }
 
-/// The working folder is the one that names of files start from, whatever the folder of the file is.
+/// The working folder is the one that names of files start from, whatever the folder of the file
+/// is.
 #[test]
 fn the_working_folder_and_classes_in_patterns_are_read() {
     let files = Files::of(&[

@@ -34,8 +34,8 @@ impl Creep {
 }
 
 /// Creep of the contacts and joints of a scene, step by step: in a step a contact creeps if it
-/// presses at both ends and its centre moves along the plane, and a joint creeps if it moves, slower
-/// than [`SLIDING`] times the smoothing speed of its friction.
+/// presses at both ends and its centre moves along the plane, and a joint creeps if it moves,
+/// slower than [`SLIDING`] times the smoothing speed of its friction.
 pub(crate) struct Creeping<'s> {
     joints: Vec<(Freedom<'s>, f64, Creep)>,
     contacts: Vec<Creep>,

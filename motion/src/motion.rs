@@ -34,8 +34,8 @@ pub struct Outcome {
     /// Occurrences in the order of time, one for each of [`Recording::events`].
     pub occurrences: Vec<Occurrence>,
     /// The contact and the joint with dry friction that crept furthest where smoothed friction
-    /// should hold them, of each kind at most one. As those below, it is a statistic over the steps,
-    /// whatever is recorded.
+    /// should hold them, of each kind at most one. As those below, it is a statistic over the
+    /// steps, whatever is recorded.
     pub creep: Vec<Creep>,
     /// Links that went below a plane of contact where no contact holds them, the deepest first.
     pub penetrations: Vec<Penetration>,

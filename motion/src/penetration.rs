@@ -107,8 +107,8 @@ fn deepest_first(mut found: Vec<Penetration>) -> Vec<Penetration> {
 }
 
 impl Session {
-    /// Links that are below a plane of contact at the coordinates q `[nq]` where nothing holds them,
-    /// the deepest first; none where the scene has no contact.
+    /// Links that are below a plane of contact at the coordinates q `[nq]` where nothing holds
+    /// them, the deepest first; none where the scene has no contact.
     pub fn penetrations_at(&self, q: &[f64]) -> Vec<Penetration> {
         let (mut depths, mut places) = (Depths::of(self), vec![0.0; 12 * self.model.frames().len()]);
         if depths.parts.is_empty() || self.model.placements(&mut self.model.workspace(), q, &mut places).is_err() {

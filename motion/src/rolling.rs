@@ -15,8 +15,8 @@ pub struct Rolling {
     pub file: String,
     /// The link.
     pub on: String,
-    /// Largest sum of the two speeds whose difference is the sliding speed, m/s: that of the centre,
-    /// and that of the lowest point about it.
+    /// Largest sum of the two speeds whose difference is the sliding speed, m/s: that of the
+    /// centre, and that of the lowest point about it.
     pub rates: f64,
     /// The smoothing speed of its friction, m/s.
     pub speed: f64,

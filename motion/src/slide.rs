@@ -1,7 +1,7 @@
 //! Contacts that move although friction would hold them.
 //!
-//! A contact that is not damped vibrates at rest, and slides a little whenever it presses less. Over
-//! a while it needs less than the friction it has, and moves all the same.
+//! A contact that is not damped vibrates at rest, and slides a little whenever it presses less.
+//! Over a while it needs less than the friction it has, and moves all the same.
 
 use std::fmt;
 

@@ -126,8 +126,8 @@ fn actuators_that_cannot_be_are_refused() {
     assert!(told.contains("expected one of ctrl, keyframe, without, file, columns, rows, interpolation, period"), "{told}");
 }
 
-/// Servos p1 and p2 of two joints, a spring of a tendon over both, and a state. With joint two locked
-/// the rest of the control is that of the file.
+/// Servos p1 and p2 of two joints, a spring of a tendon over both, and a state. With joint two
+/// locked the rest of the control is that of the file.
 #[test]
 fn actuators_of_a_locked_joint_are_left_out_by_name() {
     const SERVOS: &str = "<mujoco><worldbody><body><joint name='one' axis='0 1 0'/><geom size='0.1'/>

@@ -85,7 +85,8 @@ fn a_step_over_a_stiff_layer_loses_the_energy_that_there_is() {
         (work + 6.75).abs() < 1e-3 && (dissipated + 2.25).abs() < 1e-3 && lacks < 1e-6 && layers >= 1,
         "{work} {dissipated} {lacks} {layers}"
     );
-    // Slow motion through stiff friction has no layer, though h·λ is large, nor has a step that resolves the decay.
+    // Slow motion through stiff friction has no layer, though h·λ is large, nor has a step that
+    // resolves the decay.
     let creeping = moved(&session(&held("'ends'"), HINGE));
     assert_eq!(creeping.recording.counts.layers, 0);
     let (_, dissipated, lacks, layers) = energies(&moved(&session(&scene(20.0, ""), HINGE)));

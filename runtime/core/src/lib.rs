@@ -9,7 +9,8 @@
 //! functions of [`Dynamics`](dynamics::Dynamics) compute:
 //!
 //! ```
-//! use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, LinkId, Origin};
+//! use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link};
+//! use articulated_core::description::{LinkId, Origin};
 //! use articulated_core::dynamics::Dynamics;
 //! use articulated_core::model::Model;
 //!

@@ -1,9 +1,9 @@
-//! Robots that are appended to another one: their links, joints and frames, and what their files say
-//! beside them.
+//! Robots that are appended to another one: their links, joints and frames, and what their files
+//! say beside them.
 //!
-//! All names get the prefix. States of one name are one state; the states of the appended robot that
-//! the other one does not have get the prefix, too. Gravity, step and integrator are those of the
-//! first file.
+//! All names get the prefix. States of one name are one state; the states of the appended robot
+//! that the other one does not have get the prefix, too. Gravity, step and integrator are those of
+//! the first file.
 
 use std::collections::HashSet;
 
@@ -137,8 +137,8 @@ impl Joining<'_> {
         Coupling { joint: self.named(&coupling.joint), leaders: self.all_named(coupling.leaders), offset: coupling.offset }
     }
 
-    /// States with controls for the actuators of both: `[own, appended]`. Controls that a state does
-    /// not have are 0, and joints that it does not have are where the file begins.
+    /// States with controls for the actuators of both: `[own, appended]`. Controls that a state
+    /// does not have are 0, and joints that it does not have are where the file begins.
     fn keyframes(&self, world: &mut World, other: Vec<Keyframe>, [own, appended]: [usize; 2]) {
         let full = |control: Vec<f64>, count: usize| if control.len() == count { control } else { vec![0.0; count] };
         for keyframe in &mut world.keyframes {

@@ -53,8 +53,9 @@ pub fn broken_laws(description: &Description, model: &Model<f64>, state: &State)
             for (k, expected) in expected.iter().enumerate() {
                 let row = &y[k * pi.len()..][..pi.len()];
                 let (found, size) = row.iter().zip(pi).fold((0.0, 0.0), |(sum, size), (y, p)| (sum + y * p, size + (y * p).abs()));
-                // A sum of no terms is zero.
-                if !((found - expected).abs() <= BOUND * size.max(f64::MIN_POSITIVE)) {
+                // A sum of no terms is zero. A number that is NaN breaks the law.
+                let is_kept = (found - expected).abs() <= BOUND * size.max(f64::MIN_POSITIVE);
+                if !is_kept {
                     broken.push(format!("{} [{k}], π of the {source}: found {found}, expected {expected}", regressor.name()));
                 }
             }

@@ -2,8 +2,9 @@
 //!
 //! The parameters are π = (m, h_x, h_y, h_z, I_xx, I_xy, I_xz, I_yy, I_yz, I_zz) with h = m c and I
 //! about the origin of the link's frame, in its axes; a link is a moving link with everything that
-//! is fixed to it ([`crate::model::Body::link`]), whether or not its joint is at its origin. Atkeson, An & Hollerbach, *Int. J. Robot. Res.* 5, 1986, 101–119; energies:
-//! Gautier & Khalil, *IEEE ICRA* 1988, 1026–1031.
+//! is fixed to it ([`crate::model::Body::link`]), whether or not its joint is at its origin.
+//! Atkeson, An & Hollerbach, *Int. J. Robot. Res.* 5, 1986, 101–119; energies: Gautier & Khalil,
+//! *IEEE ICRA* 1988, 1026–1031.
 
 use super::Workspace;
 use super::common::{Axes, accelerations, on_the_way, positions, twists};

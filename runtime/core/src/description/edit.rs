@@ -108,10 +108,10 @@ impl<'a> Editor<'a> {
     /// payload's centre of mass and the axes of what carries it, behind a fixed joint of the same
     /// name. Returns the name.
     ///
-    /// Refused: a link or frame that does not exist, a name that does, a mass or a principal moment below
-    /// zero, numbers that are not finite, an inertia without mass. One whose principal moments
-    /// [miss the triangle inequality](PrincipalMoments::miss_triangle) is used as it is given, as
-    /// that of a link is.
+    /// Refused: a link or frame that does not exist, a name that does, a mass or a principal moment
+    /// below zero, numbers that are not finite, an inertia without mass. One whose principal
+    /// moments [miss the triangle inequality](PrincipalMoments::miss_triangle) is used as it is
+    /// given, as that of a link is.
     pub fn attach(&mut self, payload: &Payload) -> Result<String, EditError> {
         let (parent, place) = self.place(&payload.link)?;
         check_mass(payload)?;
@@ -290,7 +290,8 @@ mod tests {
         let mount = |name: &str| robot.joints.iter().find(|joint| joint.name == name).unwrap();
         let [load, hand] = ["site_payload", "hand_link_1_mount"].map(mount);
         assert_eq!([load.parent, hand.parent], [LinkId(1); 2]);
-        // (x, y, z) of the site is (x, −z, y) of the link. The rotation alone keeps the file's form.
+        // (x, y, z) of the site is (x, −z, y) of the link. The rotation alone keeps the file's
+        // form.
         let close = |found: [f64; 3], expected: [f64; 3]| found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15);
         assert!(close(load.origin.xyz, [1.0, 0.5 - 3.0, 2.0]) && load.origin.rotation == robot.frames[0].origin.rotation);
         assert!(close(hand.origin.xyz, [0.0, 0.5 - 1.0, 0.0]));

@@ -42,10 +42,18 @@ pub use crate::index::{ById, Id, JointId, LinkId};
 /// It can be edited before [`Model::new`](crate::model::Model::new) makes a model of it:
 ///
 /// ```
-/// use articulated_core::description::{Description, EditError, Joint, JointKind, Link, LinkId, Payload};
+/// use articulated_core::description::{Description, EditError, Joint, JointKind, Link};
+/// use articulated_core::description::{LinkId, Payload};
 ///
 /// let link = |name: &str| Link { name: name.into(), ..Link::default() };
-/// let slide = Joint { name: "slide".into(), kind: JointKind::Prismatic, parent: LinkId(0), child: LinkId(1), axis: [0.0, 0.0, 1.0], ..Joint::default() };
+/// let slide = Joint {
+///     name: "slide".into(),
+///     kind: JointKind::Prismatic,
+///     parent: LinkId(0),
+///     child: LinkId(1),
+///     axis: [0.0, 0.0, 1.0],
+///     ..Joint::default()
+/// };
 /// let (links, joints) = ([link("mast"), link("fork")].into(), [slide].into());
 /// let mut lift = Description { name: "lift".into(), links, joints, frames: vec![] };
 /// lift.attach(&Payload { link: "fork".into(), mass: 100.0, ..Payload::default() })?;

@@ -44,7 +44,8 @@ pub enum ModelError {
         joint: String,
     },
     /// A floating base is requested for a robot whose root has a free joint
-    /// ([`Description::free_joint_of_root`]). [`Model::new`] accepts such a robot; loaders refuse it.
+    /// ([`Description::free_joint_of_root`]). [`Model::new`] accepts such a robot; loaders refuse
+    /// it.
     SecondBase {
         /// Name of the link that floats.
         link: String,

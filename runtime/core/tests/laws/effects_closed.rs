@@ -237,8 +237,8 @@ fn a_ball_on_the_ground_rests_where_its_weight_is_held() {
     assert_all_near(&moves(&[ground(0.6)], rest, v), &[0.0, 0.0, 0.0, -w[0], -w[1], -w[2]]);
 }
 
-/// With a damping time: under its load k (x + T ẋ), twice the spring's force at most, and none where
-/// it leaves fast.
+/// With a damping time: under its load k (x + T ẋ), twice the spring's force at most, and none
+/// where it leaves fast.
 #[test]
 fn damping_of_a_ball_at_rest_is_that_of_a_damper_and_never_pulls() {
     let (radius, stiffness, time) = (0.1, 5e3, 0.02);

@@ -259,7 +259,8 @@ impl Rodas4 {
     }
 
     /// Whether a step begins with a layer: a velocity that decays by its rates, as far as it does,
-    /// with h·λ > 1, and whose acceleration at the start would carry it beyond its size at both ends.
+    /// with h·λ > 1, and whose acceleration at the start would carry it beyond its size at both
+    /// ends.
     ///
     /// On a slow motion through stiff forces the derivative of the acceleration along the motion,
     /// ȧ = ∂a/∂q v + ∂a/∂v a + ∂a/∂t, is no larger than that of the slow motion: it is no layer.

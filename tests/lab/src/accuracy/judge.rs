@@ -2,8 +2,8 @@
 //!
 //! Two references, each of 320 bits: the textbook's formulas on the numbers of the robot's file,
 //! which share nothing with what is judged (with effects, which they do not know, the generic
-//! library), and the very graph that is emitted, in the constants that it has. The difference to the second
-//! is rounding alone.
+//! library), and the very graph that is emitted, in the constants that it has. The difference to
+//! the second is rounding alone.
 
 use articulated_codegen::graph::Graph;
 use articulated_codegen::{Generated, Precision, bound};

@@ -12,10 +12,10 @@ use unicode_security::mixed_script::{AugmentedScriptSet, is_potential_mixed_scri
 use crate::{Request, is_keyword};
 
 /// The constant's name for a name of the robot's file: letters in upper case, everything that
-/// cannot be in an identifier as `_`, `_` in front of a digit. `shoulder pan-joint` is `SHOULDER_PAN_JOINT`,
-/// `1st-link` is `_1ST_LINK`. Letters beyond ASCII stay where the compiler takes them without a
-/// warning: it warns of a crate, and only the root of that crate could allow it. Other names are
-/// written by code points.
+/// cannot be in an identifier as `_`, `_` in front of a digit. `shoulder pan-joint` is
+/// `SHOULDER_PAN_JOINT`, `1st-link` is `_1ST_LINK`. Letters beyond ASCII stay where the compiler
+/// takes them without a warning: it warns of a crate, and only the root of that crate could allow
+/// it. Other names are written by code points.
 pub fn identifier(name: &str) -> String {
     let upper: String = name.trim_matches('_').chars().flat_map(char::to_uppercase).collect();
     let mut ident: String = upper.chars().map(|c| if c == '_' || c.is_alphanumeric() { c } else { '_' }).collect();

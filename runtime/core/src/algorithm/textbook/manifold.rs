@@ -165,8 +165,8 @@ fn turn_between<S: Scalar>(x: [S; 4], y: [S; 4]) -> Vector3<S> {
     u * factor
 }
 
-/// A rotation by at most `largest`, rad, uniform among those: the part u of their volume θ − sin θ is
-/// below its angle, which bisection finds.
+/// A rotation by at most `largest`, rad, uniform among those: the part u of their volume θ − sin θ
+/// is below its angle, which bisection finds.
 fn rotation_within<S: Scalar>(largest: S, u: &[S]) -> [S; 4] {
     let (half, turn) = (S::from_f64(0.5), S::zero().atan2(-S::one()) * S::from_f64(2.0));
     let volume = |angle: S| angle - angle.sin_cos().0;
