@@ -239,7 +239,7 @@ EACH_BLOCKS            let whole = n / Lanes::LEN;
             let mut out_blocks = vec![mark_block; whole];
             batch::NAME_blocks(EACH_BLOCK&mut out_blocks).unwrap();
             BLOCKS_AGREE
-            // States into blocks and back, however many; what fills the last block is its last state.
+            // States into blocks and back, however many. The last state fills the last block.
             for len in 0..=2 * Lanes::LEN + 1 {
                 let states: Vec<[REAL; 3]> = (0..len).map(|i| [i as REAL, -1.0, 0.5 + i as REAL]).collect();
                 let mut packed = vec![[Lanes::ZERO; 3]; Lanes::blocks(len)];

@@ -22,7 +22,8 @@ fn a_robot_that_cannot_move_is_generated_and_compiles() {
 }
 
 /// Its time as in a build script, unoptimised:
-/// `cargo test -p articulated-tests --test generated --config profile.dev.package.articulated-core.opt-level=0 --config profile.dev.package.articulated-codegen.opt-level=0 -- --nocapture a_chain_of_a_thousand`.
+/// `cargo test -p articulated-tests --test generated -- --nocapture a_chain_of_a_thousand` with
+/// `--config profile.dev.package.articulated-core.opt-level=0` and the same of `articulated-codegen`.
 #[test]
 fn a_chain_of_a_thousand_joints_is_generated() {
     let n = 1000;
