@@ -1,7 +1,7 @@
 //! Robots that are appended, with what their files say beside them, and what hangs at frames.
 
 use articulated_core::algorithm::{Workspace, inverse_dynamics};
-use articulated_core::description::{Base, JointId};
+use articulated_core::description::Base;
 use articulated_core::diagnostic::{Code, Diagnostics};
 use articulated_scene::{BuiltRobot, Controller, Opened, RobotInWorld, Scene, Signal};
 
