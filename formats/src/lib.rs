@@ -5,6 +5,7 @@
 //! and [`urdf::write`] writes a description as a URDF:
 //!
 //! ```
+//! use articulated_core::description::JointId;
 //! use articulated_formats::{Options, read};
 //!
 //! let bytes = br#"<robot name="door">

@@ -48,7 +48,7 @@ pub(crate) static ROBOTS: LazyLock<Vec<Robot>> = LazyLock::new(|| {
         let bundled = articulated_models::robot(of).expect("it is bundled");
         with(name.into(), bundled.urdf, bundled.base, false, Options::default(), |name| wanted.contains(&name))
     };
-    let six_axes = some("six_axes", "ur5_like", &["center_of_mass"]);
+    let six_axes = some("six_axes", "ur5_like", &["center_of_mass", "inverse_dynamics"]);
     let four_legs = some("four_legs", "quadruped", &["mass_matrix", "bias_forces"]);
     let stone = robot("stone".into(), stone, Base::Fixed, false);
     bundled.chain(trees).chain([humanoid, walker, strider, six_axes, four_legs, stone]).collect()

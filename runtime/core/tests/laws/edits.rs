@@ -237,7 +237,7 @@ fn payloads_that_cannot_be_are_refused() {
     let mut arm = read(ARM);
     let good = Payload { link: "fore".into(), mass: 1.0, ..Payload::default() };
     let bad = [
-        (Payload { link: "for".into(), ..good.clone() }, "no link \"for\", did you mean \"fore\"?"),
+        (Payload { link: "for".into(), ..good.clone() }, "no link or frame \"for\", did you mean \"fore\"?"),
         (Payload { name: Some("elbow".into()), ..good.clone() }, "taken: \"elbow\""),
         (Payload { mass: -1.0, ..good.clone() }, "found -1 kg"),
         (Payload { mass: f64::INFINITY, ..good.clone() }, "mass"),

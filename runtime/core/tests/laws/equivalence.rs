@@ -334,5 +334,6 @@ fn a_joint_may_lie_beside_the_origin_of_its_link() {
             }
         }
     });
-    assert!(links.get() > 300, "only {}", links.get());
+    // A quarter of the trees has 86.
+    assert!(links.get() > 70, "only {}", links.get());
 }
