@@ -41,6 +41,19 @@ def moves_mass(path):
     return any(inertia.mass > 0 for inertia in list(model.inertias)[1:])
 
 
+def affine(joint, moving):
+    """(leaders with their factors, offset): q_joint = Σ factor · q_leader + offset, where no leader follows a joint."""
+    mimic = joint["mimic"]
+    if not mimic:
+        return [(joint, 1.0)], 0.0
+    leaders, offset = [], mimic["offset"]
+    for leader in mimic["leaders"]:
+        further, shift = affine(moving[leader["joint"]], moving)
+        leaders += [(last, leader["multiplier"] * factor) for last, factor in further]
+        offset += leader["multiplier"] * shift
+    return leaders, offset
+
+
 class Engine:
     """`joints`: the list of joints of `articulated check --format json`; gravity (0, 0, -9.81)."""
 
@@ -65,26 +78,24 @@ class Engine:
         self.parts, self.G = [], numpy.zeros((self.model.nv, self.nv))
         for name, joint in names.items():
             at = self.model.joints[self.model.getJointId(name)]
-            factor, offset, leader = 1.0, 0.0, joint
-            while leader["mimic"]:
-                factor, offset = factor * leader["mimic"]["multiplier"], offset + factor * leader["mimic"]["offset"]
-                leader = moving[leader["mimic"]["joint"]]
-            self.parts.append((joint, at, leader, factor, offset))
-            block = numpy.eye(at.nv) * factor
-            if at.nv == 6:  # ours is (angular; linear)
-                block = block[[3, 4, 5, 0, 1, 2]]
-            start = leader["v"][0]
-            self.G[at.idx_v : at.idx_v + at.nv, start : start + at.nv] = block
+            leaders, offset = affine(joint, moving)
+            self.parts.append((joint, at, leaders, offset))
+            for leader, factor in leaders:
+                block = numpy.eye(at.nv) * factor
+                if at.nv == 6:  # ours is (angular; linear)
+                    block = block[[3, 4, 5, 0, 1, 2]]
+                start = leader["v"][0]
+                self.G[at.idx_v : at.idx_v + at.nv, start : start + at.nv] += block
 
     def configuration(self, q):
         """q_p(q)."""
         out = pin.neutral(self.model)
-        for joint, at, leader, factor, offset in self.parts:
+        for joint, at, leaders, offset in self.parts:
             if at.nq == 7:
-                start = leader["q"][0]
+                start = joint["q"][0]
                 out[at.idx_q : at.idx_q + 7] = q[start : start + 7]
                 continue
-            angle = factor * q[leader["q"][0]] + offset
+            angle = sum(factor * q[leader["q"][0]] for leader, factor in leaders) + offset
             out[at.idx_q : at.idx_q + at.nq] = [angle] if at.nq == 1 else [math.cos(angle), math.sin(angle)]
         return out
 

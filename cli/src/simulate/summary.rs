@@ -236,7 +236,7 @@ impl Summary {
 
     fn with_balance(mut self, file: &str) -> Self {
         self.warnings.extend(self.out_of_balance().map(|warning| format!("{file}: {warning}")));
-        if self.status == "ok" && !(self.energy.is_kept() && self.counts.balance_covers_most()) {
+        if self.status == "ok" && (!self.energy.is_kept() || self.counts.has_no_balance()) {
             self.status = "out_of_tolerance";
         }
         self
@@ -286,12 +286,11 @@ impl Summary {
         if !part.is_finite() {
             return Some("energy is beyond the largest number: it says nothing of this motion".into());
         }
-        if !self.counts.balance_covers_most() {
-            let (layers, steps) = (self.counts.steps_over_stiff_layers, self.counts.steps);
-            return Some(format!(
-                "{layers} of {steps} steps pass over a stiff layer and are not in the balance of energy, which says nothing of this motion: \
-                 take shorter steps"
-            ));
+        if self.counts.has_no_balance() {
+            return Some(
+                "all steps pass over a stiff layer, so that none is in the balance of energy, which says nothing of this motion: take shorter steps"
+                    .into(),
+            );
         }
         let lacks = format!("the balance of energy lacks {} of the largest energy moved", crate::table::number(part));
         if !self.energy.is_kept() {
@@ -320,9 +319,9 @@ impl Momentum {
 }
 
 impl Done {
-    /// Whether at least half of the steps are in the balance of energy.
-    fn balance_covers_most(&self) -> bool {
-        2 * self.steps_over_stiff_layers <= self.steps
+    /// Whether the balance of energy is of no step, though there are steps.
+    fn has_no_balance(&self) -> bool {
+        self.steps > 0 && self.steps_over_stiff_layers >= self.steps
     }
 
     fn of(session: &Session, c: &Counts, records: usize) -> Self {
