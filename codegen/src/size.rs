@@ -5,6 +5,7 @@
 //! predictions with generated code.
 
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
+use articulated_core::index::{BodyId, ById};
 use articulated_core::model::Model;
 
 use crate::spec::{FunctionSpec, FunctionTerm};
@@ -41,10 +42,10 @@ struct Tree {
 
 impl Tree {
     fn of(model: &Model<f64>) -> Self {
-        let mut depths: Vec<f64> = Vec::with_capacity(model.bodies().len());
+        let mut depths: ById<BodyId, f64> = ById::default();
         let (mut freedoms, mut pairs, mut squares) = (0.0, 0.0, 0.0);
-        for (i, body) in model.bodies().iter().enumerate() {
-            if i == 0 {
+        for (i, body) in model.bodies().with_ids() {
+            if i == BodyId::BASE {
                 depths.push(0.0);
                 continue;
             }

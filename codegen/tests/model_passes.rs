@@ -6,6 +6,7 @@ use articulated_core::Scalar;
 use articulated_core::algorithm::{AngularKinematics, Function, function, functions};
 use articulated_core::description::{self, Base, Description, Inertial, JointKind, Link, LinkId, Origin};
 use articulated_core::effect::{Applied, EffectId};
+use articulated_core::index::{BodyId, ById};
 use articulated_core::joint::{Angle, Joint};
 use articulated_core::model::{Body, Model};
 use articulated_core::monitor::orthonormality;
@@ -82,10 +83,10 @@ fn round_bodies_need_not_turn() {
     for_each_tree(12, SMALL, |case, random| {
         let state = case.state(random);
         let model = case.model.clone();
-        let last = |model: &Model, i: usize| {
+        let last = |model: &Model, i: BodyId| {
             model.outward().all(|k| model.bodies()[k].parent != i) && model.bodies()[i].joint.is_rotation_about_axis()
         };
-        let round: Vec<usize> = model.outward().filter(|&i| last(&model, i)).collect();
+        let round: Vec<BodyId> = model.outward().filter(|&i| last(&model, i)).collect();
         let model = model.without_frames().changed(|parts| {
             for &i in &round {
                 let SpatialInertia { first, second, .. } = &mut parts.bodies[i].inertia;
@@ -97,7 +98,7 @@ fn round_bodies_need_not_turn() {
         Big::scope(|| {
             let model = model.cast::<Big>();
             let passed = View::new(model.clone()).passed();
-            let stopped: Vec<usize> = model.outward().filter(|&i| !passed.rotates(i)).collect();
+            let stopped: Vec<BodyId> = model.outward().filter(|&i| !passed.rotates(i)).collect();
             assert_eq!(stopped, round);
             same_without_frames(case, &state, &passed, &model);
         });
@@ -113,11 +114,11 @@ fn constants_may_be_turned_instead_of_vectors() {
     for_each_tree(16, Flavour { links: 9, ..SMALL }, |case, random| {
         let state = case.state(random);
         let model = case.model.clone().changed(|parts| {
-            for i in 1..parts.bodies.len() {
+            for i in parts.bodies.ids().skip(1) {
                 let (body, parent) = (&parts.bodies[i], &parts.bodies[parts.bodies[i].parent]);
                 let revolute = body.joint.is_rotation_about_axis() && parent.joint.is_rotation_about_axis();
                 // What a universal joint consists of has no mass between.
-                if body.parent != 0 && revolute && parent.link.is_some() && random.below(3) > 0 {
+                if !body.parent.is_base() && revolute && parent.link.is_some() && random.below(3) > 0 {
                     parts.bodies[i].placement.rotation = Matrix3::identity();
                     seen.set(seen.get() + 1);
                 }
@@ -152,7 +153,7 @@ fn rates_may_be_found_by_the_axes_of_joints() {
             // Mostly axes along axes, turned about themselves by any angle, and bodies with some of
             // their products of inertia.
             let model = case.model.cast::<Big>().changed(|parts| {
-                for i in 1..parts.bodies.len() {
+                for i in parts.bodies.ids().skip(1) {
                     // What a universal joint consists of has no mass between: its axes stay as they
                     // are.
                     if random.below(4) == 0 || parts.bodies[parts.bodies[i].parent].link.is_none() {
@@ -191,8 +192,8 @@ fn mass_at_a_joint_may_be_shifted() {
         let state = case.state(random);
         // Mostly a chain.
         let model = case.model.clone().changed(|parts| {
-            for i in (1..parts.bodies.len()).filter(|_| random.below(4) > 0) {
-                parts.bodies[i].parent = i - 1;
+            for i in parts.bodies.ids().skip(1).filter(|_| random.below(4) > 0) {
+                parts.bodies[i].parent = BodyId(i.0 - 1);
             }
         });
         Big::scope(|| {
@@ -330,9 +331,9 @@ fn regrouped_bodies_keep_only_what_their_joint_feels() {
 fn frames_slide_to_where_axes_meet() {
     let case = Case::bundled(articulated_models::robot("panda_like").expect("it is bundled"));
     let slid = View::new(case.model.clone()).passed().model;
-    let offset = |model: &articulated_core::model::Model, i: usize| model.bodies()[i].placement.position.amax();
-    assert_eq!([2, 3].map(|i| offset(&slid, i)), [0.0; 2]);
-    assert!(offset(&case.model, 3) > 0.3);
+    let offset = |model: &articulated_core::model::Model, i: BodyId| model.bodies()[i].placement.position.amax();
+    assert_eq!([2, 3].map(|i| offset(&slid, BodyId(i))), [0.0; 2]);
+    assert!(offset(&case.model, BodyId(3)) > 0.3);
 }
 
 /// Mass is shifted where it takes numbers away, and never more than twice what a joint carries.
@@ -341,17 +342,17 @@ fn mass_is_shifted_where_that_is_worth_it() {
     for (robot, joints) in [("ur5_like", 1), ("panda_like", 2), ("quadruped", 8)] {
         let model = Case::bundled(articulated_models::robot(robot).expect("it is bundled")).model;
         let carried = model.carried();
-        assert!((carried[0] - model.bodies().iter().map(|b| b.inertia.mass).sum::<f64>()).abs() < 1e-12);
+        assert!((carried[BodyId::BASE] - model.bodies().iter().map(|b| b.inertia.mass).sum::<f64>()).abs() < 1e-12);
         let passed = View::new(model.clone()).passed();
-        let masses = |carried: &[f64]| -> Vec<(f64, f64)> {
+        let masses = |carried: &ById<BodyId, f64>| -> Vec<(f64, f64)> {
             let shifted = passed.clone().with_shifted_masses(carried);
             let bodies = shifted.model.bodies().iter().zip(&shifted.formulation.torque_inertias).zip(carried);
-            bodies.filter(|((body, _), _)| body.parent != 0).map(|((_, inertia), carried)| (inertia.mass, *carried)).collect()
+            bodies.filter(|((body, _), _)| !body.parent.is_base()).map(|((_, inertia), carried)| (inertia.mass, *carried)).collect()
         };
         let shifted = masses(&carried);
         assert_eq!(shifted.iter().filter(|(mass, _)| *mass != 0.0).count(), joints, "{robot}: {shifted:?}");
         assert!(shifted.iter().all(|(mass, carried)| mass.abs() <= 2.0 * carried), "{robot}: {shifted:?}");
-        let of_next_to_nothing = masses(&carried.iter().map(|mass| 0.1 * mass).collect::<Vec<_>>());
+        let of_next_to_nothing = masses(&carried.iter().map(|mass| 0.1 * mass).collect());
         assert!(of_next_to_nothing.iter().all(|(mass, _)| *mass == 0.0), "{robot}: {of_next_to_nothing:?}");
     }
 }
@@ -363,7 +364,7 @@ fn angles_about_a_joints_own_axis_are_counted_with_its_own() {
     let fixed = |x: f64| x == 0.0 || x.abs() == 1.0;
     for_each_tree(40, Flavour::ANY, |case, _| {
         let passed = View::new(case.model.clone()).passed();
-        for body in passed.model.bodies().iter().skip(1).filter(|b| b.parent != 0 && b.joint.is_rotation_about_axis()) {
+        for body in passed.model.bodies().iter().skip(1).filter(|b| !b.parent.is_base() && b.joint.is_rotation_about_axis()) {
             let turn = &body.placement.rotation;
             let along_a_coordinate_axis = turn.column(2).iter().all(|x| fixed(*x));
             assert!(!along_a_coordinate_axis || turn.iter().all(|x| fixed(*x)), "{}: {turn}", body.name);
@@ -419,7 +420,7 @@ fn a_round_wheel_turns_the_float_on_its_rim() {
     };
     let wheel = Model::new(&description, Base::Fixed).expect("a wheel").with_gravity([0.0, 0.0, -9.81]);
     // Without the frames of links, which are not needed here.
-    assert!(!bare(&wheel).passed().rotates(1));
+    assert!(!bare(&wheel).passed().rotates(BodyId(1)));
     let (volume, density, rim) = (0.002, 1000.0, 0.5);
     let at = Origin { xyz: [rim, 0.0, 0.0], ..Origin::default() };
     let float = Applied { effect: EffectId::buoyancy, on: "wheel".into(), at, parameters: vec![volume, density] };

@@ -7,6 +7,7 @@ use articulated_codegen::{Origin, Request, generate};
 use articulated_core::algorithm::{Workspace, function};
 use articulated_core::description::{ById, Description, Frame, Inertial, Joint, JointId, JointKind, Link, LinkId, Rotation};
 use articulated_core::diagnostic::{At, Code, Diagnostics, Place, Subject};
+use articulated_core::index::BodyId;
 use articulated_core::model::Model;
 use toml::{Table, Value};
 
@@ -229,7 +230,7 @@ fn joints_in_sequence_on_a_body_and_free_frames_are_those_of_the_equal_robot() {
     let names = |model: &Model| model.frames().iter().map(|frame| frame.name.clone()).collect::<Vec<_>>();
     assert_eq!(names(&wide), ["base", "rotor", "tool"]);
     assert_eq!(names(&wide), names(&universal));
-    assert_eq!(wide.links().collect::<Vec<_>>(), [2]);
+    assert_eq!(wide.links().collect::<Vec<_>>(), [BodyId(2)]);
     assert_eq!(wide.joints().iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>(), ["yaw", "pitch"]);
     let [q, v, a] = [[0.3, -0.8], [0.7, 0.4], [-0.2, 1.1]];
     for (name, arguments) in [("placements", &[&q[..]][..]), ("inverse_dynamics", &[&q, &v, &a]), ("joint_wrenches", &[&q, &v, &a])] {

@@ -1,6 +1,7 @@
 //! Degrees of freedom with the bounds and the friction of their joints, mimic joints included.
 
 use articulated_core::effect::{EffectId, JointEffect};
+use articulated_core::index::BodyId;
 use articulated_core::model::Body;
 
 use crate::session::Session;
@@ -30,8 +31,8 @@ impl Session {
     pub(crate) fn freedoms(&self) -> impl Iterator<Item = Freedom<'_>> {
         let bodies = self.model.bodies();
         // A joint that follows several others has several bodies: only the last one counts here.
-        let is_last = |k: usize| bodies.get(k + 1).is_none_or(|next| self.model.series(next).nth(1).is_none());
-        (1..bodies.len()).filter(move |k| is_last(*k)).flat_map(move |k| {
+        let is_last = |k: BodyId| bodies.get(BodyId(k.0 + 1)).is_none_or(|next| self.model.series(next).nth(1).is_none());
+        self.model.outward().filter(move |k| is_last(*k)).flat_map(move |k| {
             let body = &bodies[k];
             let offset = self.model.series(body).filter_map(|part| part.coordinates.mimic).map(|follow| follow.offset).sum();
             let one = move |freedom| {

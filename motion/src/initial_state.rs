@@ -92,8 +92,8 @@ impl Session {
         }
         let weight = self.model.moving_mass() * self.model.gravity().norm();
         let sunk = |contact: &Applied| {
-            let frame = self.model.frames().iter().position(|frame| frame.name == contact.on)?;
-            let (x, r, normal) = (&places[12 * frame..][..12], contact.at.xyz, unit(field(contact, "normal").try_into().ok()?)?);
+            let frame = self.model.frames().position(|frame| frame.name == contact.on)?;
+            let (x, r, normal) = (&places[12 * frame.0..][..12], contact.at.xyz, unit(field(contact, "normal").try_into().ok()?)?);
             let centre = |k: usize| x[9 + k] + (0..3).map(|c| x[3 * k + c] * r[c]).sum::<f64>();
             let depth = field(contact, "height").first()? - (0..3).map(|k| normal[k] * centre(k)).sum::<f64>();
             // A point at rest pushes with no more than the weight.

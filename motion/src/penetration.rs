@@ -6,6 +6,7 @@ use articulated::Dynamics;
 use articulated_core::Plain;
 use articulated_core::description::{Collision, ContactSphere, Link};
 use articulated_core::effect::{EffectId, unit};
+use articulated_core::index::{BodyId, ById, FrameId};
 
 use crate::session::{Session, field};
 
@@ -36,7 +37,7 @@ type Plane = ([f64; 3], f64);
 struct Part<'s> {
     link: &'s str,
     /// The link's frame.
-    frame: usize,
+    frame: FrameId,
     spheres: Vec<ContactSphere>,
     /// How much deeper than contact it may be, m.
     beside: f64,
@@ -44,8 +45,8 @@ struct Part<'s> {
 
 /// A contact: its body, frame, sphere and plane.
 struct Touch {
-    body: usize,
-    frame: usize,
+    body: BodyId,
+    frame: FrameId,
     sphere: ContactSphere,
     plane: Plane,
 }
@@ -77,7 +78,7 @@ impl<'s> Depths<'s> {
         for plane in &self.planes {
             let held = self.session.held(&self.touches, plane, places);
             for (part, found) in self.parts.iter().zip(&mut self.found) {
-                let depth = part.spheres.iter().map(|s| depth(s, &places[12 * part.frame..][..12], plane)).fold(f64::MIN, f64::max);
+                let depth = part.spheres.iter().map(|s| depth(s, &places[12 * part.frame.0..][..12], plane)).fold(f64::MIN, f64::max);
                 if depth <= held[self.session.model.frames()[part.frame].body] + part.beside {
                     continue;
                 }
@@ -149,7 +150,7 @@ impl Session {
     /// All contacts of the scene.
     fn touches(&self) -> Vec<Touch> {
         let contacts = self.effects_of(EffectId::contact).filter_map(|contact| {
-            let frame = self.model.frames().iter().position(|frame| frame.name == contact.on)?;
+            let frame = self.model.frames().position(|frame| frame.name == contact.on)?;
             let normal = unit(field(contact, "normal").try_into().ok()?)?;
             let sphere = ContactSphere { center: contact.at.xyz, radius: *field(contact, "radius").first()? };
             let plane = (normal, *field(contact, "height").first()?);
@@ -162,23 +163,23 @@ impl Session {
     fn parts(&self) -> Vec<Part<'_>> {
         let frames = self.model.frames();
         let links = self.description.links.iter().filter(|link| !link.collision.is_empty());
-        let placed = links.filter_map(|link| Some((link, frames.iter().position(|frame| frame.name == link.name)?)));
-        let moving = placed.filter(|(_, frame)| frames[*frame].body != 0);
+        let placed = links.filter_map(|link| Some((link, frames.position(|frame| frame.name == link.name)?)));
+        let moving = placed.filter(|(_, frame)| frames[*frame].body != BodyId::BASE);
         moving.map(|(link, frame)| Part::of(link, frame)).filter(|part| !part.spheres.is_empty()).collect()
     }
 
     /// How deep the deepest contact of each body is in a plane, m; 0 where none is.
-    fn held(&self, touches: &[Touch], plane: &Plane, places: &[f64]) -> Vec<f64> {
-        let mut held = vec![0.0_f64; self.model.bodies().len()];
+    fn held(&self, touches: &[Touch], plane: &Plane, places: &[f64]) -> ById<BodyId, f64> {
+        let mut held: ById<BodyId, f64> = vec![0.0; self.model.bodies().len()].into();
         for touch in touches.iter().filter(|touch| touch.plane == *plane) {
-            held[touch.body] = held[touch.body].max(depth(&touch.sphere, &places[12 * touch.frame..][..12], plane));
+            held[touch.body] = held[touch.body].max(depth(&touch.sphere, &places[12 * touch.frame.0..][..12], plane));
         }
         held
     }
 }
 
 impl<'s> Part<'s> {
-    fn of(link: &'s Link, frame: usize) -> Self {
+    fn of(link: &'s Link, frame: FrameId) -> Self {
         let mut spheres: Vec<ContactSphere> = link.collision.iter().flat_map(Collision::contact_spheres).collect();
         if spheres.is_empty() {
             spheres.extend(link.inertial.map(|inertial| ContactSphere { center: inertial.origin.xyz, radius: 0.0 }));

@@ -1,6 +1,7 @@
 //! The contacts of a scene in a state: where they are, whether they press, and with what force.
 
 use articulated_core::effect::{Applied, EffectId, Station, unit, wrench};
+use articulated_core::index::FrameId;
 use articulated_core::spatial::{Matrix3, Placement, Twist, Vector3};
 
 use crate::session::{Session, field};
@@ -9,7 +10,7 @@ use crate::session::{Session, field};
 pub(crate) struct Contact {
     /// The link.
     pub(crate) on: String,
-    frame: usize,
+    frame: FrameId,
     /// The sphere's centre in the link's frame, m.
     point: Vector3<f64>,
     /// The numbers of its law; the normal has length one.
@@ -65,7 +66,7 @@ impl Contact {
     fn of(session: &Session, applied: &Applied) -> Option<Self> {
         let one = |name: &str| field(applied, name).first().copied();
         let normal = unit(field(applied, "normal").try_into().ok()?)?;
-        let frame = session.model.frames().iter().position(|frame| frame.name == applied.on)?;
+        let frame = session.model.frames().position(|frame| frame.name == applied.on)?;
         let mut parameters = applied.parameters.clone();
         let at = applied.effect.row().fields.iter().take_while(|f| f.name != "normal").map(|f| f.len).sum::<usize>();
         parameters.get_mut(at..at + 3)?.copy_from_slice(&normal);
@@ -85,7 +86,7 @@ impl Contact {
 
     /// It in a state; at rest at the origin where the state has no such frame.
     pub(crate) fn at(&self, frames: &Frames<'_>) -> Touch {
-        let number = |x: &[f64], each: usize, k: usize| x.get(each * self.frame + k).copied().unwrap_or(0.0);
+        let number = |x: &[f64], each: usize, k: usize| x.get(each * self.frame.0 + k).copied().unwrap_or(0.0);
         let place = |k: usize| number(frames.places, 12, k);
         let rotation = Matrix3::from_fn(|i, j| place(3 * i + j));
         let [position, omega, rate] = [

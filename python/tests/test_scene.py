@@ -140,6 +140,11 @@ def test_a_motion_can_be_interrupted():
     import threading
 
     scene = articulated.Scene("pendulum")
-    threading.Timer(0.3, lambda: signal.raise_signal(signal.SIGINT)).start()
-    with pytest.raises(KeyboardInterrupt):
-        scene.run(end=1e9, step=1e-4, integrator="rk4", every=1e6)
+    # A shell starts its background jobs with this signal ignored.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        threading.Timer(0.3, lambda: signal.raise_signal(signal.SIGINT)).start()
+        with pytest.raises(KeyboardInterrupt):
+            scene.run(end=1e9, step=1e-4, integrator="rk4", every=1e6)
+    finally:
+        signal.signal(signal.SIGINT, before)

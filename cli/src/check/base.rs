@@ -3,6 +3,7 @@
 
 use articulated_codegen::model_pass::{View, drop_symmetric_rotation};
 use articulated_core::algorithm::{BaseParameter, BodyParameters, Identifiability, base_parameters, identifiable_parameters};
+use articulated_core::index::BodyId;
 use articulated_core::model::Model;
 use articulated_core::spatial::Placement;
 use serde::Serialize;
@@ -80,7 +81,7 @@ impl Base {
         let passed = View::new(read.clone()).passed().model;
         let without_frames = passed.clone().without_frames();
         let bare = drop_symmetric_rotation(View::new(without_frames));
-        let round = |i: usize| !bare.rotates(i);
+        let round = |i: BodyId| !bare.rotates(i);
         let joints: Vec<BaseRow> = base_parameters(&passed).iter().map(|of| row(of, read, &passed, round(of.body))).collect();
         let (links, stages) = (read.links().count(), read.links().count() < joints.len());
         let all = || joints.iter().flat_map(|joint| &joint.parameters);
@@ -93,7 +94,7 @@ impl Base {
 fn row(of: &BodyParameters, read: &Model<f64>, passed: &Model<f64>, round: bool) -> BaseRow {
     let (i, body) = (of.body, &passed.bodies()[of.body]);
     let parameters = of.parameters.iter().map(Parameter::of).collect();
-    let frame = read.frames().iter().position(|f| f.body == i);
+    let frame = read.frames().position(|f| f.body == i);
     // x_read,passed of the body's frame, from where it has a link.
     let moved = frame.map_or_else(Placement::identity, |k| {
         let (before, after) = (&read.frames()[k].placement, &passed.frames()[k].placement);

@@ -3,6 +3,7 @@
 use articulated_core::description::{ById, Description, Joint, JointKind, Link, LinkId, Mimic};
 use articulated_core::diagnostic::{Diagnostic as Finding, summary};
 use articulated_core::eigen::eigenvalues;
+use articulated_core::index::BodyId;
 use articulated_core::model::{FLOATING_BASE, Model};
 use articulated_formats::world::World;
 use serde::Serialize;
@@ -201,10 +202,10 @@ impl Report {
     }
 }
 
-fn link_row(link: &Link, body: usize, model: &Model<f64>) -> LinkRow {
+fn link_row(link: &Link, body: BodyId, model: &Model<f64>) -> LinkRow {
     LinkRow {
         link: link.name.clone(),
-        moves_with: (body != 0).then(|| model.bodies()[body].name.clone()),
+        moves_with: (!body.is_base()).then(|| model.bodies()[body].name.clone()),
         mass: link.inertial.map_or(0.0, |i| i.mass),
         centre_of_mass: link.inertial.map(|i| i.origin.xyz),
         principal_moments: link.inertial.map(|i| eigenvalues(i.inertia)),
@@ -213,7 +214,7 @@ fn link_row(link: &Link, body: usize, model: &Model<f64>) -> LinkRow {
 
 /// The floating base first, then the joints in the order of their coordinates, then those that have
 /// none of their own, as the file has them.
-fn joint_rows(description: &Description, model: &Model<f64>, bodies: &ById<LinkId, usize>) -> Vec<JointRow> {
+fn joint_rows(description: &Description, model: &Model<f64>, bodies: &ById<LinkId, BodyId>) -> Vec<JointRow> {
     let carried = model.carried();
     let base = model.joints().iter().find(|j| j.name == FLOATING_BASE).map(|j| JointRow {
         joint: j.name.clone(),
@@ -228,7 +229,7 @@ fn joint_rows(description: &Description, model: &Model<f64>, bodies: &ById<LinkI
         effort: None,
         mimic: None,
         locked: None,
-        carries: carried[0],
+        carries: carried[BodyId::BASE],
     });
     let places: std::collections::BTreeMap<&str, _> = model.joints().iter().map(|j| (j.name.as_str(), (j.q, j.v))).collect();
     let rows = description.joints.iter().map(|joint| {
@@ -258,6 +259,6 @@ fn joint_rows(description: &Description, model: &Model<f64>, bodies: &ById<LinkI
 }
 
 /// Joints that join links of one body.
-fn merged(description: &Description, bodies: &ById<LinkId, usize>) -> usize {
+fn merged(description: &Description, bodies: &ById<LinkId, BodyId>) -> usize {
     description.joints.iter().filter(|j| bodies[j.child] == bodies[j.parent]).count()
 }

@@ -1,6 +1,7 @@
 //! Isomorphic branches: the legs of a quadruped are one program with four sets of constants.
 
 use articulated_core::effect::EffectId;
+use articulated_core::index::{BodyId, ById};
 use articulated_core::joint::Joint;
 use articulated_core::model::Model;
 
@@ -8,15 +9,15 @@ use articulated_core::model::Model;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Limbs {
     /// First body of each branch, in the order of the model.
-    pub(crate) roots: Vec<usize>,
+    pub(crate) roots: Vec<BodyId>,
     /// Number of bodies of each branch: those from its root on.
     pub(crate) bodies: usize,
 }
 
 impl Limbs {
     /// Body `k` of each branch.
-    pub(crate) fn aligned(&self, k: usize) -> Vec<usize> {
-        self.roots.iter().map(|root| root + k).collect()
+    pub(crate) fn aligned(&self, k: usize) -> Vec<BodyId> {
+        self.roots.iter().map(|root| BodyId(root.0 + k)).collect()
     }
 }
 
@@ -34,7 +35,7 @@ struct Kind {
 }
 
 /// First body of a branch and the kinds of its bodies, if it stands for itself.
-type Branch = (usize, Option<Vec<Kind>>);
+type Branch = (BodyId, Option<Vec<Kind>>);
 
 /// The sets of `width` isomorphic branches, from the base outward: the same joints and effects in
 /// the same order, whatever frames they carry. Constants may differ, so that mirrored limbs are
@@ -45,8 +46,8 @@ type Branch = (usize, Option<Vec<Kind>>);
 pub(crate) fn isomorphic_branches(model: &Model, width: usize) -> Vec<Limbs> {
     let sizes = branch_sizes(model);
     let mut found = Vec::new();
-    let mut open = vec![0];
-    let mut children = vec![Vec::new(); model.bodies().len()];
+    let mut open = vec![BodyId::BASE];
+    let mut children: ById<BodyId, Vec<BodyId>> = vec![Vec::new(); model.bodies().len()].into();
     model.outward().for_each(|i| children[model.bodies()[i].parent].push(i));
     while let Some(body) = open.pop() {
         let mut branches: Vec<Branch> = children[body].iter().map(|&i| (i, None)).collect();
@@ -55,7 +56,7 @@ pub(crate) fn isomorphic_branches(model: &Model, width: usize) -> Vec<Limbs> {
         }
         while let Some((first, kinds)) = branches.first() {
             let alike = |(_, others): &&Branch| kinds.is_some() && others == kinds;
-            let roots: Vec<usize> = branches.iter().filter(alike).take(width).map(|(i, _)| *i).collect();
+            let roots: Vec<BodyId> = branches.iter().filter(alike).take(width).map(|(i, _)| *i).collect();
             if roots.len() == width {
                 branches.retain(|(i, _)| !roots.contains(i));
                 found.push(Limbs { bodies: sizes[roots[0]], roots });
@@ -70,8 +71,8 @@ pub(crate) fn isomorphic_branches(model: &Model, width: usize) -> Vec<Limbs> {
 }
 
 /// Number of bodies from each body outward, itself included.
-fn branch_sizes(model: &Model) -> Vec<usize> {
-    let mut sizes = vec![1; model.bodies().len()];
+fn branch_sizes(model: &Model) -> ById<BodyId, usize> {
+    let mut sizes: ById<BodyId, usize> = vec![1; model.bodies().len()].into();
     for i in model.inward() {
         sizes[model.bodies()[i].parent] += sizes[i];
     }
@@ -80,21 +81,21 @@ fn branch_sizes(model: &Model) -> Vec<usize> {
 
 /// The kinds of the bodies of a branch; `None` if one follows a joint outside of it, or is followed
 /// from there.
-fn branch_kinds(model: &Model, root: usize, size: usize) -> Option<Vec<Kind>> {
-    let branch = root..root + size;
-    let (first, last) = (&model.bodies()[root].coordinates, &model.bodies()[root + size - 1]);
-    let inside = |i: usize| branch.contains(&i);
-    let own_v = |i: usize| model.bodies()[i].coordinates.v;
+fn branch_kinds(model: &Model, root: BodyId, size: usize) -> Option<Vec<Kind>> {
+    let branch = (root.0..root.0 + size).map(BodyId);
+    let (first, last) = (&model.bodies()[root].coordinates, &model.bodies()[BodyId(root.0 + size - 1)]);
+    let inside = |i: BodyId| (root.0..root.0 + size).contains(&i.0);
+    let own_v = |i: BodyId| model.bodies()[i].coordinates.v;
     let shared = model.outward().any(|i| !inside(i) && branch.clone().any(|k| own_v(k) == own_v(i)));
     if shared || last.coordinates.v < first.v {
         return None;
     }
-    let kind = |i: usize| {
+    let kind = |i: BodyId| {
         let body = &model.bodies()[i];
         let at = (body.coordinates.q.checked_sub(first.q)?, body.coordinates.v.checked_sub(first.v)?);
         Some(Kind {
             joint: body.joint,
-            behind: if i == root { 0 } else { i - body.parent },
+            behind: if i == root { 0 } else { i.0 - body.parent.0 },
             at,
             follows: body.coordinates.mimic.is_some(),
             is_link: body.link.is_some(),
@@ -137,7 +138,7 @@ mod tests {
 
     fn roots(parts: ModelParts, width: usize) -> Vec<(Vec<usize>, usize)> {
         let model = Model::from_parts(parts).unwrap();
-        isomorphic_branches(&model, width).into_iter().map(|l| (l.roots, l.bodies)).collect()
+        isomorphic_branches(&model, width).into_iter().map(|l| (l.roots.iter().map(|root| root.0).collect(), l.bodies)).collect()
     }
 
     /// A trunk with two legs of two joints.
@@ -156,7 +157,7 @@ mod tests {
     fn another_joint_or_a_follower_from_outside_makes_a_branch_stand_alone() {
         assert_eq!(roots(tree(&LEGS, &[]), 2), [(vec![2, 4], 2)]);
         let mut parts = tree(&LEGS, &[]);
-        parts.bodies[5].joint = Joint::Prismatic;
+        parts.bodies[BodyId(5)].joint = Joint::Prismatic;
         assert_eq!(roots(parts, 2), []);
         assert_eq!(roots(tree(&LEGS, &[(5, 3)]), 2), []);
     }
@@ -174,7 +175,8 @@ mod tests {
         let damped = |bodies: &[usize]| {
             let mut parts = tree(&LEGS, &[]);
             for &i in bodies {
-                parts.bodies[i].effects.joint = vec![JointEffect { effect: EffectId::damping, freedom: 0, parameters: vec![i as f64] }];
+                parts.bodies[BodyId(i)].effects.joint =
+                    vec![JointEffect { effect: EffectId::damping, freedom: 0, parameters: vec![i as f64] }];
             }
             roots(parts, 2)
         };

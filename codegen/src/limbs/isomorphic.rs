@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, Dim};
+use articulated_core::index::{BodyId, FrameId};
 use articulated_core::model::Model;
 
 use super::branches::{Limbs, isomorphic_branches};
@@ -34,19 +35,19 @@ impl IsomorphicLimbs {
         let mut alike = Self { width, limbs, q: Indices::new(), v: Indices::new(), frames: Indices::new() };
         for bodies in alike.bodies() {
             let first = &model.bodies()[bodies[0]].joint;
-            let start = |at: fn(&Model<f64>, usize) -> usize| bodies.iter().map(|&i| at(model, i)).collect::<Vec<_>>();
+            let start = |at: fn(&Model<f64>, BodyId) -> usize| bodies.iter().map(|&i| at(model, i)).collect::<Vec<_>>();
             align(&mut alike.q, &start(|m, i| m.bodies()[i].coordinates.q), first.nq());
             align(&mut alike.v, &start(|m, i| m.bodies()[i].coordinates.v), first.nv());
             let frames = frames_of(model, &bodies);
             for k in 0..frames[0].len() {
-                align(&mut alike.frames, &frames.iter().map(|f| f[k]).collect::<Vec<_>>(), 1);
+                align(&mut alike.frames, &frames.iter().map(|f| f[k].0).collect::<Vec<_>>(), 1);
             }
         }
         Some(alike)
     }
 
     /// The corresponding bodies.
-    fn bodies(&self) -> Vec<Vec<usize>> {
+    fn bodies(&self) -> Vec<Vec<BodyId>> {
         self.limbs.iter().flat_map(|l| (0..l.bodies).map(|k| l.aligned(k))).collect()
     }
 
@@ -91,9 +92,9 @@ impl IsomorphicLimbs {
 
 /// The frames of each of these bodies; empty if their numbers differ: then each frame is computed
 /// by itself.
-fn frames_of(model: &Model<f64>, bodies: &[usize]) -> Vec<Vec<usize>> {
-    let of = |&body: &usize| (0..model.frames().len()).filter(|&k| model.frames()[k].body == body).collect::<Vec<_>>();
-    let frames: Vec<Vec<usize>> = bodies.iter().map(of).collect();
+fn frames_of(model: &Model<f64>, bodies: &[BodyId]) -> Vec<Vec<FrameId>> {
+    let of = |&body: &BodyId| model.frames().ids().filter(|&k| model.frames()[k].body == body).collect::<Vec<_>>();
+    let frames: Vec<Vec<FrameId>> = bodies.iter().map(of).collect();
     let alike = frames.iter().all(|f| f.len() == frames[0].len());
     if alike { frames } else { vec![Vec::new(); bodies.len()] }
 }

@@ -124,7 +124,7 @@ mod tests {
     fn where_one_leg_lacks_a_frame_the_others_stand_for_themselves() {
         let model = walker(4, &mut 7);
         let third = branches::isomorphic_branches(&model, 4)[0].roots[2];
-        let model = model.changed(|parts| parts.frames.retain(|frame| frame.body != third));
+        let model = model.changed(|parts| parts.frames = parts.frames.iter().filter(|frame| frame.body != third).cloned().collect());
         let (alike, spec) = (IsomorphicLimbs::of(&model, 4).unwrap(), FunctionSpec::parse("placements").unwrap());
         let strategy = [Strategy::plain(ways(&spec.parts[0], &model)[0].0, usize::MAX)];
         let [plain, lanes] = [trace(&spec, &strategy, &model, &[]), trace_in_lanes(&spec, &strategy, &model, &alike)];

@@ -2,6 +2,7 @@
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::AngularKinematics;
+use articulated_core::index::BodyId;
 use articulated_core::spatial::Vector3;
 
 use super::view::View;
@@ -15,7 +16,7 @@ impl<S: Scalar> View<S> {
     /// along an axis of its parent, where to multiply by it is to choose a column.
     #[must_use]
     pub fn with_axis_accelerations(mut self) -> Self {
-        let one = |i: usize| {
+        let one = |i: BodyId| {
             let body = &self.model.bodies()[i];
             let along = body.joint.is_rotation_about_axis() && lies_along_one(&body.placement.rotation.column(2).into_owned());
             let moments = &self.torque_inertia(i).second;
@@ -26,7 +27,7 @@ impl<S: Scalar> View<S> {
                 false => AngularKinematics::AngularAcceleration,
             }
         };
-        let moving = (1..self.model.bodies().len()).map(one);
+        let moving = self.model.outward().map(one);
         self.formulation.kinematics = std::iter::once(AngularKinematics::AngularAcceleration).chain(moving).collect();
         self
     }

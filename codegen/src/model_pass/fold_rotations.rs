@@ -1,6 +1,7 @@
 //! Rotations of frames at a configuration, folded into the constants of their bodies.
 
 use articulated_core::Scalar;
+use articulated_core::index::{BodyId, ById};
 use articulated_core::joint::{Angle, JointLaw, Revolute};
 use articulated_core::model::{Body, Model};
 use articulated_core::spatial::Matrix3;
@@ -31,9 +32,9 @@ impl<S: Scalar> View<S> {
     pub fn fold_rotations_into_constants(&self, q: &[S], which: FoldedRotations) -> Self {
         let View { model, mut formulation } = self.clone();
         let stays = self.stays(which);
-        let mut folded: Vec<Angle<S>> = vec![Angle::zero(); self.model.bodies().len()];
+        let mut folded: ById<BodyId, Angle<S>> = ById::<BodyId, _>::from(vec![Angle::zero(); self.model.bodies().len()]);
         let model = model.without_frames().changed(|parts| {
-            for (i, to) in parts.bodies.iter_mut().enumerate().skip(1) {
+            for (i, to) in parts.bodies.with_ids_mut().skip(1) {
                 let from = &self.model.bodies()[i];
                 let carried = folded[from.parent];
                 let in_row = stays[i] && stays[from.parent] && continues(&self.model, from);
@@ -58,7 +59,7 @@ impl<S: Scalar> View<S> {
     /// What [`View::fold_rotations_into_constants`] has to choose from: nothing where no body is of
     /// the kind.
     pub fn foldable_rotations(&self) -> Vec<FoldedRotations> {
-        let none = vec![false; self.model.bodies().len()];
+        let none = ById::<BodyId, _>::from(vec![false; self.model.bodies().len()]);
         let [parallel, all] = [FoldedRotations::Parallel, FoldedRotations::ParallelAndLast].map(|which| self.stays(which));
         let mut choices = Vec::new();
         choices.extend((parallel != none).then_some(FoldedRotations::Parallel));
@@ -67,10 +68,10 @@ impl<S: Scalar> View<S> {
     }
 
     /// Whether the frame of each body stays.
-    fn stays(&self, which: FoldedRotations) -> Vec<bool> {
+    fn stays(&self, which: FoldedRotations) -> ById<BodyId, bool> {
         let (model, last) = (&self.model, which == FoldedRotations::ParallelAndLast);
-        let mut stays = vec![last; model.bodies().len()];
-        stays[0] = false;
+        let mut stays = ById::<BodyId, _>::from(vec![last; model.bodies().len()]);
+        stays[BodyId::BASE] = false;
         model.outward().for_each(|i| stays[model.bodies()[i].parent] = false);
         for i in model.outward() {
             let body = &model.bodies()[i];
@@ -87,5 +88,5 @@ impl<S: Scalar> View<S> {
 /// parent's.
 fn continues<S: Scalar>(model: &Model<S>, body: &Body<S>) -> bool {
     let rotates = |body: &Body<S>| body.joint.is_rotation_about_axis();
-    body.parent != 0 && rotates(body) && rotates(&model.bodies()[body.parent]) && body.placement.rotation == Matrix3::identity()
+    body.parent != BodyId::BASE && rotates(body) && rotates(&model.bodies()[body.parent]) && body.placement.rotation == Matrix3::identity()
 }

@@ -1,6 +1,7 @@
 //! Places on the axes of joints where something vanishes.
 
 use articulated_core::Scalar;
+use articulated_core::index::{BodyId, ById};
 use articulated_core::model::{Body, Model};
 use articulated_core::spatial::{SpatialInertia, Vector3, rotate, rotate_back};
 
@@ -11,9 +12,9 @@ const MOST: usize = 6;
 
 /// For each body shifts of its frame, in its axes, m; none the first.
 pub(super) struct Places<S> {
-    pub(super) all: Vec<Vec<Vector3<S>>>,
+    pub(super) all: ById<BodyId, Vec<Vector3<S>>>,
     /// How far a frame may be shifted: as far as the offsets there reach.
-    reach: Vec<S>,
+    reach: ById<BodyId, S>,
 }
 
 impl<S: Scalar> Places<S> {
@@ -21,11 +22,11 @@ impl<S: Scalar> Places<S> {
     /// number less.
     pub(super) fn of(model: &Model<S>) -> Self {
         let length = |body: &Body<S>| body.placement.position.fold(S::zero(), |sum, x| sum + x.abs());
-        let mut reach: Vec<S> = model.bodies().iter().map(length).collect();
+        let mut reach: ById<BodyId, S> = model.bodies().iter().map(length).collect();
         for i in model.inward() {
             reach[model.bodies()[i].parent] += length(&model.bodies()[i]);
         }
-        let mut places = Self { all: vec![vec![Vector3::zeros()]; model.bodies().len()], reach };
+        let mut places = Self { all: vec![vec![Vector3::zeros()]; model.bodies().len()].into(), reach };
         for i in model.outward() {
             places.without_moments(model, i);
         }
@@ -38,7 +39,7 @@ impl<S: Scalar> Places<S> {
         places
     }
 
-    fn without_moments(&mut self, model: &Model<S>, i: usize) {
+    fn without_moments(&mut self, model: &Model<S>, i: BodyId) {
         let (o, joint, inertia) = (S::zero(), model.bodies()[i].joint, &model.bodies()[i].inertia);
         if joint.is_rotation_about_axis() {
             // Σ_xz − h_x d = 0, Σ_yz − h_y d = 0
@@ -52,7 +53,7 @@ impl<S: Scalar> Places<S> {
     }
 
     /// Shifts of the parent of body `i` to where that lies in the parent's xy-plane.
-    fn level_with_child(&mut self, model: &Model<S>, i: usize) {
+    fn level_with_child(&mut self, model: &Model<S>, i: BodyId) {
         let x = &model.bodies()[i].placement;
         for k in 0..self.all[i].len() {
             let at = x.position + rotate(&x.rotation, self.all[i][k]);
@@ -60,7 +61,7 @@ impl<S: Scalar> Places<S> {
         }
     }
 
-    fn without_offset(&mut self, model: &Model<S>, i: usize) {
+    fn without_offset(&mut self, model: &Model<S>, i: BodyId) {
         let (o, x, parent) = (S::zero(), &model.bodies()[i].placement, model.bodies()[i].parent);
         let z = x.rotation.column(2);
         for k in 0..self.all[parent].len() {
@@ -74,9 +75,9 @@ impl<S: Scalar> Places<S> {
     }
 
     /// Adds a shift, or what of it the joint allows, if it is new and within reach.
-    fn add(&mut self, model: &Model<S>, i: usize, shift: Vector3<S>) {
+    fn add(&mut self, model: &Model<S>, i: BodyId, shift: Vector3<S>) {
         let (o, joint) = (S::zero(), model.bodies()[i].joint);
-        let shift = if joint.is_rotation_about_axis() && i != 0 {
+        let shift = if joint.is_rotation_about_axis() && !i.is_base() {
             Vector3::new(o, o, shift.z)
         } else if joint.is_translation_along_axis() {
             shift

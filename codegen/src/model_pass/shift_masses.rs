@@ -1,6 +1,7 @@
 //! Shifts mass on joint axes from parents to children where fewer numbers remain.
 
 use articulated_core::Scalar;
+use articulated_core::index::{BodyId, ById};
 use articulated_core::model::{Body, Model, regroup_body, subtract};
 use articulated_core::spatial::SpatialInertia;
 
@@ -24,7 +25,7 @@ impl<S: Scalar> View<S> {
     /// # Panics
     /// If `carried` is not as long as there are bodies.
     #[must_use]
-    pub fn with_shifted_masses(mut self, carried: &[S]) -> Self {
+    pub fn with_shifted_masses(mut self, carried: &ById<BodyId, S>) -> Self {
         let mut model = self.model.clone();
         let needs_force = forces_shifted_to_parents(&model);
         for i in self.model.inward() {
@@ -41,22 +42,22 @@ impl<S: Scalar> View<S> {
 
 /// Whether inverse dynamics needs the force on each body, as there is a lever somewhere on its path
 /// to the root, or a joint that moves its origin.
-fn forces_shifted_to_parents<S: Scalar>(model: &Model<S>) -> Vec<bool> {
-    let mut needs_force = vec![false; model.bodies().len()];
+fn forces_shifted_to_parents<S: Scalar>(model: &Model<S>) -> ById<BodyId, bool> {
+    let mut needs_force = ById::<BodyId, _>::from(vec![false; model.bodies().len()]);
     for i in model.outward() {
         let Body { joint, parent, .. } = model.bodies()[i];
-        needs_force[i] = !joint.is_rotation_about_axis() || parent != 0 && (needs_force[parent] || counts_an_offset(model, i));
+        needs_force[i] = !joint.is_rotation_about_axis() || parent != BodyId::BASE && (needs_force[parent] || counts_an_offset(model, i));
     }
     needs_force
 }
 
 /// Whether mass may move from the parent to body `i`: a single child only, so that isomorphic limbs
 /// stay isomorphic, and of the parent more than I_zz is felt.
-fn takes_mass<S: Scalar>(model: &Model<S>, i: usize) -> bool {
+fn takes_mass<S: Scalar>(model: &Model<S>, i: BodyId) -> bool {
     let parent = model.bodies()[i].parent;
-    let first = model.bodies()[parent].parent == 0 && model.bodies()[parent].joint.is_rotation_about_axis();
+    let first = model.bodies()[parent].parent == BodyId::BASE && model.bodies()[parent].joint.is_rotation_about_axis();
     let alone = model.outward().filter(|&k| model.bodies()[k].parent == parent).take(2).count() == 1;
-    model.bodies()[i].joint.is_rotation_about_axis() && parent != 0 && !first && alone
+    model.bodies()[i].joint.is_rotation_about_axis() && parent != BodyId::BASE && !first && alone
 }
 
 /// The inertias of a body and of its parent.
@@ -64,7 +65,7 @@ type Pair<S> = (SpatialInertia<S>, SpatialInertia<S>);
 
 /// Those of body `i` and of its parent that take fewest instructions; `None` if these are what they
 /// have.
-fn cheapest<S: Scalar>(model: &Model<S>, i: usize, needs_force: &[bool], most: S) -> Option<Pair<S>> {
+fn cheapest<S: Scalar>(model: &Model<S>, i: BodyId, needs_force: &ById<BodyId, bool>, most: S) -> Option<Pair<S>> {
     let (body, parent) = (&model.bodies()[i], &model.bodies()[model.bodies()[i].parent]);
     // The parent gives away what it can in turn.
     let kept = |own: &SpatialInertia<S>| parent.joint.regroupable(own).map_or(*own, |given| subtract(*own, given));

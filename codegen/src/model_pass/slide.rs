@@ -1,6 +1,7 @@
 //! Frames slid along the axes of their joints, to where offsets and moments vanish.
 
 use articulated_core::Scalar;
+use articulated_core::index::{BodyId, ById};
 use articulated_core::model::{Model, regroup};
 use articulated_core::spatial::Vector3;
 
@@ -24,7 +25,7 @@ pub fn slide<S: Scalar>(view: View<S>) -> View<S> {
         return View { model, formulation };
     }
     let model = model.changed(|parts| {
-        for (i, body) in parts.bodies.iter_mut().enumerate().skip(1) {
+        for (i, body) in parts.bodies.with_ids_mut().skip(1) {
             body.placement.position = offset(body, shifts[i], shifts[body.parent]);
             body.inertia = shifted(&body.inertia, shifts[i]);
             body.effects.body.iter_mut().for_each(|e| e.placement.position -= shifts[i]);
@@ -54,15 +55,15 @@ struct Plan<'a, S> {
     places: Places<S>,
     /// For each body and each place of its parent: its own place, and whether the force is shifted
     /// to the parent there.
-    best: Vec<Vec<ByForce<(usize, bool)>>>,
+    best: ById<BodyId, Vec<ByForce<(usize, bool)>>>,
 }
 
 impl<'a, S: Scalar> Plan<'a, S> {
     fn of(model: &'a Model<S>) -> Self {
         let places = Places::of(model);
-        let mut best = vec![Vec::new(); model.bodies().len()];
+        let mut best = ById::<BodyId, _>::from(vec![Vec::new(); model.bodies().len()]);
         // What a body costs with all that it carries, by its place.
-        let mut costs: Vec<Vec<ByForce<u32>>> = places.all.iter().map(|p| vec![[0; 2]; p.len()]).collect();
+        let mut costs: ById<BodyId, Vec<ByForce<u32>>> = places.all.iter().map(|p| vec![[0; 2]; p.len()]).collect();
         for i in model.inward() {
             let parent = model.bodies()[i].parent;
             for (cost, shift) in costs[i].iter_mut().zip(&places.all[i]) {
@@ -81,8 +82,8 @@ impl<'a, S: Scalar> Plan<'a, S> {
     }
 
     /// The shift of each body's frame, in its axes, m.
-    fn shifts(&self) -> Vec<Vector3<S>> {
-        let mut chosen = vec![(0, false); self.model.bodies().len()];
+    fn shifts(&self) -> ById<BodyId, Vector3<S>> {
+        let mut chosen = ById::<BodyId, _>::from(vec![(0, false); self.model.bodies().len()]);
         for i in self.model.outward() {
             let (at, needed) = chosen[self.model.bodies()[i].parent];
             chosen[i] = self.best[i][at][usize::from(needed)];
@@ -104,9 +105,9 @@ fn cheapest(costs: &[ByForce<u32>], numbers: &[u32], needed: bool) -> ((usize, b
 }
 
 /// The cost of the moments of body `i` at a place.
-fn standing<S: Scalar>(model: &Model<S>, i: usize, shift: Vector3<S>) -> u32 {
+fn standing<S: Scalar>(model: &Model<S>, i: BodyId, shift: Vector3<S>) -> u32 {
     let (joint, inertia) = (model.bodies()[i].joint, shifted(&model.bodies()[i].inertia, shift));
-    if model.bodies()[i].parent == 0 {
+    if model.bodies()[i].parent == BodyId::BASE {
         0
     } else if joint.is_rotation_about_axis() {
         MOMENT * count(&[inertia.second.m13, inertia.second.m23])
@@ -119,15 +120,15 @@ fn standing<S: Scalar>(model: &Model<S>, i: usize, shift: Vector3<S>) -> u32 {
 
 /// How many numbers of the offset of body `i` count. On the base, which stands still, none does,
 /// and on a body that only turns about z none along z.
-fn offsets<S: Scalar>(model: &Model<S>, i: usize, shift: Vector3<S>, parent: Vector3<S>) -> u32 {
+fn offsets<S: Scalar>(model: &Model<S>, i: BodyId, shift: Vector3<S>, parent: Vector3<S>) -> u32 {
     let body = &model.bodies()[i];
     let below = &model.bodies()[body.parent];
-    let steady = below.parent == 0 && below.joint.is_rotation_about_axis();
-    let counted = if body.parent == 0 { 0 } else { 3 - usize::from(steady) };
+    let steady = below.parent == BodyId::BASE && below.joint.is_rotation_about_axis();
+    let counted = if body.parent == BodyId::BASE { 0 } else { 3 - usize::from(steady) };
     count(&offset(body, shift, parent).as_slice()[..counted])
 }
 
 /// Whether inverse dynamics needs the lever of body `i`.
-pub(super) fn counts_an_offset<S: Scalar>(model: &Model<S>, i: usize) -> bool {
+pub(super) fn counts_an_offset<S: Scalar>(model: &Model<S>, i: BodyId) -> bool {
     offsets(model, i, Vector3::zeros(), Vector3::zeros()) > 0
 }

@@ -1,6 +1,7 @@
 //! Drops the rotation of the frames of axisymmetric bodies.
 
 use articulated_core::Scalar;
+use articulated_core::index::{BodyId, ById};
 use articulated_core::model::Body;
 use articulated_core::spatial::{Matrix3, SpatialInertia, Vector3};
 
@@ -16,11 +17,11 @@ use super::zeros::or_zero;
 /// joint torques.
 pub fn drop_symmetric_rotation<S: Scalar>(view: View<S>) -> View<S> {
     let View { model, mut formulation } = view;
-    let mut carries = vec![false; model.bodies().len()];
+    let mut carries = ById::<BodyId, _>::from(vec![false; model.bodies().len()]);
     model.outward().for_each(|i| carries[model.bodies()[i].parent] = true);
     model.frames().iter().for_each(|frame| carries[frame.body] = true);
     let model = model.changed(|parts| {
-        for (i, body) in parts.bodies.iter_mut().enumerate().skip(1).filter(|(i, _)| !carries[*i]) {
+        for (i, body) in parts.bodies.with_ids_mut().skip(1).filter(|(i, _)| !carries[*i]) {
             if body.joint.is_rotation_about_axis() && body.effects.body.is_empty() && made_axisymmetric(body) {
                 formulation.rotations[i].share = S::zero();
             }

@@ -2,6 +2,7 @@
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::Formulation;
+use articulated_core::index::{BodyId, ById, FrameId};
 use articulated_core::joint::Angle;
 use articulated_core::model::{Body, BodyLink, ModelParts};
 use articulated_core::spatial::{Matrix3, Placement, Vector3, nearest_rotation, rotate_back};
@@ -20,11 +21,11 @@ use super::zeros::{count, or_zero, within};
 /// are in space.
 pub fn turn<S: Scalar>(view: View<S>) -> View<S> {
     let View { model, mut formulation } = view;
-    let mut hanging = vec![Hanging::default(); model.bodies().len()];
+    let mut hanging = ById::<BodyId, _>::from(vec![Hanging::default(); model.bodies().len()]);
     model.outward().for_each(|i| hanging[model.bodies()[i].parent].bodies.push(i));
-    model.frames().iter().enumerate().for_each(|(k, frame)| hanging[frame.body].frames.push(k));
+    model.frames().with_ids().for_each(|(k, frame)| hanging[frame.body].frames.push(k));
     let model = model.changed(|parts| {
-        for (i, hanging) in hanging.iter().enumerate().skip(1) {
+        for (i, hanging) in hanging.with_ids().skip(1) {
             let body = &parts.bodies[i];
             if !body.joint.is_rotation_about_axis() || !known(&body.placement.rotation) {
                 continue;
@@ -34,7 +35,7 @@ pub fn turn<S: Scalar>(view: View<S>) -> View<S> {
                 turn_body(parts, i, &angle, hanging);
             }
             // On the base only gravity is turned, and that once and for all.
-            if parts.bodies[i].parent != 0 {
+            if parts.bodies[i].parent != BodyId::BASE {
                 count_from_there(&mut parts.bodies[i], &mut formulation, i);
             }
         }
@@ -45,8 +46,8 @@ pub fn turn<S: Scalar>(view: View<S>) -> View<S> {
 /// Children of a body: other bodies, and frames of links.
 #[derive(Clone, Default)]
 struct Hanging {
-    bodies: Vec<usize>,
-    frames: Vec<usize>,
+    bodies: Vec<BodyId>,
+    frames: Vec<FrameId>,
 }
 
 /// Instructions for a number of a rotation (of angular velocity and acceleration, acceleration,
@@ -60,7 +61,7 @@ const ANGLE: u32 = 4;
 
 /// The best angle of body `i` for its children, among zero and the angles that bring the axis of a
 /// child into a coordinate plane.
-fn best<S: Scalar>(bodies: &[Body<S>], i: usize, children: &[usize]) -> Angle<S> {
+fn best<S: Scalar>(bodies: &ById<BodyId, Body<S>>, i: BodyId, children: &[BodyId]) -> Angle<S> {
     let mut best: Option<(u32, Angle<S>)> = None;
     for child in children.iter().map(|&k| &bodies[k]).filter(|b| known(&b.placement.rotation)) {
         let z = child.placement.rotation.column(2);
@@ -83,7 +84,7 @@ fn best<S: Scalar>(bodies: &[Body<S>], i: usize, children: &[usize]) -> Angle<S>
 }
 
 /// The cost of body `i` and of the rotations and offsets of its children after a turn.
-fn cost<S: Scalar>(bodies: &[Body<S>], i: usize, angle: &Angle<S>, children: &[usize]) -> u32 {
+fn cost<S: Scalar>(bodies: &ById<BodyId, Body<S>>, i: BodyId, angle: &Angle<S>, children: &[BodyId]) -> u32 {
     let inertia = bodies[i].inertia.turned(&angle.rotation().transpose());
     let (h, s) = (inertia.first, inertia.second);
     let own = FIRST * count(&[h.x, h.y]) + SECOND * count(&[s.m12, s.m13, s.m23]) + if is_quarter(angle) { 0 } else { ANGLE };
@@ -102,7 +103,7 @@ fn is_quarter<S: Scalar>(angle: &Angle<S>) -> bool {
 }
 
 /// Turns the frame of body `i` about its axis, with the joint's frame.
-fn turn_body<S: Scalar>(parts: &mut ModelParts<S>, i: usize, angle: &Angle<S>, hanging: &Hanging) {
+fn turn_body<S: Scalar>(parts: &mut ModelParts<S>, i: BodyId, angle: &Angle<S>, hanging: &Hanging) {
     let rotation = angle.rotation();
     let body = &mut parts.bodies[i];
     body.placement.rotation = nearest_rotation(&(body.placement.rotation * rotation).map(tidy));
@@ -120,7 +121,7 @@ fn turn_body<S: Scalar>(parts: &mut ModelParts<S>, i: usize, angle: &Angle<S>, h
 
 /// Replaces the fixed rotation of body `i` by the plain one about the same axis, and counts the
 /// joint's angle from there.
-fn count_from_there<S: Scalar>(body: &mut Body<S>, formulation: &mut Formulation<S>, i: usize) {
+fn count_from_there<S: Scalar>(body: &mut Body<S>, formulation: &mut Formulation<S>, i: BodyId) {
     body.placement.rotation = body.placement.rotation.map(tidy);
     if let Some((rotation, angle)) = plain(&body.placement.rotation) {
         body.placement.rotation = rotation;

@@ -1,6 +1,7 @@
 //! The same robot with its lengths measured in another unit.
 
 use articulated_core::Scalar;
+use articulated_core::index::BodyId;
 use articulated_core::model::Model;
 use articulated_core::spatial::{SpatialInertia, Vector3};
 
@@ -48,7 +49,8 @@ impl View<f64> {
     /// this order.
     pub fn units(&self) -> Vec<f64> {
         let model = &self.model;
-        let levers = model.outward().map(|i| &model.bodies()[i]).filter(|body| body.parent != 0).map(|body| body.placement.position);
+        let levers =
+            model.outward().map(|i| &model.bodies()[i]).filter(|body| body.parent != BodyId::BASE).map(|body| body.placement.position);
         let moments = model.outward().map(|i| self.torque_inertia(i).first.map(|h| 1.0 / h));
         let masses = model.outward().map(|i| Vector3::x() / self.torque_inertia(i).mass.sqrt());
         let mut units = Vec::new();

@@ -2,6 +2,7 @@
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Formulation, FrameRotation, Function, FunctionError, Way, Workspace};
+use articulated_core::index::{BodyId, ById};
 use articulated_core::model::{Body, Model, ModelParts};
 use articulated_core::spatial::SpatialInertia;
 
@@ -18,7 +19,7 @@ pub struct View<S> {
 impl<S: Scalar> View<S> {
     /// Of a model as it is.
     pub fn new(model: Model<S>) -> Self {
-        let rotations = vec![FrameRotation::of_joint(); model.bodies().len()];
+        let rotations = ById::from(vec![FrameRotation::of_joint(); model.bodies().len()]);
         Self { model, formulation: Formulation { rotations, ..Formulation::default() } }
     }
 
@@ -33,19 +34,19 @@ impl<S: Scalar> View<S> {
     }
 
     /// What the view has of body `i`, with `f` of each constant, always in the same order.
-    pub(crate) fn map_body<T: Scalar>(&self, i: usize, f: impl Fn(S) -> T + Copy) -> BodyView<T> {
+    pub(crate) fn map_body<T: Scalar>(&self, i: BodyId, f: impl Fn(S) -> T + Copy) -> BodyView<T> {
         let body = self.model.bodies()[i].map(f);
         let rotation = self.formulation.rotations[i].map(f);
         BodyView { body, rotation, torque_inertia: self.formulation.torque_inertias.get(i).map(|inertia| inertia.map(f)) }
     }
 
     /// Whether the frame of body `i` rotates with its joint.
-    pub fn rotates(&self, i: usize) -> bool {
+    pub fn rotates(&self, i: BodyId) -> bool {
         !self.formulation.rotations[i].share.is_zero()
     }
 
     /// Mass properties of body `i` for inverse dynamics.
-    pub(super) fn torque_inertia(&self, i: usize) -> &SpatialInertia<S> {
+    pub(super) fn torque_inertia(&self, i: BodyId) -> &SpatialInertia<S> {
         self.formulation.torque_inertias.get(i).unwrap_or(&self.model.bodies()[i].inertia)
     }
 }
@@ -59,7 +60,7 @@ pub(crate) struct BodyView<S> {
 
 impl<S: Scalar> BodyView<S> {
     /// Replaces what a view, taken apart, has of body `i`.
-    pub(crate) fn put(self, i: usize, parts: &mut ModelParts<S>, formulation: &mut Formulation<S>) {
+    pub(crate) fn put(self, i: BodyId, parts: &mut ModelParts<S>, formulation: &mut Formulation<S>) {
         parts.bodies[i] = self.body;
         formulation.rotations[i] = self.rotation;
         if let (Some(to), Some(inertia)) = (formulation.torque_inertias.get_mut(i), self.torque_inertia) {

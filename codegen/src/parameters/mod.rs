@@ -19,6 +19,7 @@ use articulated_core::algorithm::PARAMETERS;
 use articulated_core::description::{Description, JointId, LinkId};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::effect::{Applied, Effect, EffectId, On, effect};
+use articulated_core::index::{BodyId, FrameId};
 use articulated_core::model::{Model, ModelParts};
 use articulated_core::spatial::{Placement, SpatialInertia, Vector3};
 use articulated_scene::BuiltRobot;
@@ -57,7 +58,7 @@ pub struct Parameter {
     kind: Kind,
     /// The body that it changes, and the frame that it is given in, in that body or, for an origin,
     /// in the parent's.
-    body: usize,
+    body: BodyId,
     frame: Placement<f64>,
     /// The joint or link.
     on: String,
@@ -129,17 +130,17 @@ struct Robot<'a> {
     model: &'a Model<f64>,
     links: HashMap<String, LinkId>,
     joints: HashMap<String, JointId>,
-    frames: HashMap<String, usize>,
+    frames: HashMap<String, FrameId>,
     /// The first body of each joint: a planar or universal joint has several.
-    bodies: HashMap<String, usize>,
+    bodies: HashMap<String, BodyId>,
 }
 
 impl<'a> Robot<'a> {
     fn of(description: &'a mut Description, model: &'a Model<f64>) -> Self {
         let links = indices(description.links.iter().map(|l| &l.name), LinkId);
         let joints = indices(description.joints.iter().map(|j| &j.name), JointId);
-        let frames = indices(model.frames().iter().map(|f| &f.name), |k| k);
-        let bodies = indices(model.bodies().iter().skip(1).map(|b| &b.name), |k| k + 1);
+        let frames = indices(model.frames().iter().map(|f| &f.name), FrameId);
+        let bodies = indices(model.bodies().iter().skip(1).map(|b| &b.name), |k| BodyId(k + 1));
         Self { description, model, links, joints, frames, bodies }
     }
 
@@ -159,7 +160,16 @@ impl<'a> Robot<'a> {
     fn gravity(&self, at: usize) -> Parameter {
         let what = "gravity in the world frame, m/s²".to_owned();
         let nominal = self.model.gravity().as_slice().to_vec();
-        Parameter { what, name: GRAVITY.into(), at, nominal, kind: Kind::Gravity, body: 0, frame: Placement::identity(), on: String::new() }
+        Parameter {
+            what,
+            name: GRAVITY.into(),
+            at,
+            nominal,
+            kind: Kind::Gravity,
+            body: BodyId::BASE,
+            frame: Placement::identity(),
+            on: String::new(),
+        }
     }
 
     fn effect(&self, row: &Effect, name: &str, at: usize) -> Result<Parameter, String> {
@@ -203,7 +213,7 @@ impl<'a> Robot<'a> {
             return Err(self.no_link(name));
         };
         let frame = self.frames.get(name).map(|k| &self.model.frames()[*k]).ok_or_else(|| "the link is no frame".to_owned())?;
-        if frame.body == 0 {
+        if frame.body == BodyId::BASE {
             return Err(format!("link {name:?} is fixed to the base: no function depends on it"));
         }
         // The link itself is left without what becomes an input.

@@ -5,6 +5,7 @@
 //! not: along a long chain this scale is the smaller one, and the one that counts.
 
 use articulated_core::algorithm::FunctionId;
+use articulated_core::index::{BodyId, ById};
 use articulated_core::joint::Joint;
 use articulated_core::model::{Body, Model};
 use articulated_core::nalgebra::Vector3;
@@ -45,8 +46,8 @@ struct Norms {
 
 /// Of inverse dynamics: accelerations add up outward, wrenches and their arms inward.
 fn torque(model: &Model<f64>, q: &[f64], v: &[f64], a: &[f64], gravity: f64) -> Vec<f64> {
-    let mut norms = vec![Norms::default(); model.bodies().len()];
-    norms[0].acceleration = gravity;
+    let mut norms: ById<BodyId, Norms> = vec![Norms::default(); model.bodies().len()].into();
+    norms[BodyId::BASE].acceleration = gravity;
     for i in model.outward() {
         norms[i] = carried(&model.bodies()[i], &norms[model.bodies()[i].parent], q, v, a);
     }
@@ -81,7 +82,7 @@ fn carried(body: &Body<f64>, parent: &Norms, q: &[f64], v: &[f64], a: &[f64]) ->
         Joint::Revolute | Joint::Spherical => 0.0,
     };
     // The base stands still: no result depends on how far a body is from it.
-    let arm = if body.parent == 0 { 0.0 } else { body.placement.position.norm() + moved };
+    let arm = if body.parent == BodyId::BASE { 0.0 } else { body.placement.position.norm() + moved };
     let spin = parent.spin + turn;
     let spin_rate = parent.spin_rate + parent.spin * turn + turn_rate;
     let u = |rate: f64, spin: f64| rate + spin * spin;

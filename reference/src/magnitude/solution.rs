@@ -202,7 +202,7 @@ mod tests {
     fn no_scale_lets_everything_pass() {
         for name in ["panda_like", "quadruped"] {
             let model = bundled(name);
-            let tip = [model.frames()[model.frames().len() - 1].name.clone()];
+            let tip = [model.frames().last().expect("a frame").name.clone()];
             let model = model.with_frames(&tip).unwrap();
             for f in functions::<f64>().iter().filter(|f| f.inverts_mass_matrix()) {
                 for number in 0..8 {

@@ -7,6 +7,7 @@ use crate::Scalar;
 use crate::algorithm::argument::{dims, told};
 use crate::algorithm::table::for_each_function;
 use crate::algorithm::{Argument, FunctionError, FunctionId, Shape, Workspace};
+use crate::index::FrameId;
 use crate::model::{JointInfo, JointRow, Model};
 
 macro_rules! methods {
@@ -131,7 +132,7 @@ impl<S: Scalar> Dynamics<S> for Model<S> {
     }
 
     fn frame_name(&self, frame: usize) -> Option<&str> {
-        self.frames.get(frame).map(|f| f.name.as_str())
+        self.frames.get(FrameId(frame)).map(|f| f.name.as_str())
     }
 
     fn has_motors(&self) -> bool {

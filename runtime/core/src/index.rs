@@ -3,6 +3,25 @@
 //! A link of a description is not a body of a model, and neither is a frame: with an index type for
 //! each, a program that takes one for the other does not compile. At run time an index is a
 //! `usize`.
+//!
+//! ```
+//! use articulated_core::model::{Frame, Model};
+//!
+//! fn mass_of_body(model: &Model<f64>, frame: &Frame<f64>) -> f64 {
+//!     model.bodies()[frame.body].inertia.mass
+//! }
+//! ```
+//!
+//! ```compile_fail,E0308
+//! use articulated_core::model::{Frame, Model};
+//!
+//! fn placement_of_link(model: &Model<f64>, frame: &Frame<f64>) -> [f64; 12] {
+//!     model.frames()[frame.body].placement.to_array() // the index of a body
+//! }
+//! ```
+//!
+//! Coordinates and degrees of freedom are places in the slices q and v that a caller gives, and
+//! stay `usize`.
 
 use alloc::vec::Vec;
 use core::marker::PhantomData;
@@ -44,6 +63,21 @@ ids! {
     /// A joint among those of a [`Description`](crate::description::Description), in the order of
     /// the file, fixed joints too.
     JointId;
+    /// A body of a [`Model`](crate::model::Model). The base is [`BodyId::BASE`].
+    BodyId;
+    /// A frame of a [`Model`](crate::model::Model).
+    FrameId;
+}
+
+impl BodyId {
+    /// The base, the first body, which hangs on nothing.
+    pub const BASE: Self = Self(0);
+
+    /// Whether it is the base.
+    #[inline(always)]
+    pub fn is_base(self) -> bool {
+        self.0 == 0
+    }
 }
 
 /// A list that only an index of the kind `I` opens. Its slice has no ids: it is for what does not
@@ -81,6 +115,11 @@ impl<I: Id, T> ById<I, T> {
     /// All things in order, each with its index.
     pub fn with_ids(&self) -> impl ExactSizeIterator<Item = (I, &T)> + DoubleEndedIterator + Clone {
         self.all.iter().enumerate().map(|(place, thing)| (I::of(place), thing))
+    }
+
+    /// All things in order, each with its index, to be changed.
+    pub fn with_ids_mut(&mut self) -> impl ExactSizeIterator<Item = (I, &mut T)> + DoubleEndedIterator {
+        self.all.iter_mut().enumerate().map(|(place, thing)| (I::of(place), thing))
     }
 
     /// The index of the first thing for which `is` holds.

@@ -2,6 +2,7 @@
 
 use articulated_core::description::Origin;
 use articulated_core::effect::{Applied, Effect, EffectId, Enters, On, effects};
+use articulated_core::index::BodyId;
 use articulated_core::model::{FLOATING_BASE, Model};
 
 use crate::random::Random;
@@ -13,7 +14,7 @@ pub fn random_effects(random: &mut Random, model: &Model<f64>, wanted: impl Fn(E
     for effect in effects().iter().filter(|e| wanted(e.id)) {
         let names: Vec<&String> = match effect.on {
             On::Joint => model.outward().filter(|&i| can_have(model, effect.id, i)).map(|i| &model.bodies()[i].name).collect(),
-            On::Link => model.frames().iter().filter(|f| f.body != 0).map(|f| &f.name).collect(),
+            On::Link => model.frames().iter().filter(|f| !f.body.is_base()).map(|f| &f.name).collect(),
         };
         let mut taken = Vec::new();
         for name in names {
@@ -37,7 +38,7 @@ fn is_ball(model: &Model<f64>, effect: &Effect, name: &str) -> bool {
 
 /// A spring acts on no free joint, and is left out of joints that follow. A motor drives no joint
 /// that follows another.
-fn can_have(model: &Model<f64>, effect: EffectId, i: usize) -> bool {
+fn can_have(model: &Model<f64>, effect: EffectId, i: BodyId) -> bool {
     let (row, joint) = (effect.row(), model.bodies()[i].joint);
     let follows = model.bodies()[i].coordinates.mimic.is_some();
     match effect {

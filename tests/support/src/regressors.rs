@@ -3,6 +3,7 @@
 use articulated_core::algorithm::FunctionId;
 use articulated_core::description::Description;
 use articulated_core::dynamics::Dynamics;
+use articulated_core::index::BodyId;
 use articulated_core::model::Model;
 use articulated_core::spatial::{Placement, SpatialInertia};
 
@@ -16,7 +17,7 @@ const BOUND: f64 = 1e-12;
 pub fn parameters_of_links(description: &Description, model: &Model<f64>) -> Vec<f64> {
     let frame = |name: &str| &model.frames().iter().find(|frame| frame.name == name).expect("a frame of each link").placement;
     let bodies = model.bodies_of_links(description);
-    let one = |body: usize| {
+    let one = |body: BodyId| {
         let own = frame(&model.bodies()[body].link.as_ref().expect("a link").name);
         let turn = own.rotation.transpose();
         let back = Placement { rotation: turn, position: -(turn * own.position) };

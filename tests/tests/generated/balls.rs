@@ -6,6 +6,7 @@ use articulated_core::Scalar;
 use articulated_core::algorithm::{Shape, function};
 use articulated_core::description::Base;
 use articulated_core::effect::{Applied, EffectId};
+use articulated_core::index::BodyId;
 use articulated_core::spatial::Vector3;
 use articulated_core::spatial::screw::Quaternion;
 use articulated_lab::compiled::{Compiled, Rustc, Target as Processor};
@@ -177,13 +178,18 @@ fn numbers_of_springs_and_limits_of_balls_can_be_inputs() {
     let mut changed = robot.case.model.clone();
     changed = changed.changed(|parts| {
         let half = std::f64::consts::FRAC_1_SQRT_2;
-        parts.bodies[1]
+        parts.bodies[BodyId(1)]
             .effects
             .joint
             .iter_mut()
             .filter(|e| e.effect == EffectId::spring)
             .for_each(|e| e.parameters = vec![5.0, half, 0.0, 0.0, half]);
-        parts.bodies[2].effects.joint.iter_mut().filter(|e| e.effect == EffectId::limit).for_each(|e| e.parameters = vec![0.2, 7.0, 0.1]);
+        parts.bodies[BodyId(2)]
+            .effects
+            .joint
+            .iter_mut()
+            .filter(|e| e.effect == EffectId::limit)
+            .for_each(|e| e.parameters = vec![0.2, 7.0, 0.1]);
     });
     // The quaternion of any length.
     let given = [5.0, 3.0, 0.0, 0.0, 3.0, 0.2, 7.0, 0.1];

@@ -115,7 +115,7 @@ struct Held(Case);
 fn held(case: &Case) -> Held {
     let mut case = case.clone();
     for (link, frame) in case.description.links.iter_mut().zip(case.model.frames()) {
-        if frame.body != 0 {
+        if !frame.body.is_base() {
             link.inertial = None;
         }
     }

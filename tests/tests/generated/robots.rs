@@ -5,6 +5,7 @@ use std::sync::LazyLock;
 use articulated_codegen::{Generated, Options, Request, generate};
 use articulated_core::algorithm::{Function, Needs, functions};
 use articulated_core::description::Base;
+use articulated_core::index::FrameId;
 use articulated_core::model::{Frame, Model};
 use articulated_tests::case::{Case, State, read};
 use articulated_tests::program::Program;
@@ -95,7 +96,7 @@ pub(crate) fn single_states(robot: &Robot, count: usize) -> Vec<State> {
 /// The last frame, and the one in the middle.
 fn frames(model: &Model<f64>) -> Vec<String> {
     let n = model.frames().len();
-    let mut chosen = vec![model.frames()[n - 1].name.clone(), model.frames()[n / 2].name.clone()];
+    let mut chosen = vec![model.frames()[FrameId(n - 1)].name.clone(), model.frames()[FrameId(n / 2)].name.clone()];
     chosen.dedup();
     chosen
 }

@@ -4,6 +4,7 @@
 use std::collections::HashMap;
 
 use articulated_core::description::{Base, ById, CollisionShape, Description, Inertial, Link, LinkId, Origin};
+use articulated_core::index::BodyId;
 use articulated_core::model::{Frame, Model};
 use articulated_core::spatial::Placement;
 use nalgebra::{Matrix3, Rotation3, SymmetricEigen, Vector3};
@@ -210,8 +211,8 @@ impl Figure {
 
     /// Where each link is in its body; the first link of each body stands for it.
     fn links(&mut self, description: &Description, model: &Model<f64>) -> ById<LinkId, Option<Linked>> {
-        let mut drawn: Vec<Option<(usize, Placement<f64>)>> = vec![None; model.bodies().len()];
-        drawn[0] = Some((0, Placement::identity()));
+        let mut drawn: ById<BodyId, Option<(usize, Placement<f64>)>> = vec![None; model.bodies().len()].into();
+        drawn[BodyId::BASE] = Some((0, Placement::identity()));
         let mut place = |frame: &Frame<f64>| {
             let (body, first) = drawn[frame.body].get_or_insert_with(|| {
                 self.frames.push(frame.name.clone());
@@ -246,10 +247,10 @@ struct Linked {
 }
 
 /// The first body on the way to `body` that hangs on one that more than one hangs on.
-fn limb(model: &Model<f64>, mut body: usize) -> usize {
-    let children = |parent: usize| model.outward().filter(move |&i| model.bodies()[i].parent == parent).count();
+fn limb(model: &Model<f64>, mut body: BodyId) -> usize {
+    let children = |parent: BodyId| model.outward().filter(move |&i| model.bodies()[i].parent == parent).count();
     let mut limb = 0;
-    while body != 0 {
+    while !body.is_base() {
         let parent = model.bodies()[body].parent;
         if children(parent) > 1 {
             limb = 1 + model.outward().filter(|&i| i < body && children(model.bodies()[i].parent) > 1).count();

@@ -10,6 +10,7 @@ use super::effects::{self, LoadCase};
 use super::workspace::Column;
 use super::{Workspace, wrenches};
 use crate::Scalar;
+use crate::index::BodyId;
 use crate::joint::with_pose;
 use crate::joint::{JointLaw, Mount};
 use crate::model::Model;
@@ -72,7 +73,7 @@ fn solve<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], t
         eliminate_joint(model, ws, i, &tau);
     }
     core::mem::swap(&mut ws.driven, &mut tau);
-    ws.common[0].acceleration = Twist { angular: Vector3::zeros(), linear: -load.gravity };
+    ws.common[BodyId::BASE].acceleration = Twist { angular: Vector3::zeros(), linear: -load.gravity };
     for i in model.outward() {
         accelerate(model, ws, i, out);
     }
@@ -80,7 +81,7 @@ fn solve<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], t
 
 /// ω, the bias acceleration c, the bias wrench p and the placement in the parent of body `i`, and S
 /// of its joint.
-fn velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, v: &[S]) {
+fn velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: BodyId, v: &[S]) {
     let body = &model.bodies[i];
     let pose = ws.bodies[i].pose;
     let omega = ws.bodies[body.parent].motion.omega;
@@ -103,7 +104,7 @@ fn velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, v: &[S
 
 /// Eliminates the joint of body `i`, and shifts the articulated inertia and the bias wrench that
 /// remain to the parent.
-fn eliminate_joint<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, tau: &[S]) {
+fn eliminate_joint<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: BodyId, tau: &[S]) {
     let pose = ws.bodies[i].pose;
     let (mut inertia, mut bias) = (ws.articulated[i], ws.bodies[i].wrench);
     for (k, c) in ws.columns_of(i).enumerate() {
@@ -124,7 +125,7 @@ fn eliminate_joint<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize,
         }
     }
     let parent = model.bodies[i].parent;
-    if parent == 0 {
+    if parent == BodyId::BASE {
         return;
     }
     // p += I c
@@ -138,7 +139,7 @@ fn eliminate_joint<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize,
 }
 
 /// a of the joint of body `i`, and the acceleration of the body.
-fn accelerate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, out: &mut [S]) {
+fn accelerate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: BodyId, out: &mut [S]) {
     let pose = ws.bodies[i].pose;
     let (body, motion) = (&model.bodies[i], &ws.bodies[i].motion);
     // a' = X a_λ + c

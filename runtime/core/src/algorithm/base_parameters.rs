@@ -11,6 +11,7 @@ use alloc::vec::Vec;
 use super::{Workspace, inverse_dynamics_with_wrenches, random_configuration};
 use crate::Scalar;
 use crate::effect::Effects;
+use crate::index::BodyId;
 use crate::joint::Joint;
 use crate::model::Model;
 use crate::spatial::SpatialInertia;
@@ -44,7 +45,7 @@ pub struct BaseParameter {
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyParameters {
     /// Index of the body in the model.
-    pub body: usize,
+    pub body: BodyId,
     /// What regrouping leaves to it.
     pub parameters: Vec<BaseParameter>,
 }
@@ -58,7 +59,7 @@ pub struct BodyParameters {
 /// dependent.
 pub fn base_parameters(model: &Model<f64>) -> Vec<BodyParameters> {
     let mut found = ranks(&torque_columns(model, |i| left_by_regrouping(model.bodies[i].joint))).into_iter();
-    let body = |i: usize| {
+    let body = |i: BodyId| {
         let ten = model.bodies[i].inertia.parameters();
         let one = |(name, direction, value): &Direction| BaseParameter {
             name,
@@ -74,7 +75,7 @@ pub fn base_parameters(model: &Model<f64>) -> Vec<BodyParameters> {
 /// How many combinations of the ten parameters of each moving link joint torques determine: the
 /// rank of [`super::torque_regressor`].
 pub fn identifiable_parameters(model: &Model<f64>) -> usize {
-    let ten_of_link = |i: usize| if model.bodies[i].link.is_some() { ALL } else { &[] };
+    let ten_of_link = |i: BodyId| if model.bodies[i].link.is_some() { ALL } else { &[] };
     let found = ranks(&torque_columns(model, ten_of_link));
     found.iter().filter(|one| **one == Identifiability::Alone).count()
 }
@@ -128,7 +129,7 @@ fn left_by_regrouping(joint: Joint) -> &'static [Direction] {
 
 /// For each of these parameters of each body, from the tips inward, the torques of one unit of it
 /// alone, over a number of states: `[parameters][states · nv]`.
-fn torque_columns(model: &Model<f64>, parameters: impl Fn(usize) -> &'static [Direction]) -> Vec<Vec<f64>> {
+fn torque_columns(model: &Model<f64>, parameters: impl Fn(BodyId) -> &'static [Direction]) -> Vec<Vec<f64>> {
     let mut weightless = model.clone();
     // Forces of springs, drag and rotors do not depend on the parameters.
     weightless.bodies.iter_mut().for_each(|b| (b.inertia, b.effects) = (SpatialInertia::zero(), Effects::default()));
@@ -151,7 +152,7 @@ fn torque_columns(model: &Model<f64>, parameters: impl Fn(usize) -> &'static [Di
 
 /// So many states that the parameters of the bodies on one coordinate, which may be seen in its
 /// torque alone, can be told apart.
-fn number_of_states(model: &Model<f64>, parameters: &impl Fn(usize) -> &'static [Direction]) -> usize {
+fn number_of_states(model: &Model<f64>, parameters: &impl Fn(BodyId) -> &'static [Direction]) -> usize {
     let mut on_coordinate = vec![0; model.nv];
     model.outward().for_each(|i| on_coordinate[model.bodies[i].coordinates.v] += parameters(i).len());
     let all: usize = on_coordinate.iter().sum();

@@ -12,6 +12,7 @@
 use super::Workspace;
 use super::workspace::{Column, CommonState};
 use crate::Scalar;
+use crate::index::BodyId;
 use crate::joint::JointLaw;
 use crate::joint::with_pose;
 use crate::model::{Body, Model};
@@ -37,7 +38,11 @@ pub(super) fn positions<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes
     }
     for i in model.outward() {
         let body = &model.bodies[i];
-        let parent = if body.parent == 0 { CommonState { rotation: ws.common[i].base, ..ws.common[0] } } else { ws.common[body.parent] };
+        let parent = if body.parent == BodyId::BASE {
+            CommonState { rotation: ws.common[i].base, ..ws.common[BodyId::BASE] }
+        } else {
+            ws.common[body.parent]
+        };
         with_pose!(ws.bodies[i].pose, p => {
             let state = &mut ws.common[i];
             if axes == Axes::Base || !ws.centers.inside[i] {
@@ -59,12 +64,12 @@ fn from_the_center<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
     for &center in &ws.centers.bodies {
         ws.common[center].rotation = Matrix3::identity();
         let mut i = center;
-        while i != 0 {
+        while i != BodyId::BASE {
             let body = &model.bodies[i];
             // R_λ = R_i X_iᵀ
             let relative = with_pose!(ws.bodies[i].pose, p => turned(body, &p, &Matrix3::identity()));
             let rotation = ws.common[i].rotation * relative.transpose();
-            if body.parent == 0 {
+            if body.parent == BodyId::BASE {
                 ws.common[i].base = rotation;
             } else {
                 ws.common[body.parent].rotation = rotation;
@@ -86,12 +91,12 @@ pub(super) fn twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes: A
         let body = &model.bodies[i];
         let carried = match body.parent {
             // The inertial frame moves with the body's origin: in it, the base moves backward.
-            0 if moves_along(body, axes) => {
+            BodyId::BASE if moves_along(body, axes) => {
                 let at = body.coordinates.v;
                 let velocity = Vector3::new(v[at + 3], v[at + 4], v[at + 5]);
                 Twist { angular: Vector3::zeros(), linear: -rotate(&ws.common[i].rotation, velocity) }
             }
-            0 => Twist::zero(),
+            BodyId::BASE => Twist::zero(),
             parent => ws.common[parent].twist.at(ws.common[i].shift),
         };
         // V_i = V_λ + Σ S q̇
@@ -116,7 +121,7 @@ pub(super) fn accelerations<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, 
     for i in model.outward() {
         let body = &model.bodies[i];
         let carried = match body.parent {
-            0 => Twist { angular: Vector3::zeros(), linear: rotate(&ws.common[i].base, base) },
+            BodyId::BASE => Twist { angular: Vector3::zeros(), linear: rotate(&ws.common[i].base, base) },
             parent => ws.common[parent].acceleration.at(ws.common[i].shift),
         };
         // V̇_i = V̇_λ + Σ S q̈ + Ṡ q̇
@@ -158,12 +163,12 @@ pub(super) fn forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
 pub(super) fn on_the_way<S: Scalar>(
     model: &Model<S>,
     ws: &Workspace<S>,
-    i: usize,
+    i: BodyId,
     from: Vector3<S>,
     mut visit: impl FnMut(&Column<S>, Vector3<S>),
 ) {
     let (mut j, mut d) = (i, from);
-    while j != 0 {
+    while !j.is_base() {
         ws.columns_of(j).for_each(|c| visit(&ws.columns[c], d));
         d += ws.common[j].shift;
         j = model.bodies[j].parent;
@@ -176,12 +181,12 @@ pub(super) fn on_the_way<S: Scalar>(
 pub(super) fn carry<S: Scalar, const N: usize>(
     model: &Model<S>,
     ws: &Workspace<S>,
-    i: usize,
+    i: BodyId,
     mut wrenches: [Wrench<S>; N],
     mut visit: impl FnMut(bool, &[Wrench<S>; N], &Column<S>),
 ) {
     let mut j = i;
-    while j != 0 {
+    while !j.is_base() {
         for l in ws.columns_of(j) {
             visit(j == i, &wrenches, &ws.columns[l]);
         }
@@ -194,7 +199,7 @@ pub(super) fn carry<S: Scalar, const N: usize>(
 
 /// Whether the inertial frame moves with the body.
 fn moves_along<S: Scalar>(body: &Body<S>, axes: Axes) -> bool {
-    axes == Axes::Tree && body.parent == 0 && body.joint.is_unconstrained()
+    axes == Axes::Tree && body.parent == BodyId::BASE && body.joint.is_unconstrained()
 }
 
 impl<S: Scalar> CommonState<S> {

@@ -3,6 +3,7 @@
 use super::Workspace;
 use super::common::{Axes, carry, coriolis, inertias, positions, twists};
 use crate::Scalar;
+use crate::index::BodyId;
 use crate::model::Model;
 
 /// C(q, v), with C v + g = h and Ṁ − 2C skew-symmetric.
@@ -25,7 +26,7 @@ pub fn coriolis_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[
             row_and_column(model, ws, i, k, out);
         }
         let (parent, state) = (model.bodies[i].parent, ws.common[i]);
-        if parent != 0 {
+        if parent != BodyId::BASE {
             ws.common[parent].inertia += state.inertia.shifted(state.shift);
             ws.common[parent].coriolis += state.coriolis.shifted(state.shift);
         }
@@ -33,7 +34,7 @@ pub fn coriolis_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[
 }
 
 /// What column `k` of body `i` has with itself and those on the way to the base.
-fn row_and_column<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, k: usize, out: &mut [S]) {
+fn row_and_column<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: BodyId, k: usize, out: &mut [S]) {
     let (n, state, column) = (model.nv, &ws.common[i], &ws.columns[k]);
     // C_kl = S_kᵀ (B s_l + I Ṡ_l) = (Bᵀ S_k)·s_l + (I S_k)·Ṡ_l
     let held = state.inertia.apply(&column.axis);

@@ -4,6 +4,7 @@ use super::Workspace;
 use super::common::{Axes, carry, inertias, positions};
 use super::effects;
 use crate::Scalar;
+use crate::index::BodyId;
 use crate::joint::with_pose;
 use crate::joint::{JointLaw, Mount};
 use crate::model::Model;
@@ -33,7 +34,7 @@ pub fn mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], 
 /// wrenches, carried as far as its body, ask of it. Then hands them, and the inertia of all that it
 /// carries, on to the parent.
 #[inline(always)]
-fn joint<S: Scalar, P: JointLaw<S>>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, p: &P, out: &mut [S]) {
+fn joint<S: Scalar, P: JointLaw<S>>(model: &Model<S>, ws: &mut Workspace<S>, i: BodyId, p: &P, out: &mut [S]) {
     let (n, body) = (model.nv, &model.bodies[i]);
     let mount = Mount::new(*p, &body.placement);
     let (at, dofs) = (&body.coordinates, body.joint.nv());
@@ -52,11 +53,11 @@ fn joint<S: Scalar, P: JointLaw<S>>(model: &Model<S>, ws: &mut Workspace<S>, i: 
                 out[l * n + k] += inertia;
             }
         }
-        if body.parent != 0 {
+        if body.parent != BodyId::BASE {
             *wrench = mount.wrench(wrench);
         }
     }
-    if body.parent != 0 {
+    if body.parent != BodyId::BASE {
         // I_λ += X_λi I_i
         let inertia = mount.inertia(&ws.composite[i]);
         ws.composite[body.parent] += inertia;
@@ -93,7 +94,7 @@ pub(super) fn mass_matrix_in_common_axes<S: Scalar>(model: &Model<S>, ws: &mut W
             });
         }
         let parent = model.bodies[i].parent;
-        if parent != 0 {
+        if parent != BodyId::BASE {
             ws.common[parent].inertia += state.inertia.shifted(state.shift);
         }
     }

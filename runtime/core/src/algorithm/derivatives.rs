@@ -22,6 +22,7 @@ use super::ltdl::{factor, inverse, path_to_root, solve, solve_rows};
 use super::rnea::inverse_dynamics_with_wrenches;
 use super::wrenches;
 use crate::Scalar;
+use crate::index::BodyId;
 use crate::model::Model;
 use crate::spatial::{Reference, Twist, Vector3, Wrench, rotate};
 
@@ -226,9 +227,9 @@ fn curls<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
 
 /// V̇_λ × S. What hangs on the base by a revolute joint falls as the base does: then the product is
 /// taken before its factors are turned, and is nothing for a joint that stands upright.
-fn falling<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, k: usize, carried: &Twist<S>) -> Twist<S> {
+fn falling<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: BodyId, k: usize, carried: &Twist<S>) -> Twist<S> {
     let body = &model.bodies[i];
-    if body.parent != 0 || !body.joint.is_rotation_about_axis() {
+    if body.parent != BodyId::BASE || !body.joint.is_rotation_about_axis() {
         return carried.cross(&ws.columns[k].axis);
     }
     let product = body.placement.rotation.column(2).cross(&model.gravity);
@@ -237,9 +238,9 @@ fn falling<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, k: usize, c
 }
 
 /// Hands what a body and all beyond it have together to its parent.
-fn collect<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize) {
+fn collect<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: BodyId) {
     let (parent, state) = (model.bodies[i].parent, ws.common[i]);
-    if parent != 0 {
+    if parent != BodyId::BASE {
         let to = &mut ws.common[parent];
         to.inertia += state.inertia.shifted(state.shift);
         to.coriolis += state.coriolis.shifted(state.shift);
@@ -261,7 +262,7 @@ impl<S: Scalar> Matrices<'_, S> {
     }
 
     /// What column `k` of body `i` has with itself and those on the way to the base.
-    fn row_and_column(&mut self, model: &Model<S>, ws: &Workspace<S>, i: usize, k: usize) {
+    fn row_and_column(&mut self, model: &Model<S>, ws: &Workspace<S>, i: BodyId, k: usize) {
         let (n, state, column) = (model.nv, &ws.common[i], &ws.columns[k]);
         let two = S::from_f64(2.0);
         let twice_b = |omega: Vector3<S>| state.coriolis.wrench(omega * two);
@@ -294,7 +295,7 @@ impl<S: Scalar> Matrices<'_, S> {
 /// as the sweep will take all forces to do, are put right in ∂τ/∂q.
 fn external<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], wrenches: &[S], by_q: &mut [S]) {
     let reference = model.wrench_reference;
-    let mut frame = model.frames.iter().filter(|f| f.body != 0);
+    let mut frame = model.frames.iter().filter(|f| f.body != BodyId::BASE);
     wrenches::each(model, ws, q, wrenches, |ws, body, w| {
         let turn = ws.common[body].rotation;
         let w = w.turned(&turn);
@@ -310,7 +311,7 @@ fn external<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], wrenche
 /// δ_k what a unit step of k does to the wrench, less what it would do if the wrench turned with
 /// the body, S_k ×* w. In space the wrench stays as it is, but for its moment if it moves along
 /// with the point at `offset`.
-fn put_right<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, body: usize, w: &Wrench<S>, offset: Option<Vector3<S>>, by_q: &mut [S]) {
+fn put_right<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, body: BodyId, w: &Wrench<S>, offset: Option<Vector3<S>>, by_q: &mut [S]) {
     on_the_way(model, ws, body, Vector3::zeros(), |column, d| {
         let (k, axis) = (column.at, column.axis.at(d));
         let mut change = Wrench::zero() - axis.cross_wrench(w);

@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 
 use crate::Scalar;
+use crate::index::{BodyId, ById};
 use crate::joint::{Angle, Coordinates};
 use crate::spatial::SpatialInertia;
 
@@ -15,12 +16,12 @@ use crate::spatial::SpatialInertia;
 pub struct Formulation<S> {
     /// How the frames of bodies on a rotation about an axis rotate; by default as
     /// [`FrameRotation::of_joint`].
-    pub rotations: Vec<FrameRotation<S>>,
+    pub rotations: ById<BodyId, FrameRotation<S>>,
     /// Mass properties for inverse dynamics: any that have the same torques; by default the
     /// model's.
-    pub torque_inertias: Vec<SpatialInertia<S>>,
+    pub torque_inertias: ById<BodyId, SpatialInertia<S>>,
     /// What inverse dynamics finds rate matrices from.
-    pub kinematics: Vec<AngularKinematics>,
+    pub kinematics: ById<BodyId, AngularKinematics>,
 }
 
 /// How the frame of a body rotates about the axis of its joint.
@@ -51,7 +52,7 @@ pub enum AngularKinematics {
 impl<S> Default for Formulation<S> {
     /// That of the library.
     fn default() -> Self {
-        Self { rotations: Vec::new(), torque_inertias: Vec::new(), kinematics: Vec::new() }
+        Self { rotations: ById::default(), torque_inertias: ById::default(), kinematics: ById::default() }
     }
 }
 

@@ -8,6 +8,7 @@ use super::Workspace;
 use super::common::{Axes, accelerations, on_the_way, positions, twists};
 use super::workspace::Column;
 use crate::Scalar;
+use crate::index::BodyId;
 use crate::model::{Frame, Model};
 use crate::spatial::{Placement, Reference, Twist, Vector3};
 
@@ -102,7 +103,7 @@ fn frame_twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, reference: R
 
 /// In world axes, about the frame's origin; zero for the base.
 fn twist_of<S: Scalar>(ws: &Workspace<S>, frame: &Frame<S>, place: &Place<S>) -> Twist<S> {
-    if frame.body == 0 { Twist::zero() } else { ws.common[frame.body].twist.at(place.offset) }
+    if frame.body == BodyId::BASE { Twist::zero() } else { ws.common[frame.body].twist.at(place.offset) }
 }
 
 fn frame_accelerations<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, reference: Reference, q: &[S], v: &[S], a: &[S], out: &mut [S]) {
@@ -112,7 +113,7 @@ fn frame_accelerations<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, refer
     accelerations(model, ws, v, if a.is_empty() { &zeros } else { a }, Vector3::zeros());
     ws.zeros = zeros;
     for (frame, out) in model.frames.iter().zip(out.chunks_exact_mut(6)) {
-        if frame.body == 0 {
+        if frame.body == BodyId::BASE {
             out.fill(S::zero());
             continue;
         }
@@ -165,7 +166,7 @@ fn frame_jacobian_rates<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, refe
 fn columns<S: Scalar>(
     model: &Model<S>,
     ws: &Workspace<S>,
-    body: usize,
+    body: BodyId,
     out: &mut [S],
     column: impl Fn(&Column<S>, Vector3<S>) -> Twist<S>,
 ) {

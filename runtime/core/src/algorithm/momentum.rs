@@ -9,6 +9,7 @@ use super::common::{Axes, inertias, positions};
 use super::effects::LoadCase;
 use super::rnea::{momentum, recursion};
 use crate::Scalar;
+use crate::index::BodyId;
 use crate::model::Model;
 use crate::spatial::{Vector3, Wrench, rotate};
 
@@ -117,7 +118,7 @@ fn places<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]) -> Vector
     let first = model.outward().next().map_or_else(Vector3::zeros, |i| ws.common[i].shift);
     for i in model.outward() {
         let (parent, shift) = (model.bodies[i].parent, ws.common[i].shift);
-        ws.common[i].position = if parent == 0 { shift - first } else { ws.common[parent].position + shift };
+        ws.common[i].position = if parent == BodyId::BASE { shift - first } else { ws.common[parent].position + shift };
     }
     first
 }
@@ -145,11 +146,11 @@ fn generalised<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &
 /// The wrenches that the base passes to the bodies that hang on it, together, about `point` in
 /// world axes.
 fn at_the_roots<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, point: Vector3<S>) -> Wrench<S> {
-    let one = |i: usize| {
+    let one = |i: BodyId| {
         let (wrench, state) = (&ws.bodies[i].wrench, &ws.common[i]);
         wrench.turned(&state.rotation).shifted(state.position - point)
     };
-    model.outward().filter(|&i| model.bodies[i].parent == 0).fold(Wrench::zero(), |sum, i| sum + one(i))
+    model.outward().filter(|&i| model.bodies[i].parent == BodyId::BASE).fold(Wrench::zero(), |sum, i| sum + one(i))
 }
 
 /// (1 / mass, Σ F about the centre of mass).
@@ -171,7 +172,7 @@ fn composites<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, mut visit: imp
             visit(ws.columns[c].at, &state.inertia.apply(&ws.columns[c].axis), state.position);
         }
         let parent = model.bodies[i].parent;
-        if parent != 0 {
+        if parent != BodyId::BASE {
             ws.common[parent].inertia += state.inertia.shifted(state.shift);
         }
     }

@@ -6,6 +6,7 @@ use super::forward_dynamics::factored;
 use super::frames::jacobian;
 use super::ltdl::solve;
 use crate::Scalar;
+use crate::index::BodyId;
 use crate::model::{Frame, Model};
 use crate::spatial::Reference;
 
@@ -44,9 +45,9 @@ pub fn operational_space_inertia<S: Scalar>(model: &Model<S>, ws: &mut Workspace
 
 /// How many degrees of freedom move body `i`, up to six: joints that follow others have none of
 /// their own.
-fn freedoms_before<S: Scalar>(model: &Model<S>, mut i: usize) -> usize {
+fn freedoms_before<S: Scalar>(model: &Model<S>, mut i: BodyId) -> usize {
     let (mut found, mut count) = ([0; 6], 0);
-    while i != 0 {
+    while i != BodyId::BASE {
         let body = &model.bodies[i];
         for freedom in body.coordinates.v..body.coordinates.v + body.joint.nv() {
             if count < 6 && !found[..count].contains(&freedom) {

@@ -9,6 +9,7 @@
 use super::Workspace;
 use super::common::{Axes, accelerations, on_the_way, positions, twists};
 use crate::Scalar;
+use crate::index::BodyId;
 use crate::model::{BodyLink, Model};
 use crate::spatial::{Matrix3, Placement, Twist, Vector3, rate_matrix, rotate, rotate_back};
 
@@ -110,7 +111,7 @@ pub fn potential_energy_regressor<S: Scalar>(model: &Model<S>, ws: &mut Workspac
 }
 
 /// Axes of the link of body `i` in common axes, and its origin from the body's.
-fn link_frame<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize) -> Placement<S> {
+fn link_frame<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: BodyId) -> Placement<S> {
     let rotation = ws.common[i].rotation;
     let body = Placement { rotation, position: Vector3::zeros() };
     model.bodies[i].link.as_ref().map_or(body, |link| Placement {
@@ -123,7 +124,7 @@ impl<S: Scalar> Model<S> {
     /// π of every moving link, `[links][10]`: m, h = m c, and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz
     /// about the origin of the link's frame, in its axes; kg, kg·m, kg·m².
     pub fn inertial_parameters(&self) -> alloc::vec::Vec<[S; PARAMETERS]> {
-        let one = |i: usize| {
+        let one = |i: BodyId| {
             let (inertia, link) = (&self.bodies[i].inertia, &self.bodies[i].link);
             let of_link = |link: &BodyLink<S>| inertia.shifted(-link.placement.position).turned(&link.placement.rotation.transpose());
             link.as_ref().map_or(*inertia, of_link).parameters()

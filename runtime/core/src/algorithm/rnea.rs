@@ -10,6 +10,7 @@
 use super::effects::{self, LoadCase};
 use super::{AngularKinematics, Workspace, wrenches};
 use crate::Scalar;
+use crate::index::BodyId;
 use crate::joint::with_pose;
 use crate::joint::{JointLaw, Mount};
 use crate::model::{Body, Model};
@@ -52,7 +53,7 @@ pub(super) fn momentum<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[
 #[inline(always)]
 pub(super) fn recursion<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S], load: &LoadCase<S>, tau: &mut [S]) {
     // V̇_0 = [0; −g]
-    ws.bodies[0].motion.acceleration = -load.gravity;
+    ws.bodies[BodyId::BASE].motion.acceleration = -load.gravity;
     let features = ModelFeatures::of(model);
     // A sweep for each, as one with both takes a quarter longer on numbers.
     if ws.formulation.kinematics.is_empty() && ws.formulation.torque_inertias.is_empty() {
@@ -130,7 +131,7 @@ fn outward_sweep<S: Scalar, const FORMULATED: bool>(model: &Model<S>, ws: &mut W
 
 /// Motion and own wrench of body `i` from its parent's motion.
 #[inline(always)]
-fn outward<S: Scalar, P: JointLaw<S>, const FORMULATED: bool>(body: &Body<S>, i: usize, p: P, ws: &mut Workspace<S>, v: &[S], a: &[S]) {
+fn outward<S: Scalar, P: JointLaw<S>, const FORMULATED: bool>(body: &Body<S>, i: BodyId, p: P, ws: &mut Workspace<S>, v: &[S], a: &[S]) {
     let parent = &ws.bodies[body.parent];
     let mount = Mount::new(p, &body.placement);
     // r̈ = r̈_λ + U_λ p
@@ -157,13 +158,13 @@ fn outward<S: Scalar, P: JointLaw<S>, const FORMULATED: bool>(body: &Body<S>, i:
 
 /// τ of joint `i`, and its wrench on to the parent.
 #[inline(always)]
-fn inward<S: Scalar, P: JointLaw<S>>(body: &Body<S>, i: usize, p: &P, ws: &mut Workspace<S>, tau: &mut [S]) {
+fn inward<S: Scalar, P: JointLaw<S>>(body: &Body<S>, i: BodyId, p: &P, ws: &mut Workspace<S>, tau: &mut [S]) {
     let wrench = ws.bodies[i].wrench;
     // τ_i = S_iᵀ F_i
     for k in 0..body.joint.nv() {
         tau[body.coordinates.v + k] += body.coordinates.to_leader(p.torque(&wrench, k));
     }
-    if body.parent == 0 {
+    if body.parent == BodyId::BASE {
         return;
     }
     ws.bodies[body.parent].wrench += Mount::new(*p, &body.placement).wrench(&wrench);

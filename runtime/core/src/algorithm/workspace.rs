@@ -9,6 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::checked::Size;
 use super::{Formulation, Shape};
 use crate::Scalar;
+use crate::index::{BodyId, ById};
 use crate::joint::Pose;
 use crate::model::{Body, Model};
 use crate::spatial::{ArticulatedInertia, CoriolisInertia, Motion, Placement, SpatialInertia, Twist, Wrench};
@@ -20,25 +21,25 @@ pub struct Workspace<S> {
     /// The sizes of the model it was made for.
     pub(super) shape: Shape,
     /// The body that each hangs on, as in that model, and whether it is a link.
-    tree: Vec<(usize, bool)>,
-    pub(super) bodies: Vec<BodyState<S>>,
-    pub(super) placements: Vec<Placement<S>>,
+    tree: ById<BodyId, (BodyId, bool)>,
+    pub(super) bodies: ById<BodyId, BodyState<S>>,
+    pub(super) placements: ById<BodyId, Placement<S>>,
     pub(super) zeros: Vec<S>,
     /// Inertia of each body and all that it carries, in its frame.
-    pub(super) composite: Vec<SpatialInertia<S>>,
+    pub(super) composite: ById<BodyId, SpatialInertia<S>>,
     /// Articulated inertia of each body, in its frame.
-    pub(super) articulated: Vec<ArticulatedInertia<S>>,
+    pub(super) articulated: ById<BodyId, ArticulatedInertia<S>>,
     /// Magnitudes of the terms of each body's articulated inertia, for the checked form.
-    pub(super) sizes: Vec<Size<S>>,
+    pub(super) sizes: ById<BodyId, Size<S>>,
     /// Each body in common axes.
-    pub(super) common: Vec<CommonState<S>>,
+    pub(super) common: ById<BodyId, CommonState<S>>,
     /// The columns of all joint subspaces, followers' too; [`Workspace::columns_of`] says which are
     /// a body's.
     pub(super) columns: Vec<Column<S>>,
     /// First column of each body, and the number of all.
     first: Vec<usize>,
     /// End of the columns of each body and all that it carries.
-    end: Vec<usize>,
+    end: ById<BodyId, usize>,
     /// The bodies in the middle of their trees.
     pub(super) centers: Centers,
     /// The first bodies of all trees.
@@ -97,9 +98,9 @@ pub(super) struct CommonState<S> {
 /// Bodies whose axes are common to their trees, one for each that hangs on the base.
 #[derive(Clone, Debug)]
 pub(super) struct Centers {
-    pub(super) bodies: Vec<usize>,
+    pub(super) bodies: Vec<BodyId>,
     /// Whether a body is one of them, or between one and the base.
-    pub(super) inside: Vec<bool>,
+    pub(super) inside: ById<BodyId, bool>,
 }
 
 /// One degree of freedom of a body's joint: its motion subspace in common axes, about the body's
@@ -138,7 +139,7 @@ impl<S: Scalar> Workspace<S> {
             columns.extend((0..body.joint.nv()).map(|k| Column::zero(body.coordinates.v + k)));
         }
         first.push(columns.len());
-        let mut end = first[1..].to_vec();
+        let mut end: ById<BodyId, usize> = first[1..].to_vec().into();
         for i in model.inward() {
             let parent = model.bodies[i].parent;
             end[parent] = end[parent].max(end[i]);
@@ -148,13 +149,13 @@ impl<S: Scalar> Workspace<S> {
             tree: model.bodies.iter().map(|b| (b.parent, b.link.is_some())).collect(),
             centers: Centers::of(model, middles(model)),
             firsts: Centers::of(model, firsts(model).collect()),
-            bodies: vec![BodyState::zero(); n],
-            placements: vec![Placement::identity(); n],
+            bodies: vec![BodyState::zero(); n].into(),
+            placements: vec![Placement::identity(); n].into(),
             zeros: vec![S::zero(); nv],
-            composite: vec![SpatialInertia::zero(); n],
-            articulated: vec![ArticulatedInertia::zero(); n],
-            sizes: vec![Size::zero(); n],
-            common: vec![CommonState::zero(); n],
+            composite: vec![SpatialInertia::zero(); n].into(),
+            articulated: vec![ArticulatedInertia::zero(); n].into(),
+            sizes: vec![Size::zero(); n].into(),
+            common: vec![CommonState::zero(); n].into(),
             columns,
             first,
             end,
@@ -172,7 +173,7 @@ impl<S: Scalar> Workspace<S> {
     /// coordinates.
     pub(super) fn fits(&self, model: &Model<S>) -> bool {
         let Shape { nq, nv, frames, .. } = self.shape;
-        let alike = |i: usize| {
+        let alike = |i: BodyId| {
             let (body, columns) = (&model.bodies[i], self.columns_of(i));
             let at = self.columns.get(columns.start).map_or(nv, |column| column.at);
             self.tree[i] == (body.parent, body.link.is_some())
@@ -185,7 +186,7 @@ impl<S: Scalar> Workspace<S> {
 
     /// After inverse dynamics: the wrench that body `i` needs for itself, and the one that its
     /// joint passes to it, in its frame.
-    pub(crate) fn wrenches_of(&self, model: &Model<S>, i: usize) -> (Wrench<S>, Wrench<S>) {
+    pub(crate) fn wrenches_of(&self, model: &Model<S>, i: BodyId) -> (Wrench<S>, Wrench<S>) {
         let state = &self.bodies[i];
         (model.bodies[i].inertia.wrench(state.motion.acceleration, &state.u), state.wrench)
     }
@@ -194,14 +195,14 @@ impl<S: Scalar> Workspace<S> {
     /// that it need not wait for sines.
     #[inline(always)]
     pub(super) fn set_poses(&mut self, model: &Model<S>, q: &[S]) {
-        for (i, body) in model.bodies.iter().enumerate().skip(1) {
+        for (i, body) in model.bodies.with_ids().skip(1) {
             self.bodies[i].pose = self.pose(body, i, q);
         }
     }
 
     /// The pose of the joint of body `i`.
     #[inline(always)]
-    pub(super) fn pose(&self, body: &Body<S>, i: usize, q: &[S]) -> Pose<S> {
+    pub(super) fn pose(&self, body: &Body<S>, i: BodyId, q: &[S]) -> Pose<S> {
         match self.formulation.rotations.get(i) {
             Some(rotation) if body.joint.is_rotation_about_axis() => Pose::rotation_about_axis(rotation.angle(&body.coordinates, q)),
             _ => body.joint.pose(&body.coordinates, q),
@@ -210,21 +211,21 @@ impl<S: Scalar> Workspace<S> {
 
     /// Whether nothing depends on the angle of body `i`: its frame does not rotate, it is
     /// axisymmetric, and it carries no other.
-    pub(super) fn is_independent_of_angle(&self, model: &Model<S>, i: usize) -> bool {
+    pub(super) fn is_independent_of_angle(&self, model: &Model<S>, i: BodyId) -> bool {
         let stays = self.formulation.rotations.get(i).is_some_and(|rotation| rotation.share.is_zero());
         stays && model.bodies[i].inertia.is_axisymmetric() && model.outward().all(|k| model.bodies[k].parent != i)
     }
 
     /// The columns of the joint of body `i`, which is not the base.
     #[inline(always)]
-    pub(super) fn columns_of(&self, i: usize) -> Range<usize> {
-        self.first[i]..self.first[i + 1]
+    pub(super) fn columns_of(&self, i: BodyId) -> Range<usize> {
+        self.first[i.0]..self.first[i.0 + 1]
     }
 
     /// The columns of the joint of body `i` and of all beyond it: bodies stand depth-first.
     #[inline(always)]
-    pub(super) fn columns_from(&self, i: usize) -> Range<usize> {
-        self.first[i]..self.end[i]
+    pub(super) fn columns_from(&self, i: BodyId) -> Range<usize> {
+        self.first[i.0]..self.end[i]
     }
 
     /// Runs `work` with the first bodies of trees for centers.
@@ -270,24 +271,24 @@ impl<S: Scalar> Column<S> {
 
 /// For each body that hangs on the base, the body beyond and before which no branch has more than
 /// half of the degrees of freedom of its tree.
-fn middles<S: Scalar>(model: &Model<S>) -> Vec<usize> {
-    let mut weight: Vec<usize> = model.bodies.iter().map(|b| b.joint.nv()).collect();
+fn middles<S: Scalar>(model: &Model<S>) -> Vec<BodyId> {
+    let mut weight: ById<BodyId, usize> = model.bodies.iter().map(|b| b.joint.nv()).collect();
     for i in model.inward() {
         let parent = model.bodies[i].parent;
-        weight[parent] += if parent == 0 { 0 } else { weight[i] };
+        weight[parent] += if parent == BodyId::BASE { 0 } else { weight[i] };
     }
-    let middle = |root: usize| {
-        let heavy = |i: &usize| weight[*i] * 2 > weight[root];
+    let middle = |root: BodyId| {
+        let heavy = |i: &BodyId| weight[*i] * 2 > weight[root];
         // Children stand after their parents.
-        let next = |i: &usize| (i + 1..model.bodies.len()).find(|k| model.bodies[*k].parent == *i && heavy(k));
+        let next = |i: &BodyId| (i.0 + 1..model.bodies.len()).map(BodyId).find(|k| model.bodies[*k].parent == *i && heavy(k));
         core::iter::successors(Some(root), next).last().unwrap_or(root)
     };
     firsts(model).map(middle).collect()
 }
 
 /// The bodies that hang on the base.
-fn firsts<S: Scalar>(model: &Model<S>) -> impl Iterator<Item = usize> + '_ {
-    model.outward().filter(|&i| model.bodies[i].parent == 0)
+fn firsts<S: Scalar>(model: &Model<S>) -> impl Iterator<Item = BodyId> + '_ {
+    model.outward().filter(|&i| model.bodies[i].parent == BodyId::BASE)
 }
 
 /// How far from its first body the middle of a tree may be for [`near_the_middle`].
@@ -297,18 +298,18 @@ const NEAR: usize = 4;
 /// them, and nothing but turns lies between: then theirs may be the cheaper axes, as zeros of
 /// parallel joints are not where the middle is.
 pub(super) fn near_the_middle<S: Scalar>(model: &Model<S>) -> bool {
-    let way = |i: usize| core::iter::successors(Some(i), |&i| Some(model.bodies[i].parent).filter(|p| *p != 0));
+    let way = |i: BodyId| core::iter::successors(Some(i), |&i| Some(model.bodies[i].parent).filter(|p| !p.is_base()));
     let ways = || middles(model).into_iter().map(way);
-    let turns = |i: usize| model.bodies[i].joint.is_rotation_about_axis();
+    let turns = |i: BodyId| model.bodies[i].joint.is_rotation_about_axis();
     ways().any(|way| way.count() > 1) && ways().all(|way| way.clone().count() <= NEAR && way.into_iter().all(turns))
 }
 
 impl Centers {
-    fn of<S: Scalar>(model: &Model<S>, bodies: Vec<usize>) -> Self {
-        let mut inside = vec![false; model.bodies.len()];
+    fn of<S: Scalar>(model: &Model<S>, bodies: Vec<BodyId>) -> Self {
+        let mut inside: ById<BodyId, bool> = vec![false; model.bodies.len()].into();
         for &center in &bodies {
             let mut i = center;
-            while i != 0 {
+            while !i.is_base() {
                 inside[i] = true;
                 i = model.bodies[i].parent;
             }
@@ -326,7 +327,7 @@ pub(super) fn parent_dof<S: Scalar>(model: &Model<S>) -> Vec<usize> {
     let mut parent_dof: Vec<usize> = (0..model.nv).collect();
     for i in model.outward().filter(|_| !tied) {
         let (body, parent) = (&model.bodies[i], &model.bodies[model.bodies[i].parent]);
-        parent_dof[body.coordinates.v] = if body.parent == 0 { 0 } else { parent.coordinates.v + parent.joint.nv() };
+        parent_dof[body.coordinates.v] = if body.parent == BodyId::BASE { 0 } else { parent.coordinates.v + parent.joint.nv() };
     }
     parent_dof
 }

@@ -2,6 +2,7 @@
 
 use super::Workspace;
 use crate::Scalar;
+use crate::index::BodyId;
 use crate::joint::JointLaw;
 use crate::joint::with_pose;
 use crate::model::Model;
@@ -15,7 +16,7 @@ pub(super) fn each<S: Scalar>(
     ws: &mut Workspace<S>,
     q: &[S],
     wrenches: &[S],
-    mut add: impl FnMut(&mut Workspace<S>, usize, &Wrench<S>),
+    mut add: impl FnMut(&mut Workspace<S>, BodyId, &Wrench<S>),
 ) {
     if wrenches.is_empty() {
         return;
@@ -23,7 +24,7 @@ pub(super) fn each<S: Scalar>(
     if model.wrench_reference != Reference::Body {
         place_bodies(model, ws, q);
     }
-    for (frame, w) in model.frames.iter().zip(wrenches.chunks_exact(6)).filter(|(f, _)| f.body != 0) {
+    for (frame, w) in model.frames.iter().zip(wrenches.chunks_exact(6)).filter(|(f, _)| f.body != BodyId::BASE) {
         let given = Wrench { moment: Vector3::new(w[0], w[1], w[2]), force: Vector3::new(w[3], w[4], w[5]) };
         let x_wb = ws.placements[frame.body];
         let on_body = match model.wrench_reference {

@@ -8,6 +8,7 @@ use core::fmt;
 use super::places::Places;
 use super::{Applied, BodyEffect, Effect, EffectId, Enters, Field, JointEffect, On};
 use crate::Scalar;
+use crate::index::{BodyId, FrameId};
 use crate::model::Model;
 use crate::spatial::Placement;
 
@@ -171,7 +172,7 @@ impl Model<f64> {
     }
 
     /// Whether the joint with these bodies can have the effect.
-    fn check_joint(&self, bodies: &[usize], one: &Applied) -> Result<(), Fault> {
+    fn check_joint(&self, bodies: &[BodyId], one: &Applied) -> Result<(), Fault> {
         for body in bodies.iter().map(|&i| &self.bodies[i]) {
             if body.effects.joint.iter().any(|e| e.effect == one.effect) {
                 return Err(Fault::Twice);
@@ -189,8 +190,8 @@ impl Model<f64> {
         Ok(())
     }
 
-    fn put_on_joint(&mut self, bodies: &[usize], one: &Applied) {
-        let follows = |i: &&usize| self.bodies[**i].coordinates.mimic.is_some();
+    fn put_on_joint(&mut self, bodies: &[BodyId], one: &Applied) {
+        let follows = |i: &&BodyId| self.bodies[**i].coordinates.mimic.is_some();
         // One law for the sum of the coordinates of a joint that follows several.
         let last = bodies.last().filter(follows).map(core::slice::from_ref);
         for &i in last.unwrap_or(bodies) {
@@ -203,7 +204,7 @@ impl Model<f64> {
         }
     }
 
-    fn put_on_link(&mut self, frame: usize, one: &Applied) {
+    fn put_on_link(&mut self, frame: FrameId, one: &Applied) {
         let frame = &self.frames[frame];
         let at: Placement<f64> = one.at.placement();
         let (body, placement) = (frame.body, frame.placement.compose(&at));
@@ -312,7 +313,7 @@ mod tests {
         };
         let all = [each(EffectId::damping, "joint"), each(EffectId::drag, "link")].concat();
         let with = chain.clone().with_effects(&all).unwrap();
-        assert!((2..count).all(|i| with.bodies[i].effects.kinds().len() == 2));
+        assert!((2..count).all(|i| with.bodies[BodyId(i)].effects.kinds().len() == 2));
         for (effect, name) in [(EffectId::damping, "jount"), (EffectId::drag, "lunk")] {
             let errors = chain.clone().with_effects(&each(effect, name)).unwrap_err().0;
             let meant = |error: &EffectError| matches!(error.fault, Fault::Unknown { nearest: Some(_), .. });
@@ -362,7 +363,7 @@ mod tests {
         let normal = |n: [f64; 3]| {
             let parameters = [&[0.1, 1e3, 0.5, 0.3, 1e-2], &n[..], &[0.2, 0.0]].concat();
             let with = robot().with_effects(&[on(EffectId::contact, "ball", &parameters)]).unwrap();
-            let effects = &with.bodies[with.frames[2].body].effects.body;
+            let effects = &with.bodies[with.frames[FrameId(2)].body].effects.body;
             assert_eq!((effects.len(), &effects[0].parameters[..5], effects[0].parameters[8]), (1, &parameters[..5], 0.2));
             effects[0].parameters[5..8].to_vec()
         };

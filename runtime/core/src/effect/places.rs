@@ -5,23 +5,24 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use super::{Applied, Fault, Field, On};
+use crate::index::{BodyId, FrameId};
 use crate::model::{FLOATING_BASE, Model};
 use crate::suggest::Suggester;
 
 /// The bodies of joints and the frames of links by their names, gathered once for all effects.
 pub(super) struct Places {
-    joints: BTreeMap<String, Vec<usize>>,
-    frames: BTreeMap<String, usize>,
+    joints: BTreeMap<String, Vec<BodyId>>,
+    frames: BTreeMap<String, FrameId>,
     suggester: Suggester,
 }
 
 impl Places {
     pub(super) fn of(model: &Model<f64>) -> Self {
-        let (mut joints, mut frames) = (BTreeMap::<String, Vec<usize>>::new(), BTreeMap::new());
+        let (mut joints, mut frames) = (BTreeMap::<String, Vec<BodyId>>::new(), BTreeMap::new());
         for i in model.outward() {
             joints.entry(model.bodies[i].name.clone()).or_default().push(i);
         }
-        for (k, frame) in model.frames.iter().enumerate() {
+        for (k, frame) in model.frames.with_ids() {
             frames.entry(frame.name.clone()).or_insert(k);
         }
         Self { joints, frames, suggester: Suggester::default() }
@@ -35,7 +36,7 @@ impl Places {
     }
 
     /// The bodies of the joint of this name, which is not that of a floating base.
-    pub(super) fn bodies(&mut self, model: &Model<f64>, name: &str) -> Result<&[usize], Fault> {
+    pub(super) fn bodies(&mut self, model: &Model<f64>, name: &str) -> Result<&[BodyId], Fault> {
         match self.joints.get(name) {
             Some(_) if name == FLOATING_BASE => Err(Fault::Base),
             Some(bodies) => Ok(bodies),
@@ -47,11 +48,11 @@ impl Places {
     }
 
     /// The frame of the link of this name, which moves.
-    pub(super) fn frame(&mut self, model: &Model<f64>, name: &str) -> Result<usize, Fault> {
+    pub(super) fn frame(&mut self, model: &Model<f64>, name: &str) -> Result<FrameId, Fault> {
         let Some(&frame) = self.frames.get(name) else {
             let nearest = self.suggester.nearest(name, model.frames.iter().map(|f| f.name.as_str()));
             return Err(Fault::Unknown { on: On::Link, nearest: nearest.map(String::from) });
         };
-        if model.frames[frame].body == 0 { Err(Fault::Still) } else { Ok(frame) }
+        if model.frames[frame].body == BodyId::BASE { Err(Fault::Still) } else { Ok(frame) }
     }
 }

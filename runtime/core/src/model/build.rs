@@ -12,6 +12,7 @@ use super::leaders::{Leads, leads, others};
 use super::{Body, BodyLink, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model};
 use crate::description::{self, Base, ById, Description, Inertial, JointId, JointKind, Limit, LinkId, Mimic};
 use crate::effect::Effects;
+use crate::index::{BodyId, FrameId};
 use crate::joint::with_pose;
 use crate::joint::{Coordinates, Follow, Joint, JointLaw};
 use crate::spatial::{Placement, Reference, SpatialInertia, nearest_rotation, to_z_axis};
@@ -150,7 +151,7 @@ fn check_frames(description: &Description) -> Result<(), ModelError> {
 }
 
 /// A link's place in the model: the body that it belongs to and its frame in that body.
-type Seat = (usize, Placement<f64>);
+type Seat = (BodyId, Placement<f64>);
 
 struct Builder<'a> {
     description: &'a Description,
@@ -158,11 +159,11 @@ struct Builder<'a> {
     children: ById<LinkId, Vec<JointId>>,
     seats: ById<LinkId, Option<Seat>>,
     /// The body of each moving joint.
-    body_of: ById<JointId, Option<usize>>,
+    body_of: ById<JointId, Option<BodyId>>,
     /// For each joint that follows another, what it moves by.
     leads: Leads,
     /// The bodies of joints that follow several: the joint, and what each body moves by.
-    followers: Vec<(usize, JointId, Mimic)>,
+    followers: Vec<(BodyId, JointId, Mimic)>,
     model: Model<f64>,
 }
 
@@ -189,8 +190,8 @@ impl<'a> Builder<'a> {
             name: description.name.clone(),
             gravity: Vector3::from(GRAVITY),
             wrench_reference: Reference::Body,
-            bodies: Vec::new(),
-            frames: Vec::new(),
+            bodies: ById::default(),
+            frames: ById::default(),
             joints: Vec::new(),
             nq: 0,
             nv: 0,
@@ -209,12 +210,12 @@ impl<'a> Builder<'a> {
 
     fn add_root(&mut self, root: LinkId, base: Base) {
         let name = self.description.links[root].name.clone();
-        self.push_body(name, 0, Placement::identity(), Joint::Floating, AT_ZERO);
+        self.push_body(name, BodyId::BASE, Placement::identity(), Joint::Floating, AT_ZERO);
         let body = match base {
-            Base::Fixed => 0,
+            Base::Fixed => BodyId::BASE,
             Base::Floating => {
                 let coordinates = self.push_joint(FLOATING_BASE, JointKind::Floating, None);
-                self.push_body(FLOATING_BASE.to_string(), 0, Placement::identity(), Joint::Floating, coordinates)
+                self.push_body(FLOATING_BASE.to_string(), BodyId::BASE, Placement::identity(), Joint::Floating, coordinates)
             }
         };
         self.seat(root, body, Placement::identity());
@@ -329,18 +330,24 @@ impl<'a> Builder<'a> {
         coordinates
     }
 
-    fn push_body(&mut self, name: String, parent: usize, placement: Placement<f64>, joint: Joint, coordinates: Coordinates<f64>) -> usize {
+    fn push_body(
+        &mut self,
+        name: String,
+        parent: BodyId,
+        placement: Placement<f64>,
+        joint: Joint,
+        coordinates: Coordinates<f64>,
+    ) -> BodyId {
         let inertia = SpatialInertia::zero();
-        self.model.bodies.push(Body { name, parent, placement, joint, coordinates, inertia, link: None, effects: Effects::none() });
-        self.model.bodies.len() - 1
+        self.model.bodies.push(Body { name, parent, placement, joint, coordinates, inertia, link: None, effects: Effects::none() })
     }
 
     /// Seats a link in a body and adds its mass to it. The first link of a moving body is the one
     /// that gives the body its axes and origin in results for each link.
-    fn seat(&mut self, link: LinkId, body: usize, placement: Placement<f64>) {
+    fn seat(&mut self, link: LinkId, body: BodyId, placement: Placement<f64>) {
         self.seats[link] = Some((body, placement));
         let (of_file, to) = (&self.description.links[link], &mut self.model.bodies[body]);
-        if body != 0 && to.link.is_none() && !of_file.intermediate {
+        if body != BodyId::BASE && to.link.is_none() && !of_file.intermediate {
             to.link = Some(BodyLink { name: of_file.name.clone(), placement });
         }
         if let Some(inertial) = &of_file.inertial {
@@ -373,7 +380,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The frames of the links, then those that coincide with no link.
-    fn frames(&self) -> Vec<Frame<f64>> {
+    fn frames(&self) -> ById<FrameId, Frame<f64>> {
         let seated = |link: LinkId| self.seats.get(link).copied().flatten();
         let links = self.description.links.with_ids().filter(|(_, link)| !link.intermediate);
         let of_links = links.filter_map(|(index, link)| {

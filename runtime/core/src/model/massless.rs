@@ -8,6 +8,7 @@ use super::{Body, Model};
 use crate::algorithm::Workspace;
 use crate::algorithm::checked::least_pivot;
 use crate::effect::{EffectId, Enters, JointEffect};
+use crate::index::{BodyId, ById};
 use crate::monitor::pivot_cancellation;
 use crate::spatial::SpatialInertia;
 
@@ -24,7 +25,7 @@ impl Model<f64> {
     /// too. Only exact zeros count as none. A joint that follows another adds to the other's row. A
     /// joint that moves no mass but what others farther out can move in the same way is among them
     /// too: two coaxial joints with a body without mass between, four axes through one point.
-    pub fn massless_joints(&self) -> Vec<usize> {
+    pub fn massless_joints(&self) -> Vec<BodyId> {
         let (mut carries, mut own) = (vec![false; self.nv], vec![false; self.nv]);
         for (i, felt, moves) in self.moves_mass() {
             let at = self.own_freedoms(i);
@@ -33,7 +34,7 @@ impl Model<f64> {
         }
         let idle = || carries.iter().map(|moves| !moves).collect();
         let repeats = if own.contains(&false) { self.repeated(idle()) } else { vec![false; self.nv] };
-        let lost = |i: &usize| {
+        let lost = |i: &BodyId| {
             let mut freedoms = self.own_freedoms(*i);
             self.bodies[*i].coordinates.mimic.is_none() && freedoms.any(|k| !carries[k] || !own[k] && repeats[k])
         };
@@ -41,7 +42,7 @@ impl Model<f64> {
     }
 
     /// The degrees of freedom of a body's joint, or of that which it follows.
-    fn own_freedoms(&self, body: usize) -> Range<usize> {
+    fn own_freedoms(&self, body: BodyId) -> Range<usize> {
         let Body { coordinates: at, joint, .. } = &self.bodies[body];
         at.v..at.v + joint.nv()
     }
@@ -86,7 +87,7 @@ impl Model<f64> {
         };
         let (first, second) = (gone(0.137), gone(0.731));
         let mut found: Vec<bool> = first.iter().zip(second).map(|(a, b)| *a && b).collect();
-        let mut beyond = vec![false; self.bodies.len()];
+        let mut beyond: ById<BodyId, bool> = vec![false; self.bodies.len()].into();
         for i in self.inward() {
             let body = &self.bodies[i];
             // The coordinate of one that follows is that of its leader.
@@ -114,10 +115,10 @@ impl Model<f64> {
 
     /// For each moving body, whether its own mass or a rotor is sure to be felt by all of its
     /// joint, and whether its joint alone moves mass.
-    fn moves_mass(&self) -> Vec<(usize, bool, bool)> {
+    fn moves_mass(&self) -> Vec<(BodyId, bool, bool)> {
         // Whether anything beyond a body's joint has mass: first of what hangs on the body, then
         // with the body itself.
-        let mut beyond = vec![false; self.bodies.len()];
+        let mut beyond: ById<BodyId, bool> = vec![false; self.bodies.len()].into();
         let mut moves = Vec::with_capacity(self.bodies.len());
         for i in self.inward() {
             let (body, outside) = (&self.bodies[i], beyond[i]);

@@ -20,6 +20,7 @@ pub use regroup::{regroup, regroup_body, subtract};
 use crate::Scalar;
 use crate::description::{ById, Description, EditError, JointKind, Limit, LinkId};
 use crate::effect::Effects;
+use crate::index::{BodyId, FrameId};
 use crate::joint::{Coordinates, Joint};
 use crate::spatial::{Placement, Reference, SpatialInertia};
 use crate::suggest::nearest;
@@ -41,8 +42,8 @@ pub struct Model<S = f64> {
     pub(crate) name: String,
     pub(crate) gravity: Vector3<S>,
     pub(crate) wrench_reference: Reference,
-    pub(crate) bodies: Vec<Body<S>>,
-    pub(crate) frames: Vec<Frame<S>>,
+    pub(crate) bodies: ById<BodyId, Body<S>>,
+    pub(crate) frames: ById<FrameId, Frame<S>>,
     pub(crate) joints: Vec<JointInfo>,
     pub(crate) nq: usize,
     pub(crate) nv: usize,
@@ -53,8 +54,8 @@ pub struct Model<S = f64> {
 pub struct Body<S> {
     /// Name of the joint (of the root link for the base).
     pub name: String,
-    /// Index of the body that it hangs on; 0 for the base itself.
-    pub parent: usize,
+    /// The body that it hangs on; the base for the base itself.
+    pub parent: BodyId,
     /// The joint's frame in the parent's frame.
     pub placement: Placement<S>,
     /// The kind of joint.
@@ -87,8 +88,8 @@ pub struct BodyLink<S> {
 pub struct Frame<S> {
     /// Name of the link.
     pub name: String,
-    /// Index of the body.
-    pub body: usize,
+    /// The body that it is fixed in.
+    pub body: BodyId,
     /// The frame in the body's frame.
     pub placement: Placement<S>,
 }
@@ -160,14 +161,14 @@ impl<S: Scalar> Model<S> {
 
     /// Bodies; the first is the base and has no joint of its own.
     #[inline(always)]
-    pub fn bodies(&self) -> &[Body<S>] {
+    pub fn bodies(&self) -> &ById<BodyId, Body<S>> {
         &self.bodies
     }
 
     /// A frame for each link of the file and for each of its other frames, in the order of the
     /// file, or the frames that were chosen.
     #[inline(always)]
-    pub fn frames(&self) -> &[Frame<S>] {
+    pub fn frames(&self) -> &ById<FrameId, Frame<S>> {
         &self.frames
     }
 
@@ -194,33 +195,33 @@ impl<S: Scalar> Model<S> {
 impl<S: Scalar> Model<S> {
     /// Indices of the moving bodies, from the base outward.
     #[inline(always)]
-    pub fn outward(&self) -> core::ops::Range<usize> {
-        1..self.bodies.len()
+    pub fn outward(&self) -> impl ExactSizeIterator<Item = BodyId> + DoubleEndedIterator + Clone + use<S> {
+        (1..self.bodies.len()).map(BodyId)
     }
 
     /// Indices of the moving bodies, from the tips inward.
     #[inline(always)]
-    pub fn inward(&self) -> core::iter::Rev<core::ops::Range<usize>> {
+    pub fn inward(&self) -> impl ExactSizeIterator<Item = BodyId> + DoubleEndedIterator + Clone + use<S> {
         self.outward().rev()
     }
 
     /// Indices of the bodies that are moving links of the file ([`Body::link`]): all bodies with
     /// mass but the base. A link that is fixed to another belongs to its body.
-    pub fn links(&self) -> impl Iterator<Item = usize> + '_ {
+    pub fn links(&self) -> impl Iterator<Item = BodyId> + '_ {
         self.outward().filter(|&i| self.bodies[i].link.is_some())
     }
 
     /// The body that each link of the model's description is part of, intermediate links too:
-    /// `[links]`. 0 for links that no joint moves.
-    pub fn bodies_of_links(&self, description: &Description) -> ById<LinkId, usize> {
+    /// `[links]`. The base for links that no joint moves.
+    pub fn bodies_of_links(&self, description: &Description) -> ById<LinkId, BodyId> {
         // Of a joint of several bodies the last.
-        let of_joints: BTreeMap<&str, usize> = self.outward().map(|i| (self.bodies[i].name.as_str(), i)).collect();
-        let root = of_joints.get(FLOATING_BASE).copied().unwrap_or(0);
+        let of_joints: BTreeMap<&str, BodyId> = self.outward().map(|i| (self.bodies[i].name.as_str(), i)).collect();
+        let root = of_joints.get(FLOATING_BASE).copied().unwrap_or(BodyId::BASE);
         let mut children: ById<LinkId, Vec<_>> = vec![Vec::new(); description.links.len()].into();
         for joint in &description.joints {
             children[joint.parent].push(joint);
         }
-        let mut bodies: ById<LinkId, usize> = vec![root; description.links.len()].into();
+        let mut bodies: ById<LinkId, BodyId> = vec![root; description.links.len()].into();
         let mut open: Vec<LinkId> = description.root().into_iter().collect();
         while let Some(link) = open.pop() {
             for joint in core::mem::take(&mut children[link]) {
@@ -261,8 +262,8 @@ impl<S: Scalar> Model<S> {
 
     /// Mass that each body's joint carries, kg, the body's own among it: `[bodies]`. Of the model
     /// as it was read.
-    pub fn carried(&self) -> Vec<S> {
-        let mut carried: Vec<S> = self.bodies.iter().map(|body| body.inertia.mass).collect();
+    pub fn carried(&self) -> ById<BodyId, S> {
+        let mut carried: ById<BodyId, S> = self.bodies.iter().map(|body| body.inertia.mass).collect();
         for i in self.inward() {
             let own = carried[i];
             carried[self.bodies[i].parent] += own;
@@ -277,9 +278,9 @@ impl<S: Scalar> Model<S> {
     }
 
     /// Indices in v of the degrees of freedom that move body `i`, each once.
-    pub fn freedoms_of(&self, mut i: usize) -> Vec<usize> {
+    pub fn freedoms_of(&self, mut i: BodyId) -> Vec<usize> {
         let mut freedoms = Vec::new();
-        while i != 0 {
+        while !i.is_base() {
             let body = &self.bodies[i];
             freedoms.extend(body.coordinates.v..body.coordinates.v + body.joint.nv());
             i = body.parent;
@@ -308,14 +309,14 @@ impl<S: Scalar> Model<S> {
     ///
     /// # Panics
     /// If there is no such body.
-    pub fn set_inertia(&mut self, i: usize, inertia: SpatialInertia<S>) {
+    pub fn set_inertia(&mut self, i: BodyId, inertia: SpatialInertia<S>) {
         self.bodies[i].inertia = inertia;
     }
 
     /// The same robot without frames.
     #[must_use]
     pub fn without_frames(mut self) -> Self {
-        self.frames.clear();
+        self.frames = ById::default();
         self
     }
 

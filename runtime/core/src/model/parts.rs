@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 use super::{Body, Frame, JointInfo, Model, ModelError};
 use crate::Scalar;
 use crate::effect::Field;
+use crate::index::{BodyId, ById, FrameId};
 use crate::spatial::Reference;
 
 /// What a model consists of. [`Model::into_parts`] gives it, [`Model::from_parts`] takes it.
@@ -21,9 +22,9 @@ pub struct ModelParts<S = f64> {
     /// As [`Model::wrench_reference`].
     pub wrench_reference: Reference,
     /// As [`Model::bodies`].
-    pub bodies: Vec<Body<S>>,
+    pub bodies: ById<BodyId, Body<S>>,
     /// As [`Model::frames`].
-    pub frames: Vec<Frame<S>>,
+    pub frames: ById<FrameId, Frame<S>>,
     /// As [`Model::joints`].
     pub joints: Vec<JointInfo>,
 }
@@ -84,7 +85,7 @@ impl<S: Scalar> ModelParts<S> {
         self.check_tree()?;
         let sizes = self.check_coordinates()?;
         self.check_joints(sizes)?;
-        if let Some(frame) = self.frames.iter().find(|frame| frame.body >= self.bodies.len()) {
+        if let Some(frame) = self.frames.iter().find(|frame| self.bodies.get(frame.body).is_none()) {
             let part = format!("frame {:?}", frame.name);
             return Err(refused(part, format!("body {}", frame.body), "the index of a body"));
         }
@@ -93,12 +94,12 @@ impl<S: Scalar> ModelParts<S> {
     }
 
     fn check_tree(&self) -> Result<(), ModelError> {
-        if self.bodies.first().is_none_or(|base| base.parent != 0) {
+        if self.bodies.first().is_none_or(|base| base.parent != BodyId::BASE) {
             return Err(refused("body 0".into(), "no base".into(), "a body that is its own parent"));
         }
         // The path from the base to the body before, which the next body has to hang on.
-        let mut path = Vec::from([0]);
-        for (i, body) in self.bodies.iter().enumerate().skip(1) {
+        let mut path = Vec::from([BodyId::BASE]);
+        for (i, body) in self.bodies.with_ids().skip(1) {
             while path.last().is_some_and(|last| *last != body.parent) {
                 path.pop();
             }
@@ -113,7 +114,7 @@ impl<S: Scalar> ModelParts<S> {
     fn check_coordinates(&self) -> Result<(usize, usize), ModelError> {
         let (mut nq, mut nv) = (0, 0);
         let mut leaders = Vec::new();
-        for (i, body) in self.bodies.iter().enumerate().skip(1).filter(|(_, body)| body.coordinates.mimic.is_none()) {
+        for (i, body) in self.bodies.with_ids().skip(1).filter(|(_, body)| body.coordinates.mimic.is_none()) {
             let (q, v) = (body.coordinates.q, body.coordinates.v);
             if (q, v) != (nq, nv) {
                 return Err(refused(self.body(i), format!("coordinates from {q} and rates from {v}"), "those after the body before"));
@@ -124,7 +125,7 @@ impl<S: Scalar> ModelParts<S> {
             nq += body.joint.nq();
             nv += body.joint.nv();
         }
-        for (i, body) in self.bodies.iter().enumerate().skip(1).filter(|(_, body)| body.coordinates.mimic.is_some()) {
+        for (i, body) in self.bodies.with_ids().skip(1).filter(|(_, body)| body.coordinates.mimic.is_some()) {
             let at = (body.coordinates.q, body.coordinates.v);
             if (body.joint.nq(), body.joint.nv()) != (1, 1) || leaders.binary_search(&at).is_err() {
                 return Err(refused(
@@ -154,7 +155,7 @@ impl<S: Scalar> ModelParts<S> {
     }
 
     fn check_effects(&self) -> Result<(), ModelError> {
-        for (i, body) in self.bodies.iter().enumerate() {
+        for (i, body) in self.bodies.with_ids() {
             let count = |fields: &[Field]| fields.iter().map(|field| field.len).sum::<usize>();
             let joint = body.effects.joint.iter().map(|on| {
                 let row = on.effect.row();
@@ -176,7 +177,7 @@ impl<S: Scalar> ModelParts<S> {
         Ok(())
     }
 
-    fn body(&self, i: usize) -> String {
+    fn body(&self, i: BodyId) -> String {
         format!("body {i} of joint {:?}", self.bodies[i].name)
     }
 }
@@ -219,19 +220,25 @@ mod tests {
     fn parts_that_do_not_fit_together_are_refused_with_their_name() {
         type Change = fn(&mut ModelParts<f64>);
         let cases: [(Change, &str); 12] = [
-            (|p| p.bodies.clear(), "body 0"),
-            (|p| p.bodies[3].parent = 3, "body 3 of joint \"jb\""),
-            (|p| p.bodies[3].parent = 4, "body 3"),
+            (|p| p.bodies = ById::default(), "body 0"),
+            (|p| p.bodies[BodyId(3)].parent = BodyId(3), "body 3 of joint \"jb\""),
+            (|p| p.bodies[BodyId(3)].parent = BodyId(4), "body 3"),
             // The branch ends where a body hangs on the trunk again.
-            (|p| p.bodies.push(Body { parent: 3, ..p.bodies[4].clone() }), "body 6"),
-            (|p| p.bodies[3].coordinates.v = 6, "body 3"),
-            (|p| p.bodies[4].coordinates.q = 8 + 7, "body 4"),
-            (|p| p.bodies[4].joint = crate::joint::Joint::Spherical, "body 4"),
+            (|p| _ = p.bodies.push(Body { parent: BodyId(3), ..p.bodies[BodyId(4)].clone() }), "body 6"),
+            (|p| p.bodies[BodyId(3)].coordinates.v = 6, "body 3"),
+            (|p| p.bodies[BodyId(4)].coordinates.q = 8 + 7, "body 4"),
+            (|p| p.bodies[BodyId(4)].joint = crate::joint::Joint::Spherical, "body 4"),
             (|p| p.joints[1].q.0 = 3, "joint \"ja\""),
             (|p| drop(p.joints.pop()), "joints"),
-            (|p| p.frames[0].body = 9, "frame \"base\""),
-            (|p| p.bodies[3].effects.joint.push(JointEffect { effect: EffectId::damping, freedom: 1, parameters: vec![1.0] }), "body 3"),
-            (|p| p.bodies[3].effects.joint.push(JointEffect { effect: EffectId::damping, freedom: 0, parameters: vec![] }), "body 3"),
+            (|p| p.frames[FrameId(0)].body = BodyId(9), "frame \"base\""),
+            (
+                |p| p.bodies[BodyId(3)].effects.joint.push(JointEffect { effect: EffectId::damping, freedom: 1, parameters: vec![1.0] }),
+                "body 3",
+            ),
+            (
+                |p| p.bodies[BodyId(3)].effects.joint.push(JointEffect { effect: EffectId::damping, freedom: 0, parameters: vec![] }),
+                "body 3",
+            ),
         ];
         for (k, (change, named)) in cases.into_iter().enumerate() {
             let mut parts = robot().into_parts();

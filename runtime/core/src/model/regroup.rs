@@ -1,6 +1,7 @@
 //! Regrouping of inertial parameters: what a joint cannot distinguish from its parent's.
 
 use crate::Scalar;
+use crate::index::BodyId;
 use crate::model::{Body, Model};
 use crate::spatial::SpatialInertia;
 
@@ -16,12 +17,12 @@ pub fn regroup<S: Scalar>(mut model: Model<S>) -> Model<S> {
     for i in model.inward() {
         regroup_body(&mut model, i);
     }
-    model.bodies[0].inertia = SpatialInertia::zero();
+    model.bodies[BodyId::BASE].inertia = SpatialInertia::zero();
     model
 }
 
 /// The same for the joint of body `i` alone.
-pub fn regroup_body<S: Scalar>(model: &mut Model<S>, i: usize) {
+pub fn regroup_body<S: Scalar>(model: &mut Model<S>, i: BodyId) {
     let Body { joint, parent, placement, inertia, .. } = &model.bodies[i];
     let (parent, Some(given)) = (*parent, joint.regroupable(inertia)) else { return };
     let (kept, moved) = (subtract(*inertia, given), given.moved(placement));

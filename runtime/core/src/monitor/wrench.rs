@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 
 use crate::Scalar;
 use crate::algorithm::{Workspace, inverse_dynamics};
+use crate::index::{BodyId, ById};
 use crate::model::Model;
 use crate::spatial::Vector3;
 
@@ -21,7 +22,7 @@ use crate::spatial::Vector3;
 pub fn wrench_growth<S: Scalar<Mask = bool>>(model: &Model<S>, ws: &mut Workspace<S>, [q, v, a]: [&[S]; 3]) -> Vec<(S, S)> {
     let mut tau = vec![S::zero(); model.nv];
     inverse_dynamics(model, ws, q, v, a, &mut tau);
-    let mut largest = vec![(S::zero(), S::zero()); model.bodies.len()];
+    let mut largest: ById<BodyId, _> = vec![(S::zero(), S::zero()); model.bodies.len()].into();
     let mut growth = Vec::with_capacity(model.bodies.len());
     for i in model.inward() {
         let (own, passed) = ws.wrenches_of(model, i);

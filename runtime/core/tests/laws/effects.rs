@@ -5,6 +5,7 @@ use articulated_core::algorithm::{self as dynamics, Workspace};
 use articulated_core::description::{Base, Origin};
 use articulated_core::dual::Dual;
 use articulated_core::effect::{self, Applied, BodyEffect, EffectId, Enters, JointEffect, On, effects};
+use articulated_core::index::{BodyId, FrameId};
 use articulated_core::model::Model;
 use articulated_core::spatial::{Placement, from_quaternion};
 use articulated_test_support::case::{Case, State, cast};
@@ -109,7 +110,7 @@ fn friction_of_a_contact_is_that_of_its_whole_normal_force() {
         if case.base == Base::Fixed {
             return;
         }
-        let name = case.model.frames()[0].name.clone();
+        let name = case.model.frames()[FrameId(0)].name.clone();
         let (friction, smooth) = (0.7, 0.4);
         let [radius, stiffness, damping, time] = [0.3, 50.0, 0.6, 0.8];
         let at = Origin { xyz: random.three(0.5), ..Origin::default() };
@@ -222,7 +223,7 @@ fn what_is_left_out_does_nothing_and_what_stays_does_something() {
         });
         for parameters in each.chain([full.clone(), vec![0.0; full.len()]]).filter(|p| row.id != EffectId::motor || p[0] > 0.0) {
             let model = arm.clone().changed(|parts| {
-                let body = &mut parts.bodies[3].effects;
+                let body = &mut parts.bodies[BodyId(3)].effects;
                 match row.on {
                     On::Joint => body.joint.push(JointEffect { effect: row.id, freedom: 0, parameters: parameters.clone() }),
                     On::Link => {
@@ -267,9 +268,9 @@ fn effects_that_cannot_be_had_are_refused() {
         joint(EffectId::limit, &first, &[1.0, 1.0, 10.0, 0.0]),
         joint(EffectId::motor, &first, &[1.0, 1.0, 1.0, 1.5, 1e-3]),
         joint(EffectId::drag, "no such link at all", &[1.0]),
-        joint(EffectId::drag, &arm.frames()[0].name, &[1.0]),
-        joint(EffectId::contact, &arm.frames()[3].name, &[0.1, 1e4, 0.0, 0.5, 0.01, 0.0, 0.0, 0.0, 0.0, 0.0]),
-        joint(EffectId::added_mass, &arm.frames()[3].name, &[[1.0, 2.0, 0.0, 1.0, 0.0, 1.0].as_slice(), &[0.0; 15]].concat()),
+        joint(EffectId::drag, &arm.frames()[FrameId(0)].name, &[1.0]),
+        joint(EffectId::contact, &arm.frames()[FrameId(3)].name, &[0.1, 1e4, 0.0, 0.5, 0.01, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        joint(EffectId::added_mass, &arm.frames()[FrameId(3)].name, &[[1.0, 2.0, 0.0, 1.0, 0.0, 1.0].as_slice(), &[0.0; 15]].concat()),
     ];
     let errors = arm.clone().with_effects(&wrong).expect_err("all of them are wrong");
     let found: Vec<String> = errors.iter().map(ToString::to_string).collect();
@@ -296,7 +297,7 @@ fn effects_that_cannot_be_had_are_refused() {
 #[test]
 fn effects_that_are_half_right_are_refused_too() {
     let arm = Case::bundled(articulated_models::robot("ur5_like").expect("a bundled robot")).model;
-    let (joint, link) = (arm.joints()[0].name.clone(), arm.frames()[3].name.clone());
+    let (joint, link) = (arm.joints()[0].name.clone(), arm.frames()[FrameId(3)].name.clone());
     let on = |effect: EffectId, parameters: &[f64]| {
         let on = if effect.row().on == articulated_core::effect::On::Joint { &joint } else { &link };
         Applied { effect, on: on.clone(), at: Default::default(), parameters: parameters.to_vec() }

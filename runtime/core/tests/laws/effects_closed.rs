@@ -3,6 +3,7 @@
 use articulated_core::algorithm::{Workspace, function};
 use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, LinkId, Origin};
 use articulated_core::effect::{Applied, EffectId};
+use articulated_core::index::BodyId;
 use articulated_core::model::Model;
 
 const MASS: f64 = 2.0;
@@ -278,8 +279,8 @@ fn a_rotor_has_energy() {
 #[test]
 fn a_rotor_makes_a_massless_joint_move_something() {
     let mut bare = slide();
-    bare.set_inertia(1, articulated_core::spatial::SpatialInertia::zero());
-    assert_eq!(bare.massless_joints(), [1]);
+    bare.set_inertia(BodyId(1), articulated_core::spatial::SpatialInertia::zero());
+    assert_eq!(bare.massless_joints(), [BodyId(1)]);
     let driven = bare.with_effects(&[on(EffectId::armature, "slide", &[0.01, 20.0])]).expect("a rotor");
     assert!(driven.massless_joints().is_empty());
     assert_near(call(&driven, "forward_dynamics", &[&[0.3], &[0.7], &[5.0]])[0], 5.0 / 4.0);
@@ -290,11 +291,11 @@ fn a_rotor_makes_a_massless_joint_move_something() {
 #[test]
 fn added_mass_makes_a_massless_joint_move_something() {
     let mut bare = slide();
-    bare.set_inertia(1, articulated_core::spatial::SpatialInertia::zero());
+    bare.set_inertia(BodyId(1), articulated_core::spatial::SpatialInertia::zero());
     let added = |linear: f64| [&[0.0; 6][..], &[linear, 0.0, 0.0, linear, 0.0, linear], &[0.0; 9]].concat();
-    let link = bare.frames()[bare.frames().len() - 1].name.clone();
+    let link = bare.frames().last().unwrap().name.clone();
     let wet = |linear: f64| bare.clone().with_effects(&[on(EffectId::added_mass, &link, &added(linear))]).expect("added mass");
     assert!(wet(2.0).massless_joints().is_empty());
     assert_near(call(&wet(2.0), "forward_dynamics", &[&[0.3], &[0.7], &[5.0]])[0], 2.5);
-    assert_eq!(wet(0.0).massless_joints(), [1]);
+    assert_eq!(wet(0.0).massless_joints(), [BodyId(1)]);
 }

@@ -1,6 +1,7 @@
 //! What every equation of motion M(q)·a + h(q, v) = τ is made of.
 
 use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, LinkId, Origin};
+use articulated_core::index::BodyId;
 use articulated_core::model::Model;
 use articulated_test_support::case::{Case, State, for_each_bundled, inverse_dynamics, mass_matrix, read};
 use articulated_test_support::measure::{arguments, distance, error, plus, scale, torque_scale};
@@ -147,12 +148,12 @@ fn joints_that_carry_a_massless_one_are_not_blamed() {
     };
     assert!(model("").massless_joints().is_empty());
     let camera = joint("pan", "tip", "camera", "0 0 0.1", "0 1 0") + "<link name='camera'/>";
-    assert_eq!(model(&camera).massless_joints(), [4]);
+    assert_eq!(model(&camera).massless_joints(), [BodyId(4)]);
     // About one axis with the one before, with nothing between: of the two the inner is named.
     let twice = joint("roll", "tip", "gap", "0 0 0.1", "0 1 0") + &joint("again", "gap", "tool", "0 0.1 0", "0 1 0");
     let twice = twice + &format!("<link name='gap'/><link name='tool'>{}</link>", body("0 0 0.3"));
-    assert_eq!(model(&twice).massless_joints(), [4]);
-    assert_eq!(model(&(camera.replace("'camera'", "'lens'") + &twice)).massless_joints(), [4, 5]);
+    assert_eq!(model(&twice).massless_joints(), [BodyId(4)]);
+    assert_eq!(model(&(camera.replace("'camera'", "'lens'") + &twice)).massless_joints(), [BodyId(4), BodyId(5)]);
 }
 
 /// A joint that follows another backwards leaves its body where it was: what mass that has nothing
@@ -172,7 +173,7 @@ fn a_follower_that_undoes_its_leader_moves_no_mass() {
         let urdf = format!("<robot name='r'><link name='base'/><link name='middle'/><link name='tip'>{body}</link>{joints}</robot>");
         let model = Case::new("r", read(&urdf), Base::Fixed).model;
         let undone = multiplier == -1.0;
-        assert_eq!(model.massless_joints(), if undone { vec![1] } else { vec![] }, "{kind} {multiplier}");
+        assert_eq!(model.massless_joints(), if undone { vec![BodyId(1)] } else { vec![] }, "{kind} {multiplier}");
     }
 }
 
@@ -195,7 +196,7 @@ fn a_rod_in_a_ball_joint_can_turn_about_itself() {
         };
         let model = ball(inertia);
         assert_eq!(mass_matrix(&model, &[0.1, 0.7, -0.1, 0.7]).row(axis).amax(), 0.0);
-        assert_eq!(model.massless_joints(), [1]);
+        assert_eq!(model.massless_joints(), [BodyId(1)]);
         assert!(ball([1.0, 0.0, 0.0, 1.0, 0.0, 1.0]).massless_joints().is_empty());
         // No body has this, but what it resists is not nothing.
         assert!(ball([-1e-3, 0.0, 0.0, 1.0, 0.0, 1.0]).massless_joints().is_empty());

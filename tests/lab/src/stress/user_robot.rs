@@ -2,6 +2,7 @@
 
 use articulated_codegen::Precision;
 use articulated_core::algorithm::{FunctionId, Workspace};
+use articulated_core::index::{BodyId, ById};
 use articulated_core::model::Model;
 use articulated_core::monitor::{
     ADJOINT_LIMIT, adjoint_condition, pivot_cancellation, placement_orthonormality, quaternion_norms, scaled_condition, wrench_growth,
@@ -177,7 +178,7 @@ fn watched(model: &Model<f64>, sets: &[Set]) -> Vec<Row> {
 
 /// The largest number of joints between a body and the base.
 fn depth(model: &Model<f64>) -> usize {
-    let mut depths = vec![0; model.bodies().len()];
+    let mut depths = ById::<BodyId, _>::from(vec![0; model.bodies().len()]);
     model.outward().for_each(|i| depths[i] = depths[model.bodies()[i].parent] + 1);
     depths.into_iter().max().unwrap_or(0)
 }

@@ -6,6 +6,7 @@ use crate::algorithm::Workspace;
 use crate::algorithm::common::{Axes, on_the_way, positions};
 use crate::algorithm::wrenches::place_bodies;
 use crate::effect::Law;
+use crate::index::BodyId;
 use crate::joint::with_pose;
 use crate::joint::{JointLaw, Mount};
 use crate::model::Model;
@@ -14,7 +15,7 @@ use crate::spatial::{ArticulatedInertia, Matrix3, Twist, Vector3, Wrench, rotate
 /// Twists of all bodies in their own axes, into the common states; poses, origins and angular
 /// velocities are known.
 fn body_twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, v: &[S]) {
-    ws.common[0].twist = Twist::zero();
+    ws.common[BodyId::BASE].twist = Twist::zero();
     for i in model.outward() {
         let body = &model.bodies[i];
         let (at, carried) = (&body.coordinates, ws.common[body.parent].twist);
@@ -72,7 +73,7 @@ pub(in crate::algorithm) fn articulate_body_effects<S: Scalar>(
 
 /// What makes a spatial acceleration that fluid at rest feels of a classical one with gravity
 /// subtracted: g − ω × v, in the body's axes.
-fn bias_acceleration<S: Scalar>(ws: &Workspace<S>, i: usize, gravity: Vector3<S>) -> Vector3<S> {
+fn bias_acceleration<S: Scalar>(ws: &Workspace<S>, i: BodyId, gravity: Vector3<S>) -> Vector3<S> {
     let twist = &ws.common[i].twist;
     rotate_back(&ws.placements[i].rotation, gravity) - twist.angular.cross(&twist.linear)
 }
@@ -101,7 +102,7 @@ fn wrenches<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S]
 fn added<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,
-    wrench: impl Fn(&mut Workspace<S>, usize, &ArticulatedInertia<S>) -> Wrench<S>,
+    wrench: impl Fn(&mut Workspace<S>, BodyId, &ArticulatedInertia<S>) -> Wrench<S>,
 ) {
     for i in model.outward() {
         for effect in &model.bodies[i].effects.body {
@@ -136,7 +137,7 @@ pub(in crate::algorithm) fn add_inertia<S: Scalar>(model: &Model<S>, ws: &mut Wo
 
 /// The columns of body `i`'s Jacobian that are not zero, in its axes about its origin, each with
 /// its place in v.
-fn columns<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, mut visit: impl FnMut(usize, Twist<S>)) {
+fn columns<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: BodyId, mut visit: impl FnMut(usize, Twist<S>)) {
     let turn = &ws.common[i].rotation;
     on_the_way(model, ws, i, Vector3::zeros(), |column, d| visit(column.at, column.axis.at(d).turned_back(turn)));
 }

@@ -7,6 +7,7 @@ use crate::Scalar;
 use crate::algorithm::Workspace;
 use crate::dual::Dual;
 use crate::effect::{BallLaw, JointEffect, Law};
+use crate::index::BodyId;
 use crate::joint::Coordinates;
 use crate::model::{Body, Model};
 use crate::spatial::Vector3;
@@ -221,7 +222,7 @@ pub(in crate::algorithm) fn input_torque<S: Scalar>(
 }
 
 /// Inertia of the rotor on degree of freedom `k` of body `i`, if there is one.
-pub(in crate::algorithm) fn rotor<S: Scalar>(model: &Model<S>, i: usize, k: usize) -> Option<S> {
+pub(in crate::algorithm) fn rotor<S: Scalar>(model: &Model<S>, i: BodyId, k: usize) -> Option<S> {
     let of = |e: &JointEffect<S>| match e.effect.law::<S>() {
         Law::Inertia(inertia) if e.freedom == k => Some(inertia(&e.parameters)),
         _ => None,

@@ -10,6 +10,7 @@ use super::common::{Axes, carry, positions, twists};
 use crate::Scalar;
 use crate::dual::Dual;
 use crate::effect::{BodyEffect, Law, Station};
+use crate::index::BodyId;
 use crate::model::Model;
 use crate::spatial::{Placement, Twist, Vector3, Wrench};
 
@@ -74,7 +75,7 @@ fn on_body<S: Scalar>(effect: &BodyEffect<S>, w: &Wrench<S>) -> Wrench<S> {
 }
 
 /// The station of an effect on body `i`, after sweeps in world axes.
-fn station_in_base<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, effect: &BodyEffect<S>) -> Station<S> {
+fn station_in_base<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: BodyId, effect: &BodyEffect<S>) -> Station<S> {
     let state = &ws.common[i];
     let x_wb = Placement { rotation: state.rotation, position: state.position };
     station(effect, &x_wb, &state.twist.turned_back(&state.rotation), model.gravity)

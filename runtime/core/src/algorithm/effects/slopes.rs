@@ -12,6 +12,7 @@ use crate::algorithm::Workspace;
 use crate::algorithm::common::on_the_way;
 use crate::dual::Dual;
 use crate::effect::{BodyEffect, Law};
+use crate::index::BodyId;
 use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, Twist, Vector3, Wrench, rotate};
 
@@ -84,7 +85,7 @@ pub(in crate::algorithm) fn on_bodies<S: Scalar>(
 fn pushed<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,
-    i: usize,
+    i: BodyId,
     effect: &BodyEffect<S>,
     by_q: &mut [S],
     mut by_v: Option<&mut [S]>,
@@ -117,7 +118,7 @@ fn pushed<S: Scalar>(
 fn carried_along<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,
-    i: usize,
+    i: BodyId,
     inertia: &ArticulatedInertia<S>,
     by_q: &mut [S],
     mut others: Option<(&mut [S], &mut [S])>,
@@ -146,6 +147,6 @@ fn carried_along<S: Scalar>(
 }
 
 /// Subtracts S_lᵀ w from element (l, k) for each column l on the way.
-fn subtract<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, w: &Wrench<S>, k: usize, matrix: &mut [S]) {
+fn subtract<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: BodyId, w: &Wrench<S>, k: usize, matrix: &mut [S]) {
     on_the_way(model, ws, i, Vector3::zeros(), |l, d| matrix[l.at * model.nv + k] -= w.power(&l.axis.at(d)));
 }

@@ -1,6 +1,7 @@
 //! Masses that differ by many powers of ten, and none at all.
 
 use articulated_core::description::{Base, JointKind, Origin};
+use articulated_core::index::BodyId;
 
 use super::Effort;
 use crate::stress::judge::{BACKWARD, Ends, Judge, State};
@@ -69,7 +70,7 @@ fn massless_tip() -> Vec<Row> {
     let states = states(&model, 2, 13, 1.0);
     let mut rows = Judge::<f64>::new(&case, &model).all(&states, Ends::Singular("joint_2"), BACKWARD);
     rows.extend(Judge::<f32>::new(&case, &model).solved(&states, Ends::Singular("joint_2"), BACKWARD));
-    rows.push(case.holds("massless_joints names it", model.massless_joints() == [2]));
+    rows.push(case.holds("massless_joints names it", model.massless_joints() == [BodyId(2)]));
     rows
 }
 
@@ -137,7 +138,7 @@ fn repeated() -> Vec<Row> {
     let states = states(&model, 3, 17, 1.0);
     let mut rows = Judge::<f64>::new(&case, &model).solved(&states, Ends::Singular("joint_2"), BACKWARD);
     rows.extend(Judge::<f32>::new(&case, &model).solved(&states, Ends::Singular("joint_2"), BACKWARD));
-    rows.push(case.holds("massless_joints names it", model.massless_joints() == [2]));
+    rows.push(case.holds("massless_joints names it", model.massless_joints() == [BodyId(2)]));
     rows
 }
 
