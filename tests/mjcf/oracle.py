@@ -10,7 +10,8 @@
 
 For each file that MuJoCo compiles: masses, centres of mass and inertias of all bodies, armature, damping, friction, stiffness,
 rest and limits of all joints but free ones (nothing where a flag turns it off), and in random states the mass matrix, the bias force (inverse dynamics
-without acceleration), positions and orientations of all bodies, and the centre of mass of the whole. Of the rest, see world.py:
+without acceleration), positions and orientations of all bodies, and the centre of mass of the whole, as `articulated eval` prints them. An example
+program prints what no command prints of the file, and compares inverse dynamics with its regressor. Of the rest, see world.py:
 gravity, step, integrator, the state at the start, keyframes, planes, which actuators are read and their forces, those of springs
 and dampers, and equations of joints.
 
@@ -39,7 +40,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from every_command import complaints  # noqa: E402
-from programs import COMMAND, build_command, build_example, example  # noqa: E402
+from programs import build_command, build_example, evaluated, example  # noqa: E402
 from virtual_environment import python_of  # noqa: E402
 
 REPOSITORY = HERE.parent.parent
@@ -55,6 +56,7 @@ MODELS = {
     "playground": ["cartpole.xml", "acrobot.xml", "finger.xml", "pendulum.xml", "reacher.xml"],
 }
 STATES = 3
+FUNCTIONS = ["mass_matrix", "inverse_dynamics", "placements"]
 # MuJoCo's types of joints; 0 is free.
 BALL, SLIDE, HINGE = 1, 2, 3
 # Of the scale of each number.
@@ -236,12 +238,11 @@ def compare(path, generated=False):
     if answer.returncode:
         first = answer.stderr.decode().splitlines()[0]
         return "refused: " + without_folders(first, path)[:300], {}, {}
-    line, _, rest = answer.stdout.partition(b"\n")
-    robot, numbers = json.loads(line), np.frombuffer(rest, "<f8")
-    if generated:
-        numbers = by_generated_code(path, [one[2] for one in states])
+    robot = json.loads(answer.stdout.partition(b"\n")[0])
     if (robot["nq"], robot["nv"]) != (model.nq, model.nv):
         return f"differs: {robot['nq']} coordinates and {robot['nv']} freedoms, MuJoCo {model.nq} and {model.nv}", {}, {}
+    code = "generated" if generated else "generic"
+    numbers = np.array(evaluated(path, FUNCTIONS, [one[2] for one in states], code) if model.nv else [])
     names = [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, body) for body in range(model.nbody)]
     by_name = {link["name"]: index for index, link in enumerate(robot["links"])}
     # Bodies that MuJoCo fuses are links here.
@@ -295,27 +296,6 @@ def compare(path, generated=False):
 
 # What code computes, rather than the reader.
 OF_CODE = ("mass matrix", "bias force", "position", "orientation")
-
-
-def by_generated_code(path, states):
-    """The numbers of the helper, by code that rustc compiles."""
-    import numpy as np
-
-    names = ["mass_matrix", "inverse_dynamics", "placements"]
-    sent = json.dumps({"states": [dict(zip("qva", map(list, one))) for one in states]})
-    command = [str(COMMAND), "eval", str(path), "--function", ",".join(names), "--states", "-", "--generated", "--format", "json"]
-    answer = subprocess.run(command, input=sent.encode(), capture_output=True, timeout=600)
-    if answer.returncode:
-        raise RuntimeError(answer.stderr.decode())
-    found = {one["function"]: one["states"] for one in json.loads(answer.stdout)["functions"]}
-    return np.array([x for k in range(len(states)) for name in names for x in flat(found[name][k]["generated"])])
-
-
-def flat(value):
-    """The numbers of nested objects and lists, in their order."""
-    if isinstance(value, dict):
-        value = list(value.values())
-    return [x for part in value for x in flat(part)] if isinstance(value, list) else [value]
 
 
 def state(model, random):

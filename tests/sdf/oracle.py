@@ -8,7 +8,8 @@
 
 For each file that Drake reads: masses, centres of mass and inertias of all links, limits and damping of all joints with one
 coordinate, and in random states the mass matrix, the bias force (inverse dynamics without acceleration), and positions and
-orientations of all links.
+orientations of all links, as `articulated eval` prints them. An example program prints what no command prints of the file,
+and compares inverse dynamics with its regressor.
 
 A file with loops is read without the joints that close them: Drake gets it without these joints, this library with
 <must_be_loop_joint> in each of them. A link with an inertia that SDFormat does not allow is 1 kg in Drake: both get the
@@ -33,7 +34,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from every_command import complaints  # noqa: E402
-from programs import build_command, build_example, example  # noqa: E402
+from programs import build_command, build_example, evaluated, example  # noqa: E402
 from virtual_environment import python_of  # noqa: E402
 
 REPOSITORY = HERE.parent.parent
@@ -44,6 +45,7 @@ PAGE = REPOSITORY / "docs" / "sdf.md"
 BEGIN, END = "<!-- files: written by tests/sdf/oracle.py --write -->", "<!-- end of files -->"
 ENDINGS = {".sdf", ".config"}
 STATES = 3
+FUNCTIONS = ["mass_matrix", "inverse_dynamics", "placements"]
 # Of the scale of each number.
 BOUND = 1e-11
 
@@ -264,11 +266,13 @@ def compare_files(path, ours):
     if not plant.num_velocities():
         # The poses come without a state only where there is nothing to send.
         return "equal" if all(value <= BOUND for value in off.values()) else "differs:", dict(off)
-    answer = subprocess.run([str(HELPER), str(ours), "0", "0", "-9.81"], input=sent, capture_output=True, timeout=120)
-    numbers = np.frombuffer(answer.stdout.partition(b"\n")[2], "<f8")
     at, nv, frames = 0, robot["nv"], robot["frames"]
     if nv != plant.num_velocities():
         return f"differs: {nv} degrees of freedom, Drake {plant.num_velocities()}", {}
+    answer = subprocess.run([str(HELPER), str(ours), "0", "0", "-9.81"], input=sent, capture_output=True, timeout=120)
+    if answer.returncode:
+        return "differs: " + first_line(answer.stderr.decode(), ours), {}
+    numbers = np.array(evaluated(ours, FUNCTIONS, [one[2] for one in states], "generic", ["--gravity=0,0,-9.81"]))
 
     def take(count):
         nonlocal at

@@ -1,7 +1,5 @@
 //! How the algorithms compute on a model: choices that change the arithmetic and no result.
 
-use alloc::vec::Vec;
-
 use crate::Scalar;
 use crate::index::{BodyId, ById};
 use crate::joint::{Angle, Coordinates};
