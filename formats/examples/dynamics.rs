@@ -1,20 +1,18 @@
-//! Reads a robot and prints its numbers and its dynamics in some states, for comparisons:
+//! Reads a robot, prints its numbers for comparisons, and checks its regressor in some states:
 //! `dynamics FILE GX GY GZ [KIND...]`. What is of a KIND (`flex`, `composite`, `plugin`) is left
 //! out.
 //!
 //! Standard input: states as little-endian doubles, q, v and a one after the other, until the end.
-//! Standard output: one line of JSON, which describes the robot, then for each state, as
-//! little-endian doubles: the mass matrix by rows, inverse dynamics at (q, v, a), and for each
-//! frame the rotation by rows and the position. If the file is refused, its errors go to standard
-//! error, and the status is 1; so it is where inverse dynamics is not its regressor times the
-//! inertial parameters of the links.
+//! Standard output: one line of JSON, which describes the robot. If the file is refused, its errors
+//! go to standard error, and the status is 1; so it is where inverse dynamics is not its regressor
+//! times the inertial parameters of the links.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::io::{Read, Write};
 use std::process::ExitCode;
 
-use articulated_core::algorithm::{Workspace, function, inverse_dynamics, torque_regressor};
+use articulated_core::algorithm::{Workspace, inverse_dynamics, torque_regressor};
 use articulated_core::description::{Base, Description};
 use articulated_core::model::Model;
 use articulated_formats::world::{Actuator, Keyframe, World};
@@ -56,13 +54,6 @@ fn run(file: &str, gravity: &[f64], leave_out: BTreeSet<LeaveOut>) -> Result<(),
     for state in numbers.chunks_exact(size.max(1)) {
         let (q, rest) = state.split_at(model.nq());
         let (v, a) = rest.split_at(model.nv());
-        for (name, arguments) in [("mass_matrix", &[q][..]), ("inverse_dynamics", &[q, v, a]), ("placements", &[q])] {
-            let row = function::<f64>(name).ok_or(name)?;
-            let mut result = vec![0.0; row.len(model.shape())];
-            row.call(&model, &mut workspace, arguments, &mut result).map_err(|error| error.to_string())?;
-            let bytes: Vec<u8> = result.iter().flat_map(|x| x.to_le_bytes()).collect();
-            out.write_all(&bytes).map_err(fail)?;
-        }
         check_regressor(&model, &mut workspace, [q, v, a])?;
     }
     Ok(())

@@ -287,10 +287,7 @@ impl Summary {
             return Some("energy is beyond the largest number: it says nothing of this motion".into());
         }
         if self.counts.has_no_balance() {
-            return Some(
-                "all steps pass over a stiff layer, so that none is in the balance of energy, which says nothing of this motion: take shorter steps"
-                    .into(),
-            );
+            return Some("all steps pass over a stiff layer: none is in the balance of energy; take shorter steps".into());
         }
         let lacks = format!("the balance of energy lacks {} of the largest energy moved", crate::table::number(part));
         if !self.energy.is_kept() {
@@ -319,7 +316,7 @@ impl Momentum {
 }
 
 impl Done {
-    /// Whether the balance of energy is of no step, though there are steps.
+    /// Whether no step is in the balance of energy, although there are steps.
     fn has_no_balance(&self) -> bool {
         self.steps > 0 && self.steps_over_stiff_layers >= self.steps
     }

@@ -82,9 +82,10 @@ fn branch_sizes(model: &Model) -> ById<BodyId, usize> {
 /// The kinds of the bodies of a branch; `None` if one follows a joint outside of it, or is followed
 /// from there.
 fn branch_kinds(model: &Model, root: BodyId, size: usize) -> Option<Vec<Kind>> {
-    let branch = (root.0..root.0 + size).map(BodyId);
+    let places = root.0..root.0 + size;
+    let branch = places.clone().map(BodyId);
     let (first, last) = (&model.bodies()[root].coordinates, &model.bodies()[BodyId(root.0 + size - 1)]);
-    let inside = |i: BodyId| (root.0..root.0 + size).contains(&i.0);
+    let inside = |i: BodyId| places.contains(&i.0);
     let own_v = |i: BodyId| model.bodies()[i].coordinates.v;
     let shared = model.outward().any(|i| !inside(i) && branch.clone().any(|k| own_v(k) == own_v(i)));
     if shared || last.coordinates.v < first.v {

@@ -32,7 +32,7 @@ impl<S: Scalar> View<S> {
     pub fn fold_rotations_into_constants(&self, q: &[S], which: FoldedRotations) -> Self {
         let View { model, mut formulation } = self.clone();
         let stays = self.stays(which);
-        let mut folded: ById<BodyId, Angle<S>> = ById::<BodyId, _>::from(vec![Angle::zero(); self.model.bodies().len()]);
+        let mut folded: ById<BodyId, Angle<S>> = vec![Angle::zero(); self.model.bodies().len()].into();
         let model = model.without_frames().changed(|parts| {
             for (i, to) in parts.bodies.with_ids_mut().skip(1) {
                 let from = &self.model.bodies()[i];
