@@ -3,7 +3,7 @@
 use articulated_codegen::{FunctionSpec, meant};
 use articulated_core::algorithm::{function, functions};
 
-use articulated_codegen::function_groups::{Group, MOTION};
+use articulated_codegen::function_groups::{ALL, Group, MOTION, functions_of};
 
 /// The functions that one word of the command line names.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,7 +19,8 @@ pub(crate) fn known(text: &str) -> Result<Names, String> {
 pub(crate) fn wanted(text: &str) -> Result<Names, String> {
     each(text, &|entry| match entry.contains(['=', '+', '(']) {
         true => FunctionSpec::parse(entry).map(|_| vec![entry.to_owned()]).map_err(|e| e.to_string()),
-        false if entry == MOTION => Ok(vec![entry.to_owned()]),
+        // A group may have functions that the robot lacks: it stays one word.
+        false if entry == MOTION || functions_of(entry).is_some() => Ok(vec![entry.to_owned()]),
         false => known_one(entry),
     })
 }
@@ -54,13 +55,13 @@ fn known_one(name: &str) -> Result<Vec<String>, String> {
     if function::<f64>(name).is_some() {
         return Ok(vec![name.to_owned()]);
     }
-    if let Some(group) = Group::named(name) {
-        return Ok(group.functions().map(str::to_owned).collect());
+    if let Some(functions) = functions_of(name) {
+        return Ok(functions);
     }
-    let all = || functions::<f64>().iter().map(|f| f.name).chain(Group::ALL.map(Group::name));
+    let all = || functions::<f64>().iter().map(|f| f.name).chain(Group::ALL.map(Group::name)).chain([ALL]);
     let near = meant(name, all()).map(|n| format!("did you mean {n}? ")).unwrap_or_default();
     let groups = Group::ALL.map(Group::name).join(", ");
-    Err(format!("{near}there are the groups {groups}, and the functions that `articulated functions` lists"))
+    Err(format!("{near}there are the groups {groups} and {ALL}, and the functions that `articulated functions` lists"))
 }
 
 #[cfg(test)]

@@ -1,19 +1,45 @@
 //! The functions of the table in groups: for lists that people read, and to ask for them by one
 //! word.
 
+use std::collections::BTreeMap;
+
 pub use articulated_core::algorithm::Group;
 use articulated_core::diagnostic::Spanned;
 
 /// The word for all functions that the motion of a scene calls.
 pub const MOTION: &str = "motion";
 
+/// The word for all functions of the table.
+pub const ALL: &str = "all";
+
+/// The functions of the group of this name; all of the table for `all`.
+pub fn functions_of(name: &str) -> Option<Vec<String>> {
+    match Group::named(name) {
+        Some(group) => Some(group.functions().map(str::to_owned).collect()),
+        None => (name == ALL).then(all),
+    }
+}
+
+/// The group through which a list has each function that it does not name alone. A robot may lack
+/// such a function: it is left out with a warning.
+pub(crate) fn members(list: &[Spanned<String>]) -> BTreeMap<String, String> {
+    let mut members = BTreeMap::new();
+    for entry in list {
+        for name in functions_of(entry).into_iter().flatten() {
+            members.entry(name).or_insert_with(|| entry.value.clone());
+        }
+    }
+    list.iter().for_each(|entry| _ = members.remove(&entry.value));
+    members
+}
+
 /// The same list with each group's functions in the place of its name, those of `motion` in the
 /// place of that, and each entry once.
 pub(crate) fn expanded(list: &[Spanned<String>], motion: &[String]) -> Vec<Spanned<String>> {
     let mut all: Vec<Spanned<String>> = Vec::new();
     for entry in list {
-        let names: Vec<String> = match Group::named(entry) {
-            Some(group) => group.functions().map(str::to_owned).collect(),
+        let names: Vec<String> = match functions_of(entry) {
+            Some(names) => names,
             None if entry.value == MOTION && !motion.is_empty() => motion.to_vec(),
             None => vec![entry.value.clone()],
         };
@@ -41,6 +67,7 @@ mod tests {
     fn every_function_is_in_one_group_and_no_group_is_called_like_a_function() {
         assert_eq!(all().len(), functions::<f64>().len());
         assert!(Group::ALL.into_iter().all(|g| g.functions().next().is_some() && !all().contains(&g.name().to_owned())));
+        assert!(!all().contains(&ALL.to_owned()));
     }
 
     #[test]
@@ -54,5 +81,14 @@ mod tests {
         let of_a_scene = ["forward_dynamics", "integrate"].map(str::to_owned);
         assert_eq!(expanded(&owned(&["integrate", "motion"]), &of_a_scene), ["integrate", "forward_dynamics"]);
         assert_eq!(expanded(&owned(&["motion"]), &[]), ["motion"]);
+        assert_eq!(expanded(&owned(&["all"]), &[]), all());
+    }
+
+    #[test]
+    fn members_of_groups_are_those_that_the_list_does_not_name_alone() {
+        let list = ["operational_space", "all", "operational_space_inertia", "x = mass_matrix"].map(Into::into);
+        let members = members(&list);
+        assert_eq!(members["operational_space_inertia_inverse"], "operational_space");
+        assert_eq!((members["mass_matrix"].as_str(), members.get("operational_space_inertia")), ("all", None));
     }
 }

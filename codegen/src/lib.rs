@@ -84,9 +84,9 @@ pub use parameters::Parameter;
 pub use plan::{MOST_FREEDOMS, check_names, check_words, defined, massless, undefined};
 pub use request::{Options, Request};
 pub use size::MAX_CODE_SIZE;
-pub use spec::{Constant, FunctionSpec, FunctionTerm, is_keyword};
+pub use spec::{Constant, FunctionSpec, FunctionTerm};
 pub use sym::Sym;
-pub use target::{COptions, File, RustOptions, Target, identifier};
+pub use target::{COptions, File, RustOptions, Target, identifier, is_keyword};
 
 /// Generated code, with its ledger and warnings.
 #[derive(Clone, Debug)]
@@ -165,9 +165,10 @@ fn with_doc_attributes(source: &str) -> String {
 /// # Errors All findings about the document and the robot-independent parts of the request, or else
 /// all findings about the request.
 pub fn generate(request: &Request) -> Result<Generated, Diagnostics> {
+    let members = function_groups::members(&request.options.functions);
     let request = &*request.normalized();
     let mut log = Diagnostics::new(request.scene.as_ref().map_or(&request.file, |scene| &scene.file));
-    let Some(Plan { robot, model, parameters, functions }) = plan::plan(request, &mut log) else {
+    let Some(Plan { robot, model, parameters, functions }) = plan::plan(request, &members, &mut log) else {
         return Err(log.result(()).err().unwrap_or_default());
     };
     let BuiltRobot { reading, effects, .. } = robot;
@@ -223,7 +224,8 @@ pub fn function(name: &str) -> Result<&'static Function<Sym>, Diagnostic> {
             return Diagnostic::refusal("", Place::DOCUMENT, Code::FunctionSpec, sentence);
         }
         // In a sum of functions a group is none of them.
-        let groups = Group::ALL.map(Group::name).into_iter().filter(|_| Group::named(name).is_none());
+        let groups = Group::ALL.map(Group::name).into_iter().chain([function_groups::ALL]);
+        let groups = groups.filter(|_| function_groups::functions_of(name).is_none());
         let known: Vec<&str> = functions::<Sym>().iter().map(|f| f.name).chain(groups).collect();
         let nearest = meant(name, known.iter().copied());
         let rest = nearest.map_or_else(|| format!("there are: {}", known.join(", ")), |nearest| format!("did you mean `{nearest}`?"));

@@ -1,6 +1,8 @@
 //! A request, checked: its robot, its parameters and its functions. All findings come from one
 //! pass, which reports invalid entries and leaves them out.
 
+use std::collections::BTreeMap;
+
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Function, Needs};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Spanned};
@@ -8,7 +10,7 @@ use articulated_core::model::Model;
 use articulated_scene::BuiltRobot;
 
 use crate::parameters::Parameter;
-use crate::spec::FunctionSpec;
+use crate::spec::{FunctionSpec, wrong_entry};
 use crate::{Options, Request, parameters, size};
 
 /// Robots with more degrees of freedom get no code: a workspace has room for a matrix of their
@@ -27,8 +29,9 @@ pub(crate) struct Plan {
 /// A readable entry of the list of functions, with its index.
 pub(crate) type Entry = (usize, FunctionSpec);
 
-/// Checks the request before programs are built. `None`: there is an error.
-pub(crate) fn plan(request: &Request, log: &mut Diagnostics) -> Option<Plan> {
+/// Checks the request before programs are built. `None`: there is an error. `members`: the functions
+/// that the request has through a group, with its name.
+pub(crate) fn plan(request: &Request, members: &BTreeMap<String, String>, log: &mut Diagnostics) -> Option<Plan> {
     let options = &request.options;
     // What needs no robot comes first: it is reported also if the robot cannot be read.
     let entries = words(options, log);
@@ -47,7 +50,9 @@ pub(crate) fn plan(request: &Request, log: &mut Diagnostics) -> Option<Plan> {
         // Without the inertias that became inputs.
         false => request.robot().model_of(&robot).unwrap_or_else(|| robot.model.clone()),
     });
-    let entries = fitting(request, &model, &massless, entries, log);
+    let mut without = Vec::new();
+    let entries = fitting(request, &model, &massless, entries, (members, &mut without), log);
+    robot.reading.warnings.extend(without);
     size::within_limit(request, &model, &entries, log);
     options.target.check_names(&model, request, log);
     let functions = entries.into_iter().map(|(_, function)| function).collect();
@@ -64,7 +69,17 @@ fn words(options: &Options, log: &mut Diagnostics) -> Vec<Entry> {
             None
         }
     };
-    options.functions.iter().enumerate().filter_map(read).collect()
+    let entries: Vec<Entry> = options.functions.iter().enumerate().filter_map(read).collect();
+    let others: Vec<&FunctionSpec> = entries.iter().map(|(_, function)| function).collect();
+    let refused = |(k, function): &Entry| {
+        let reason = options.target.refuses_name(function, &others)?;
+        Some((*k, wrong_entry(&options.functions[*k], &format!("`{}` {reason}", function.name))))
+    };
+    let refused: Vec<(usize, Diagnostic)> = entries.iter().filter_map(refused).collect();
+    let is_left = |entry: &Entry| refused.iter().all(|(k, _)| *k != entry.0);
+    let entries = entries.into_iter().filter(is_left).collect();
+    refused.into_iter().for_each(|(k, error)| log.push(error.at(&options.functions[k])));
+    entries
 }
 
 /// Reports errors of a request that do not depend on the robot, such as unknown functions, for
@@ -90,15 +105,36 @@ pub fn check_names(request: &Request, robot: &BuiltRobot, log: &mut Diagnostics)
 }
 
 /// The functions that the robot has, each with a unique name.
-fn fitting(request: &Request, model: &Model<f64>, massless: &[String], entries: Vec<Entry>, log: &mut Diagnostics) -> Vec<Entry> {
+/// Members of a group that it lacks are left out with a warning, unless there is no other function.
+fn fitting(
+    request: &Request,
+    model: &Model<f64>,
+    massless: &[String],
+    entries: Vec<Entry>,
+    (members, warnings): (&BTreeMap<String, String>, &mut Vec<Diagnostic>),
+    log: &mut Diagnostics,
+) -> Vec<Entry> {
     let mut fitting: Vec<Entry> = Vec::new();
+    let mut undefined = Vec::new();
     for (k, function) in entries {
         let defined = || function.parts.iter().try_for_each(|part| defined(&request.file, model, massless, part.function));
-        let checked = function.check(model).and_then(|()| defined()).and_then(|()| own_name(&function, &fitting));
-        match checked {
-            Ok(()) => fitting.push((k, function)),
-            Err(error) => log.push(error.at(&request.options.functions[k])),
+        let at = &request.options.functions[k];
+        match function.check(model).and_then(|()| own_name(&function, &fitting)) {
+            Ok(()) => match (defined(), members.get(&at.value)) {
+                (Ok(()), _) => fitting.push((k, function)),
+                (Err(error), Some(group)) => undefined.push((error.at(at), group)),
+                (Err(error), None) => log.push(error.at(at)),
+            },
+            Err(error) => log.push(error.at(at)),
         }
+    }
+    if fitting.is_empty() {
+        undefined.into_iter().for_each(|(error, _)| log.push(error));
+    } else {
+        warnings.extend(undefined.into_iter().map(|(mut error, group)| {
+            error.expected += &format!("; the group `{group}` is generated without it");
+            error.into_warning()
+        }));
     }
     fitting
 }

@@ -8,19 +8,23 @@ use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::index::{BodyId, ById};
 use articulated_core::model::Model;
 
+use crate::limbs::IsomorphicLimbs;
 use crate::spec::{FunctionSpec, FunctionTerm};
 use crate::{Options, Request, program};
 
-/// Default limit of generated Rust, megabytes (10⁶ bytes). For more, a compiler takes minutes and
+/// Default limit of generated source, megabytes (10⁶ bytes). For more, a compiler takes minutes and
 /// gigabytes of memory, and loops over joints are faster.
 pub const MAX_CODE_SIZE: u64 = 64;
 
-/// Bytes of source per instruction: 64 to 70 with one word of code each, measured on chains of 40
-/// to 250 joints.
-const BYTES: f64 = 66.0;
-
-/// The same function for batches comes twice, in numbers and in vectors.
-const WITH_BATCH: f64 = 3.0;
+/// Bytes of source per instruction.
+pub(crate) struct Bytes {
+    /// Of the function of one state.
+    pub(crate) single: f64,
+    /// More of it where isomorphic limbs are lanes of vectors.
+    pub(crate) limbs: f64,
+    /// Of the functions of many states: of all types of numbers together, and of each type.
+    pub(crate) states: [f64; 2],
+}
 
 /// Properties of a tree that determine the code size of a function.
 struct Tree {
@@ -101,10 +105,14 @@ impl Tree {
 /// Predicted source of a function, megabytes.
 fn megabytes(spec: &FunctionSpec, model: &Model<f64>, tree: &Tree, options: &Options) -> f64 {
     let can = options.target.capabilities(options);
-    let alone = !can.states;
-    let columns = alone && program::has_columns(spec, model, can);
-    let instructions: f64 = spec.parts.iter().map(|part| tree.instructions(part, columns)).sum();
-    instructions * BYTES * if alone { 1.0 } else { WITH_BATCH } / 1e6
+    let bytes = options.target.bytes();
+    let instructions = |columns| spec.parts.iter().map(|part| tree.instructions(part, columns)).sum::<f64>();
+    let has_limbs = options.limbs && can.vectors && options.parameters.is_empty();
+    let has_limbs = has_limbs && [4, 2].into_iter().any(|width| IsomorphicLimbs::of(model, width).is_some());
+    let single = bytes.single + if has_limbs { bytes.limbs } else { 0.0 };
+    let [all, each] = bytes.states;
+    let states = if can.states { all + each * options.batch.len() as f64 } else { 0.0 };
+    (single * instructions(program::has_columns(spec, model, can)) + states * instructions(false)) / 1e6
 }
 
 /// Reports a request for more code than its limit: an error for each of the largest functions,
@@ -140,7 +148,7 @@ mod tests {
     use articulated_core::description::Base;
 
     use super::*;
-    use crate::{Real, Sym, generate};
+    use crate::{Real, Sym, Target, generate};
 
     /// A link with mass, and a joint of this type that holds it.
     fn moved(name: usize, parent: usize, kind: &str) -> String {
@@ -164,11 +172,18 @@ mod tests {
 
     #[test]
     fn predictions_are_what_is_generated_within_a_factor_of_two() {
-        for (mut request, batch) in
-            [(chain(24, 24, Base::Fixed), false), (chain(18, 6, Base::Floating), false), (chain(12, 12, Base::Fixed), true)]
-        {
-            request.options.limbs = false;
-            request.options.batch = if batch { vec![Real::F64] } else { Vec::new() };
+        let both = [Real::F64, Real::F32];
+        let [rust, c] = Target::all();
+        for (mut request, target, batch, limbs) in [
+            (chain(24, 24, Base::Fixed), rust.clone(), 0, false),
+            (chain(18, 6, Base::Floating), rust.clone(), 0, false),
+            (chain(12, 12, Base::Fixed), rust, 1, false),
+            (chain(24, 24, Base::Fixed), c.clone(), 0, false),
+            (chain(12, 6, Base::Floating), c.clone(), 0, true),
+            (chain(10, 10, Base::Fixed), c, 2, false),
+        ] {
+            (request.options.limbs, request.options.target) = (limbs, target);
+            request.options.batch = both[..batch].to_vec();
             let whole = request.build_robot().unwrap().model;
             for function in functions::<Sym>() {
                 request.options.functions = vec![function.name.into()];
@@ -177,7 +192,9 @@ mod tests {
                 let predicted = megabytes(&spec, &whole, &Tree::of(&whole), &request.options);
                 let found = generated.source.len() as f64 / 1e6;
                 // What is small is never refused, and mostly helpers that all modules have.
-                assert!(found < predicted.max(0.5) * 2.0 && predicted < found.max(0.5) * 2.0, "{} {found} {predicted}", function.name);
+                let (language, name) = (request.options.target.name(), function.name);
+                let is_close = found < predicted.max(0.5) * 2.0 && predicted < found.max(0.5) * 2.0;
+                assert!(is_close, "{language} {name} {found} {predicted}");
             }
         }
     }

@@ -128,8 +128,8 @@ impl<'a> Function<'a> {
             few_registers: plan.few_registers(ending),
             scalar: (can.scalar_too && plan.in_lanes()).then(|| {
                 let can = Capabilities { vectors: false, ..can };
-                let graph = &program.plain;
-                let plan = Plan { graph, can, columns: None, is_outlined: is_long(graph, false, can.level), ..plan };
+                let graph = &program.scalar;
+                let plan = Plan { graph, can, is_outlined: is_long(graph, columns.is_some(), can.level), ..plan };
                 (plan.body(plan.ending(), plan.is_outlined, false), plan.ending())
             }),
             columns,

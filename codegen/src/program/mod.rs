@@ -26,6 +26,9 @@ pub(crate) struct Program {
     pub(crate) graph: Graph,
     /// The graph without vectorized limbs, for batches with one state per lane.
     pub(crate) plain: Graph,
+    /// The graph without vectorized limbs, for compilers without vectors: the part before the loop
+    /// where there is one.
+    pub(crate) scalar: Graph,
     pub(crate) entry: Entry,
     /// The part emitted as a loop; `graph` is the part before it.
     pub(crate) columns: Option<MultiRhsSolve>,
@@ -37,13 +40,14 @@ pub(crate) fn program(spec: FunctionSpec, model: &Model<f64>, parameters: &[Para
     let candidate = Candidate { model, parameters, stages: options.stages, alike: None };
     let reduced = spec.reduced();
     let columns = columns::columns(&reduced, model, can);
-    let whole = (columns.is_none() || can.states || can.scalar_too).then(|| candidate.build(&reduced, None));
+    let whole = (columns.is_none() || can.states).then(|| candidate.build(&reduced, None));
     let unsolved = columns.as_ref().and(reduced.parts[0].function.unsolved.as_ref());
     let mut best = match &whole {
         Some(whole) if unsolved.is_none() => whole.clone(),
         _ => candidate.build(&reduced, unsolved),
     };
     let plain = whole.map_or_else(Graph::default, |(graph, _)| graph);
+    let scalar = if can.scalar_too { best.0.clone() } else { Graph::default() };
     // Limbs need the vector instructions; constants that stay inputs differ from limb to limb.
     if options.limbs && can.vectors && parameters.is_empty() {
         for width in [4, 2] {
@@ -58,7 +62,7 @@ pub(crate) fn program(spec: FunctionSpec, model: &Model<f64>, parameters: &[Para
     if let Some(columns) = &columns {
         columns.count(&mut entry);
     }
-    Program { spec, graph, plain, entry, columns }
+    Program { spec, graph, plain, scalar, entry, columns }
 }
 
 /// Minimal gain of lanes, which have costs that no count shows (values inserted and extracted one

@@ -41,7 +41,7 @@ pub struct FunctionTerm {
 }
 
 /// An entry of the list of functions that is wrong.
-fn wrong_entry(entry: &str, reason: &str) -> Diagnostic {
+pub(crate) fn wrong_entry(entry: &str, reason: &str) -> Diagnostic {
     Diagnostic::refusal("", (Default::default(), "functions"), Code::FunctionSpec, format!("`{entry}`: {reason}"))
 }
 
@@ -88,22 +88,14 @@ impl FunctionSpec {
 
     /// Why it cannot be called so, if it cannot.
     fn no_name(&self) -> Option<&'static str> {
-        let (name, among) = (self.name.as_str(), |words: &str| words.split_whitespace().any(|word| word == self.name));
+        let name = self.name.as_str();
         let plain = name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
         if !plain || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
-            return Some("is not a valid name for a Rust function: expected lower case letters, digits and _");
+            return Some("is not a valid name for a function: expected lower case letters, digits and _");
         }
         let is_another = |f: &Function<Sym>| f.name == name && !self.parts.iter().any(|part| part.function.id == f.id);
         if functions::<Sym>().iter().any(is_another) {
             return Some("is what another function is called: expected a name of its own");
-        }
-        // The type of several results is called as they are: `self_` would be `Self`.
-        if is_keyword(name) || name.trim_end_matches('_') == "self" {
-            return Some("is a reserved word of Rust: expected another name");
-        }
-        let group = self.group();
-        if among(KEPT) || KEPT_TYPES.split_whitespace().any(|word| group.as_deref() == Some(word)) {
-            return Some("is kept for a part of the generated module: expected another name");
         }
         let results = self.parts.len() > 1 && self.parts.iter().any(|p| p.function.name == name);
         let argument = results || self.arguments().iter().any(|a| a.name() == name);
@@ -217,21 +209,6 @@ pub(crate) fn all_outside(mut text: &str, mark: char) -> Vec<&str> {
     pieces
 }
 
-/// Whether Rust keeps the word for itself.
-pub fn is_keyword(word: &str) -> bool {
-    KEYWORDS.split_whitespace().any(|keyword| keyword == word)
-}
-
-const KEYWORDS: &str = "as async await break const continue crate dyn else enum extern false fn for gen if impl in let loop match mod move mut pub \
-                        ref return self static struct super trait true try type unsafe use where while abstract become box do final macro \
-                        override priv typeof unsized virtual yield";
-
-/// Names that generated code uses, beside those of arguments and results.
-const KEPT: &str = "out parameters batch_f64 batch_f32";
-
-/// The type that generated code has beside those of several results.
-const KEPT_TYPES: &str = "Robot";
-
 /// The type of an array of these dimensions in generated code, of numbers of this type.
 pub(crate) fn array_of(real: &str, dims: &[Dim]) -> String {
     dims.iter().rev().fold(real.to_owned(), |inner, dim| format!("[{inner}; {dim}]"))
@@ -341,14 +318,10 @@ mod tests {
             ("bias_forces(v = 0", "expected `)`"),
             ("mass_matrix(q = sin_cos, q = 0)", "its sines are an argument"),
             ("Big = mass_matrix", "not a valid name"),
-            ("fn = mass_matrix", "reserved word"),
-            ("self_ = mass_matrix + placements", "reserved word"),
-            ("robot = mass_matrix + placements", "generated module"),
             ("q = mass_matrix", "arguments or results"),
             ("mass_matrix = mass_matrix + placements", "arguments or results"),
             ("mass_matrix = gravity_torque", "what another function is called"),
             ("mass_matrix = gravity_torque + placements", "what another function is called"),
-            ("out = mass_matrix", "generated module"),
             ("x = ", "expected a function"),
             ("x = mass_matrix + placements + mass_matrix", "twice"),
             ("x = placements + mass_matrix + mass_matrix", "twice"),

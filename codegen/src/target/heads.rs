@@ -9,11 +9,16 @@ const LISTED: usize = 20;
 /// A longer line is cut, in characters.
 const LONGEST: usize = 200;
 
+/// The name of a file without its folder, so that the same robot gives the same bytes anywhere.
+pub(crate) fn file_name(path: &str) -> &str {
+    path.rsplit(['/', '\\']).next().unwrap_or_default()
+}
+
 /// The warnings as lines of a head, below their heading: a line for each sort, with the name of the
 /// file but not its folder. Empty where there are none.
 pub(crate) fn of_warnings(warnings: &[Diagnostic]) -> Vec<String> {
     let without_folder = |warning: &Diagnostic| {
-        let file = warning.file().rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
+        let file = file_name(warning.file()).to_owned();
         Diagnostic { span: Span { file, ..warning.span }, ..warning.clone() }
     };
     let all = summary(&warnings.iter().map(without_folder).collect::<Vec<_>>());

@@ -12,10 +12,11 @@ use articulated_core::model::Model;
 
 use crate::capabilities::Capabilities;
 use crate::lir::function::Function;
-use crate::{Options, Parameter, Request};
+use crate::size::Bytes;
+use crate::{FunctionSpec, Options, Parameter, Request};
 
 pub use c::COptions;
-pub use rust::{RustOptions, identifier};
+pub use rust::{RustOptions, identifier, is_keyword};
 
 /// A language, and the choices that it alone has.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,6 +82,16 @@ impl Target {
         }
     }
 
+    /// Bytes of source per instruction, measured on chains of 12 to 250 joints.
+    pub(crate) fn bytes(&self) -> Bytes {
+        match self {
+            // Batches come in numbers and in vectors, of all types at once.
+            Self::Rust(_) => Bytes { single: 66.0, limbs: 0.0, states: [132.0, 0.0] },
+            // Limbs come with the same function in numbers; each type of batches has its own text.
+            Self::C(_) => Bytes { single: 56.0, limbs: 8.0, states: [0.0, 52.0] },
+        }
+    }
+
     /// What functions may consist of.
     pub(crate) fn capabilities(&self, options: &Options) -> Capabilities {
         match self {
@@ -94,6 +105,14 @@ impl Target {
         check_batch(&options.batch, log);
         if let Self::C(c) = self {
             c::check(options, c, log);
+        }
+    }
+
+    /// Why a function cannot have its name beside the others in this language, if it cannot.
+    pub(crate) fn refuses_name(&self, function: &FunctionSpec, others: &[&FunctionSpec]) -> Option<String> {
+        match self {
+            Self::Rust(_) => rust::refuses_name(function),
+            Self::C(c) => c::refuses_name(function, others, c),
         }
     }
 

@@ -57,7 +57,7 @@ fn every_body_computes_what_its_graph_does() {
                 let lowered = Function::of(&program, model.shape(), false, can);
                 let mut all = vec![(&lowered.body, &program.graph)];
                 all.extend(lowered.few_registers.as_ref().map(|body| (body, &program.graph)));
-                all.extend(lowered.scalar.as_ref().map(|(body, _)| (body, &program.plain)));
+                all.extend(lowered.scalar.as_ref().map(|(body, _)| (body, &program.scalar)));
                 let states = lowered.states.as_ref().unwrap();
                 all.extend([Some(&states.body), states.few_registers.as_ref()].into_iter().flatten().map(|body| (body, &program.plain)));
                 for (body, graph) in all {

@@ -61,6 +61,9 @@ fn frames(model: &Model<f64>) -> Vec<&str> {
     model.frames().iter().map(|f| f.name.as_str()).collect()
 }
 
+/// What the enumerations and the tables are called, behind the prefix.
+pub(super) const NAMES: [&str; 9] = ["joint", "q_index", "v_index", "frame", "neutral", "q_lower", "q_upper", "v_limit", "tau_limit"];
+
 /// A table of the header: its name, its length, what it says, and its numbers.
 struct Table {
     name: &'static str,

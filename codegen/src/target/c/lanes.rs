@@ -6,18 +6,27 @@
 //! The sines are those of `runtime/core/src/lanes/text/sines`, where products and sums are rounded
 //! one after the other: they hold with and without contracted multiply-adds.
 
+use std::collections::BTreeSet;
+
 use articulated_core::lanes::Real;
+
+use super::requirements::Requirements;
 
 /// How many states a block has: a cache line of each number.
 pub(super) fn states_of_block(real: Real) -> usize {
     64 / real.bytes()
 }
 
-/// What vectors of a type have besides operators, as far as `source` calls it.
-pub(super) fn text(prefix: &str, real: Real, own_math: bool, source: &str) -> String {
+/// The width of vectors, once for all types.
+pub(super) fn width(prefix: &str) -> String {
+    WIDTH.replace("@U_", &format!("{}_", prefix.to_ascii_uppercase()))
+}
+
+/// Vectors of a type of numbers, with the functions that are called.
+pub(super) fn text(prefix: &str, real: Real, own_math: bool, called: &BTreeSet<&str>) -> String {
     let tag = format!("{prefix}_{}_", real.name());
-    let calls = |names: &[&str]| names.iter().any(|name| source.contains(&format!("{tag}{name}(")));
-    let mut out = String::from(WIDTH) + TYPES;
+    let calls = |names: &[&str]| names.iter().any(|name| called.contains(name));
+    let mut out = String::from(TYPES);
     for (names, text) in [(&["k", "sin_cos"][..], CONSTANT), (&["select"], SELECT), (&["sqrt"], SQRT), (&["atan2"], ATAN2)] {
         if calls(names) {
             out += text;
@@ -33,15 +42,12 @@ pub(super) fn text(prefix: &str, real: Real, own_math: bool, source: &str) -> St
     filled(&out, prefix, (real, &tag, &lanes), own_math)
 }
 
-/// Vectors of limbs, and sines and cosines of four angles of one state, if `source` has them.
-pub(super) fn of_limbs(prefix: &str, own_math: bool, source: &str) -> String {
-    let of_state = source.contains(&format!("{prefix}_sin_cos_of_four("));
-    let of_limbs = source.contains(&format!("{prefix}_x4_sin_cos("));
-    let types: Vec<usize> = [4, 2].into_iter().filter(|n| source.contains(&format!("{prefix}_x{n}_")) || *n == 4 && of_state).collect();
+/// Vectors of limbs, and sines and cosines of four angles of one state, as far as they are called.
+pub(super) fn of_limbs(prefix: &str, own_math: bool, called: &Requirements) -> String {
+    let Requirements { sines_of_four: of_state, sines_of_limbs: of_limbs, .. } = *called;
     let mut out = String::new();
-    for (k, width) in types.iter().enumerate() {
-        let text = if k == 0 { WIDTH.to_owned() } else { String::new() } + LIMB_TYPES;
-        let text = text.replace("@SIZE", &(8 * width).to_string());
+    for width in called.limbs.iter().rev() {
+        let text = LIMB_TYPES.replace("@SIZE", &(8 * width).to_string());
         out += &filled(&text, prefix, (Real::F64, &format!("{prefix}_x{width}_"), "4"), own_math);
     }
     let sines = if of_state || of_limbs { [OF_LIMBS[0], SINES, TURN, OF_LIMBS[1]].concat() } else { String::new() };
@@ -80,9 +86,28 @@ fn filled(text: &str, prefix: &str, (real, tag, lanes): (Real, &str, &str), own_
     words.iter().fold(text.to_owned(), |text, (word, by)| text.replace(&format!("@{word}"), by))
 }
 
-/// The width of vectors, once for all types.
+/// All texts with names of helpers: [`filled`] fills their words.
+pub(super) const TEXTS: [&str; 17] = [
+    WIDTH,
+    TYPES,
+    CONSTANT,
+    SELECT,
+    SQRT,
+    ATAN2,
+    SINES,
+    SINES_F,
+    WIDE_TYPES,
+    TURN,
+    OF_STATES[0],
+    OF_STATES[1],
+    LIMB_TYPES,
+    OF_LIMBS[0],
+    OF_LIMBS[1],
+    OF_FOUR,
+    TILES,
+];
+
 const WIDTH: &str = "\
-#ifndef @U_VECTOR
 /* Bytes of a vector: of the widest registers that this is compiled for; 0 without vectors. Define @U_NO_VECTORS to have none. */
 #if !defined(__GNUC__) || defined(@U_NO_VECTORS) || !(defined(__SSE2__) || defined(__aarch64__) || defined(__wasm_simd128__))
 #define @U_VECTOR 0
@@ -109,7 +134,6 @@ const WIDTH: &str = "\
 #elif @U_VECTOR && defined(__aarch64__)
 #include <arm_neon.h>
 #endif
-#endif
 
 ";
 
@@ -123,20 +147,20 @@ typedef @INTEGER @T_m __attribute__((vector_size(@U_VECTOR)));
 typedef unsigned @INTEGER @T_b __attribute__((vector_size(@U_VECTOR)));
 typedef @REAL @T_u __attribute__((vector_size(@U_VECTOR), aligned(@BYTES), may_alias));
 #define @LANES (@U_VECTOR / @BYTES)
-static inline @T_v @T_load(const @REAL *from) {
+@U_INLINE @T_v @T_load(const @REAL *from) {
     return (@T_v)*(const @T_u *)(const void *)from;
 }
-static inline void @T_store(@REAL *to, @T_v x) {
+@U_INLINE void @T_store(@REAL *to, @T_v x) {
     *(@T_u *)(void *)to = (@T_u)x;
 }
 #else
 typedef @REAL @T_v;
 typedef int @T_m;
 #define @LANES 1
-static inline @T_v @T_load(const @REAL *from) {
+@U_INLINE @T_v @T_load(const @REAL *from) {
     return *from;
 }
-static inline void @T_store(@REAL *to, @T_v x) {
+@U_INLINE void @T_store(@REAL *to, @T_v x) {
     *to = x;
 }
 #endif
@@ -145,7 +169,7 @@ static inline void @T_store(@REAL *to, @T_v x) {
 
 const CONSTANT: &str = "\
 /* x in every lane. */
-static inline @T_v @T_k(@REAL x) {
+@U_INLINE @T_v @T_k(@REAL x) {
 #if @U_VECTOR
     const @T_v zero = {0};
     return x - zero;
@@ -158,7 +182,7 @@ static inline @T_v @T_k(@REAL x) {
 
 const SELECT: &str = "\
 /* a where m is true, else b. */
-static inline @T_v @T_select(@T_m m, @T_v a, @T_v b) {
+@U_INLINE @T_v @T_select(@T_m m, @T_v a, @T_v b) {
 #if @U_VECTOR
     return (@T_v)((m & (@T_m)a) | (~m & (@T_m)b));
 #else
@@ -169,7 +193,7 @@ static inline @T_v @T_select(@T_m m, @T_v a, @T_v b) {
 ";
 
 const SQRT: &str = "\
-static inline @T_v @T_sqrt(@T_v x) {
+@U_INLINE @T_v @T_sqrt(@T_v x) {
 #if @U_VECTOR == 64
     return (@T_v)_mm512_sqrt_@SHORT((__m512@LETTER)x);
 #elif @U_VECTOR == 32
@@ -191,7 +215,7 @@ static inline @T_v @T_sqrt(@T_v x) {
 ";
 
 const ATAN2: &str = "\
-static inline @T_v @T_atan2(@T_v y, @T_v x) {
+@U_INLINE @T_v @T_atan2(@T_v y, @T_v x) {
 #if @U_VECTOR
     for (int i = 0; i < @LANES; i++) {
         y[i] = @MATH_ATAN2(y[i], x[i]);
@@ -276,7 +300,7 @@ const TURN: &str = "\
 const OF_STATES: [&str; 2] = [
     "\
 /* sin x, and cos x by the pointer: x in rad, any; at most 1 ulp off up to @LIMIT, beyond as the mathematical library. */
-static inline @T_v @T_sin_cos(@T_v x, @T_v *cosine) {
+@U_INLINE @T_v @T_sin_cos(@T_v x, @T_v *cosine) {
 #if @U_VECTOR
 ",
     "\
@@ -307,7 +331,7 @@ const OF_LIMBS: [&str; 2] = [
     "\
 #if @U_VECTOR
 /* Sines and cosines of four angles, rad: any; at most 1 ulp off up to @LIMIT, beyond as the mathematical library. */
-static inline void @T_sin_cos(const @T_v *angles, @T_v *sines, @T_v *cosines) {
+@U_INLINE void @T_sin_cos(const @T_v *angles, @T_v *sines, @T_v *cosines) {
     const @T_v x = *angles;
 ",
     "\
@@ -322,7 +346,7 @@ static inline void @T_sin_cos(const @T_v *angles, @T_v *sines, @T_v *cosines) {
 /// The same of n angles that are no vector.
 const OF_FOUR: &str = "\
 /* Sines and cosines of n angles, at most four, rad. */
-static inline void @P_sin_cos_of_four(double a, double b, double c, double d, int n, double *sines, double *cosines) {
+@U_INLINE void @P_sin_cos_of_four(double a, double b, double c, double d, int n, double *sines, double *cosines) {
 #if @U_VECTOR
     const @T_v x = {a, b, c, d};
     @T_v s, t;
@@ -349,7 +373,7 @@ const TILES: &str = "\
 typedef @REAL @T_t __attribute__((vector_size(@TILE)));
 typedef @REAL @T_tu __attribute__((vector_size(@TILE), aligned(@BYTES), may_alias));
 /* Four numbers of four states: rows become columns. */
-static inline void @T_turn(const @REAL *from, size_t row, @REAL *to, size_t column) {
+@U_INLINE void @T_turn(const @REAL *from, size_t row, @REAL *to, size_t column) {
     const @T_t a = (@T_t)*(const @T_tu *)(const void *)from;
     const @T_t b = (@T_t)*(const @T_tu *)(const void *)(from + row);
     const @T_t c = (@T_t)*(const @T_tu *)(const void *)(from + 2 * row);
@@ -364,7 +388,7 @@ static inline void @T_turn(const @REAL *from, size_t row, @REAL *to, size_t colu
     *(@T_tu *)(void *)(to + 3 * column) = (@T_tu)__builtin_shufflevector(q, s, 2, 3, 6, 7);
 }
 #else
-static inline void @T_turn(const @REAL *from, size_t row, @REAL *to, size_t column) {
+@U_INLINE void @T_turn(const @REAL *from, size_t row, @REAL *to, size_t column) {
     for (size_t i = 0; i < 4; i++) {
         for (size_t k = 0; k < 4; k++) {
             to[k * column + i] = from[i * row + k];
@@ -373,7 +397,7 @@ static inline void @T_turn(const @REAL *from, size_t row, @REAL *to, size_t colu
 }
 #endif
 /* At most @BLOCK states of n numbers as a block; the last one fills it. */
-static inline void @T_gather(const @REAL *states, size_t count, size_t n, @REAL *block) {
+@U_INLINE void @T_gather(const @REAL *states, size_t count, size_t n, @REAL *block) {
     if (count == @BLOCK && n >= 4) {
         for (size_t i = 0; i < @BLOCK; i += 4) {
             for (size_t k = 0; k < n; k += 4) {
@@ -391,7 +415,7 @@ static inline void @T_gather(const @REAL *states, size_t count, size_t n, @REAL 
     }
 }
 /* The first states of a block. */
-static inline void @T_scatter(const @REAL *block, @REAL *states, size_t count, size_t n) {
+@U_INLINE void @T_scatter(const @REAL *block, @REAL *states, size_t count, size_t n) {
     if (count == @BLOCK && n >= 4) {
         for (size_t i = 0; i < @BLOCK; i += 4) {
             for (size_t k = 0; k < n; k += 4) {

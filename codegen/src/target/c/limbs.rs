@@ -10,7 +10,7 @@ use crate::lir::function::Argument;
 use crate::lir::{Angle, Body, Expr, Number, Operand, Rows, Stmt, Store, Temp};
 
 /// Lanes of the vectors in which sines are computed.
-const FOUR: usize = 4;
+pub(super) const FOUR: usize = 4;
 
 /// Prints the statements of a body of vectors.
 pub(super) struct Printer<'a> {
@@ -20,6 +20,8 @@ pub(super) struct Printer<'a> {
     pub(super) prefix: &'a str,
     /// What the names of mathematical functions begin with.
     pub(super) math: &'a str,
+    /// The macro for infinity.
+    pub(super) infinity: &'a str,
     /// Where each number of the result is: the array, and the index there.
     pub(super) places: &'a dyn Fn(usize) -> (String, usize),
 }
@@ -38,7 +40,8 @@ impl Printer<'_> {
     pub(super) fn statements(&self, out: &mut String, statements: &[Stmt]) {
         let v = self.ty("v");
         for (name, numbers) in self.constants(statements) {
-            let _ = writeln!(out, "    const {v} {name} = {{{}}};", numbers.iter().map(|x| literal(*x)).collect::<Vec<_>>().join(", "));
+            let _ =
+                writeln!(out, "    const {v} {name} = {{{}}};", numbers.iter().map(|x| self.literal(*x)).collect::<Vec<_>>().join(", "));
         }
         statements.iter().for_each(|statement| self.statement(out, statement));
     }
@@ -150,7 +153,7 @@ impl Printer<'_> {
         match store {
             Store::One(at, number) => self.put(out, *at, &self.number(number)),
             Store::Two(at, numbers) => (0..2).for_each(|k| self.put(out, at + k, &self.number(&numbers[k]))),
-            Store::Fill(at, count, x) => (*at..at + count).for_each(|at| self.put(out, at, &literal(*x))),
+            Store::Fill(at, count, x) => (*at..at + count).for_each(|at| self.put(out, at, &self.literal(*x))),
             Store::Whole(at, operand) => self.put_four(out, *at, &self.vector(operand)),
             Store::Rows(rows, columns) => {
                 let columns: Vec<String> = columns.iter().map(|c| self.vector(c)).collect();
@@ -238,7 +241,7 @@ impl Printer<'_> {
     /// A number of the result.
     fn number(&self, number: &Number) -> String {
         match number.of {
-            Operand::Constant(x) => literal(x),
+            Operand::Constant(x) => self.literal(x),
             of => format!("{}[{}]", self.vector(&of), number.lane),
         }
     }
@@ -247,9 +250,20 @@ impl Printer<'_> {
     fn operand(&self, operand: &Operand) -> String {
         match operand {
             Operand::Temp(temp) => name(*temp),
-            Operand::Constant(x) => literal(*x),
+            Operand::Constant(x) => self.literal(*x),
             Operand::Lanes(k) => format!("lanes_{k}"),
             Operand::Slot(_) => unreachable!("C has no spill slots: {operand:?}"),
+        }
+    }
+
+    fn literal(&self, x: f64) -> String {
+        let infinity = self.infinity;
+        match x {
+            _ if x.is_nan() => format!("({infinity} - {infinity})"),
+            f64::INFINITY => infinity.into(),
+            f64::NEG_INFINITY => format!("(-{infinity})"),
+            _ if x < 0.0 => format!("({x:?})"),
+            _ => format!("{x:?}"),
         }
     }
 
@@ -272,16 +286,6 @@ fn takes_vectors(op: Op, operands: &[Operand; 3]) -> bool {
 fn shuffle(a: &str, b: &str, lanes: &[usize]) -> String {
     let lanes: Vec<String> = lanes.iter().map(usize::to_string).collect();
     format!("__builtin_shufflevector({a}, {b}, {})", lanes.join(", "))
-}
-
-fn literal(x: f64) -> String {
-    match x {
-        _ if x.is_nan() => "(INFINITY - INFINITY)".into(),
-        f64::INFINITY => "INFINITY".into(),
-        f64::NEG_INFINITY => "(-INFINITY)".into(),
-        _ if x < 0.0 => format!("({x:?})"),
-        _ => format!("{x:?}"),
-    }
 }
 
 fn name(temp: Temp) -> String {

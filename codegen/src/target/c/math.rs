@@ -4,30 +4,36 @@
 //! coefficients, and π/2, are those of fdlibm's `k_sin.c`, `k_cos.c` and `s_atan.c` (Sun
 //! Microsystems, 1993); in single precision those of Cephes' `sinf.c` (S. L. Moshier).
 
-/// Names in the text below that begin with `P_` get the prefix of the robot.
-const MARK: &str = "P_";
+use std::collections::BTreeSet;
 
-/// The functions that a module needs, by what its statements call.
-pub(super) fn text(prefix: &str, source: &str) -> String {
-    let calls = |name: &str| source.contains(&format!("{prefix}_{name}("));
-    let mut out = String::new();
-    // Each part after those that it calls.
-    for (names, text) in [
-        (&["sin", "cos", "sin_cos"][..], SINES),
-        (&["sinf", "cosf", "sin_cosf"], SINES_F),
-        (&["sqrt"], ROOT),
-        (&["sqrtf"], ROOT_F),
-        (&["atan2", "atan2f"], ARC),
-    ] {
-        if names.iter().any(|name| calls(name)) {
-            out += &text.replace(MARK, &format!("{prefix}_"));
-        }
-    }
-    out
+/// A name of a function, its text, and the function that it calls. Names in the text that begin
+/// with `P_` get the prefix of the robot, those with `U_` the same in upper case.
+type Row = (&'static str, &'static str, Option<&'static str>);
+
+/// Each function is behind the one that it calls.
+pub(super) const ROWS: [Row; 10] = [
+    ("sin_cos", SINES, None),
+    ("sin", SINE, Some("sin_cos")),
+    ("cos", COSINE, Some("sin_cos")),
+    ("sin_cosf", SINES_F, None),
+    ("sinf", SINE_F, Some("sin_cosf")),
+    ("cosf", COSINE_F, Some("sin_cosf")),
+    ("sqrt", ROOT, None),
+    ("sqrtf", ROOT_F, None),
+    ("atan2", ARC, None),
+    ("atan2f", ARC_F, Some("atan2")),
+];
+
+/// The requested functions, and those that they call.
+pub(super) fn text(prefix: &str, called: &BTreeSet<String>) -> String {
+    let is_called = |name: &str| called.contains(name) || ROWS.iter().any(|(own, _, calls)| *calls == Some(name) && called.contains(*own));
+    let rows = ROWS.iter().filter(|(name, ..)| is_called(name));
+    let all: String = rows.map(|(_, text, _)| *text).collect();
+    all.replace("P_", &format!("{prefix}_")).replace("U_INLINE", &format!("{}_INLINE", prefix.to_ascii_uppercase()))
 }
 
 const SINES: &str = r"/* sin x, and cos x by the pointer: x in rad, |x| at most 1.6e6; not a number beyond. At most 1 ulp off. */
-static inline double P_sin_cos(double x, double *cosine) {
+U_INLINE double P_sin_cos(double x, double *cosine) {
     if (!(x >= -1.6e6 && x <= 1.6e6)) {
         *cosine = (x - x) / (x - x);
         return *cosine;
@@ -58,12 +64,16 @@ static inline double P_sin_cos(double x, double *cosine) {
     }
 }
 
-static inline double P_sin(double x) {
+";
+
+const SINE: &str = r"U_INLINE double P_sin(double x) {
     double cosine;
     return P_sin_cos(x, &cosine);
 }
 
-static inline double P_cos(double x) {
+";
+
+const COSINE: &str = r"U_INLINE double P_cos(double x) {
     double cosine;
     (void)P_sin_cos(x, &cosine);
     return cosine;
@@ -72,7 +82,7 @@ static inline double P_cos(double x) {
 ";
 
 const SINES_F: &str = r"/* sin x, and cos x by the pointer: x in rad, |x| at most 8192; not a number beyond. At most 2 ulp off, or 1e-7. */
-static inline float P_sin_cosf(float x, float *cosine) {
+U_INLINE float P_sin_cosf(float x, float *cosine) {
     if (!(x >= -8192.0f && x <= 8192.0f)) {
         *cosine = (x - x) / (x - x);
         return *cosine;
@@ -91,12 +101,16 @@ static inline float P_sin_cosf(float x, float *cosine) {
     }
 }
 
-static inline float P_sinf(float x) {
+";
+
+const SINE_F: &str = r"U_INLINE float P_sinf(float x) {
     float cosine;
     return P_sin_cosf(x, &cosine);
 }
 
-static inline float P_cosf(float x) {
+";
+
+const COSINE_F: &str = r"U_INLINE float P_cosf(float x) {
     float cosine;
     (void)P_sin_cosf(x, &cosine);
     return cosine;
@@ -105,7 +119,7 @@ static inline float P_cosf(float x) {
 ";
 
 const ROOT: &str = r"/* The square root: Newton's steps for 1/sqrt x from half its exponent, then one for sqrt x. At most 1 ulp off. */
-static inline double P_sqrt(double x) {
+U_INLINE double P_sqrt(double x) {
     union { double number; unsigned long long bits; } y;
     if (!(x > 0.0) || x > 1e300) {
         /* Zero stays; a large number is taken a quarter at a time; others have no root. */
@@ -126,7 +140,7 @@ static inline double P_sqrt(double x) {
 ";
 
 const ROOT_F: &str = r"/* The square root: Newton's steps for 1/sqrt x from half its exponent, then one for sqrt x. At most 1 ulp off. */
-static inline float P_sqrtf(float x) {
+U_INLINE float P_sqrtf(float x) {
     union { float number; unsigned int bits; } y;
     if (!(x > 0.0f) || x > 1e36f) {
         return x == 0.0f ? x : x > 0.0f && x - x == 0.0f ? 4294967296.0f * P_sqrtf(x * 5.421010862427522e-20f) : x > 0.0f ? x : (x - x) / (x - x);
@@ -146,7 +160,7 @@ static inline float P_sqrtf(float x) {
 ";
 
 const ARC: &str = r"/* The angle of the point (x, y), rad, in (-pi, pi]; 0 at the origin. At most 2 ulp off. */
-static inline double P_atan2(double y, double x) {
+U_INLINE double P_atan2(double y, double x) {
     static const double high[4] = {4.63647609000806093515e-01, 7.85398163397448278999e-01, 9.82793723247329054082e-01, 1.57079632679489655800e+00};
     static const double low[4] = {2.26987774529616870924e-17, 3.06161699786838301793e-17, 1.39033110312309984516e-17, 6.12323399573676603587e-17};
     const double u = x < 0.0 ? -x : x;
@@ -176,7 +190,9 @@ static inline double P_atan2(double y, double x) {
     return y < 0.0 ? -angle : angle;
 }
 
-static inline float P_atan2f(float y, float x) {
+";
+
+const ARC_F: &str = r"U_INLINE float P_atan2f(float y, float x) {
     return (float)P_atan2(y, x);
 }
 

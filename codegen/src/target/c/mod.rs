@@ -3,6 +3,7 @@
 //! Arrays are flat, row by row. Functions and constants begin with a prefix, by default the robot's
 //! name.
 
+mod ascii;
 mod batch;
 mod casadi;
 mod columns;
@@ -10,20 +11,36 @@ mod constants;
 mod lanes;
 mod limbs;
 mod math;
+mod names;
+mod requirements;
 mod statements;
 
 use std::fmt::Write;
 
 use articulated_core::algorithm::Dim;
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
+use articulated_core::lanes::Real;
 
 use crate::capabilities::Capabilities;
 use crate::lir::function::{Argument, Ending, Function};
 use crate::lir::{Body, Stmt, Ty};
 use crate::target::{File, Module, heads};
 use crate::{Arithmetic, Options, Precision, TrigAccuracy};
+use ascii::ascii;
 pub(in crate::target) use constants::check_names;
+pub(in crate::target) use names::refusal as refuses_name;
+use requirements::Requirements;
 use statements::{Numbers, Printer, infinity};
+
+/// The linkage of helpers. A processor may need only some of them.
+const INLINE: &str = "\
+#if defined(__GNUC__)
+#define @U_INLINE static inline __attribute__((unused))
+#else
+#define @U_INLINE static inline
+#endif
+
+";
 
 /// Choices for C.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -85,8 +102,8 @@ pub(super) fn print(module: &Module, c: &COptions) -> Vec<File> {
     let prefix = c.prefix.clone().unwrap_or_else(|| identifier(module.model.name()));
     let printer =
         Source { module, upper: prefix.to_ascii_uppercase(), prefix, header_only: c.header_only, casadi: c.casadi, no_libm: c.no_libm };
-    let header = File { name: format!("{}.h", printer.prefix), text: printer.header() };
-    if c.header_only { vec![header] } else { vec![header, File { name: format!("{}.c", printer.prefix), text: printer.source() }] }
+    let header = File { name: format!("{}.h", printer.prefix), text: ascii(&printer.header()) };
+    if c.header_only { vec![header] } else { vec![header, File { name: format!("{}.c", printer.prefix), text: ascii(&printer.source()) }] }
 }
 
 struct Source<'a> {
@@ -145,7 +162,10 @@ impl Source<'_> {
         } else {
             self.declare_batches(&mut functions);
         }
-        out += &self.with_math(&functions);
+        if self.header_only {
+            out += &self.helpers();
+        }
+        out += &functions;
         let _ = writeln!(out, "#ifdef __cplusplus\n}}\n#endif\n\n#endif");
         out
     }
@@ -161,7 +181,8 @@ impl Source<'_> {
             self.function(&mut functions, function);
         }
         self.batches(&mut functions);
-        out += &self.with_math(&functions);
+        out += &self.helpers();
+        out += &functions;
         if self.casadi {
             casadi::write(&mut out, &self.prefix, &self.module.functions);
         }
@@ -186,23 +207,20 @@ impl Source<'_> {
         };
     }
 
-    /// Functions, behind the loop, the vectors and the mathematical functions of the module's own
-    /// that they call.
-    fn with_math(&self, functions: &str) -> String {
-        let solved =
-            self.module.functions.iter().find_map(|f| f.columns).filter(|_| functions.contains(&format!("{}_columns(", self.prefix)));
+    /// The helpers that the functions call: mathematical functions of the module's own, vectors, and
+    /// the loop over columns.
+    fn helpers(&self) -> String {
+        let Module { functions, request, .. } = self.module;
+        let (prefix, batch) = (&self.prefix, &request.options.batch);
+        let called = Requirements::of(functions, self.numbers().is_single, batch, self.no_libm);
+        let of_states = |real: &Real| called.states.get(real.name()).map(|names| lanes::text(prefix, *real, self.no_libm, names));
+        let vectors = batch.iter().filter_map(of_states).collect::<String>() + &lanes::of_limbs(prefix, self.no_libm, &called);
+        let math = if self.no_libm { math::text(prefix, &called.math) } else { String::new() };
         let linkage = if self.header_only { "static inline" } else { "static" };
-        let mut loops = solved.map_or(String::new(), |columns| columns::text(&self.prefix, linkage, columns));
-        // Without vectors such a function has no loop.
-        if self.module.functions.iter().all(|f| f.columns.is_none() || f.scalar.is_some()) && !loops.is_empty() {
-            loops = format!("#if {}_LIMBS\n{loops}#endif\n\n", self.upper);
-        }
-        let functions = &(loops + functions);
-        let batch = if functions.contains("_lanes_f") { self.module.request.options.batch.as_slice() } else { &[] };
-        let vectors: String = batch.iter().map(|real| lanes::text(&self.prefix, *real, self.no_libm, functions)).collect();
-        let text = vectors + &lanes::of_limbs(&self.prefix, self.no_libm, functions) + functions;
-        let own = self.own_math().map(|prefix| math::text(prefix, &text));
-        own.unwrap_or_default() + &text
+        let columns = functions.iter().find_map(|f| f.columns).map(|columns| columns::text(prefix, linkage, columns));
+        let inline = if vectors.is_empty() && math.is_empty() { String::new() } else { INLINE.replace("@U_", &format!("{}_", self.upper)) };
+        let width = if vectors.is_empty() && columns.is_none() { String::new() } else { lanes::width(prefix) };
+        inline + &math + &width + &vectors + &columns.unwrap_or_default()
     }
 
     /// What a file says of itself.
@@ -212,7 +230,7 @@ impl Source<'_> {
         let floats =
             if model.joints().first().is_some_and(|j| j.name == articulated_core::model::FLOATING_BASE) { "floating" } else { "fixed" };
         let text = |name: &str| name.escape_debug().to_string().replace("*/", "* /");
-        let _ = writeln!(out, "/* @generated by articulated {} from {}.", env!("CARGO_PKG_VERSION"), text(&request.file));
+        let _ = writeln!(out, "/* @generated by articulated {} from {}.", env!("CARGO_PKG_VERSION"), text(heads::file_name(&request.file)));
         let _ =
             writeln!(out, "   Robot \"{}\", {floats} base, gravity ({x:?}, {y:?}, {z:?}) m/s^2 in the world frame.", text(model.name()));
         for line in heads::of_warnings(self.module.warnings) {
@@ -289,7 +307,7 @@ impl Source<'_> {
         let _ = writeln!(out, "#if {}_LIMBS", self.upper);
         self.of_body(out, function, body);
         let _ = writeln!(out, "#else");
-        self.of_body(out, function, (scalar, *ending, false));
+        self.of_body(out, function, (scalar, *ending, function.columns.is_some()));
         let _ = writeln!(out, "#endif\n");
     }
 
@@ -332,7 +350,14 @@ impl Source<'_> {
         let place = |at: usize| place(function, &results, at);
         if let Ty::Vector(_) = body.ty {
             let math = self.own_math().map_or(String::new(), |prefix| format!("{prefix}_"));
-            let printer = limbs::Printer { body, arguments: &function.arguments, prefix: &self.prefix, math: &math, places: &place };
+            let printer = limbs::Printer {
+                body,
+                arguments: &function.arguments,
+                prefix: &self.prefix,
+                math: &math,
+                infinity: &infinity(self.own_math()),
+                places: &place,
+            };
             return printer.statements(out, statements);
         }
         Printer { arguments: &function.arguments, numbers: &self.numbers(), places: &place }.statements(out, statements);

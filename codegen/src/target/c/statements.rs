@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::requirements::takes_vectors;
 use crate::graph::Op;
 use crate::lir::function::Argument;
 use crate::lir::{Angle, Expr, Number, Operand, Stmt, Store, Temp};
@@ -179,9 +180,7 @@ impl Printer<'_> {
     fn operation(&self, op: Op, operands: &[Operand; 3]) -> String {
         let [mut a, mut b, mut c] = operands.map(|o| self.operand(&o));
         let arity = op.row().arity;
-        // An operator of vectors takes one number beside a vector; a function takes vectors.
-        let takes_vectors = matches!(op, Op::Sqrt | Op::Sin | Op::Cos | Op::Atan2 | Op::Select | Op::Positive);
-        if self.numbers.lanes.is_some() && (takes_vectors || operands[..arity.min(2)].iter().all(|o| o.temp().is_none())) {
+        if self.numbers.lanes.is_some() && (takes_vectors(op) || operands[..arity.min(2)].iter().all(|o| o.temp().is_none())) {
             let first = usize::from(op == Op::Select);
             for (k, text) in [&mut a, &mut b, &mut c].into_iter().enumerate().take(arity).skip(first) {
                 *text = self.vector(&operands[k]);

@@ -14,6 +14,7 @@ mod several;
 mod spills;
 mod statements;
 mod tree_shake;
+mod words;
 
 use crate::Options;
 use crate::capabilities::Capabilities;
@@ -21,6 +22,8 @@ use crate::target::{File, Module, Target};
 
 pub use module::names::identifier;
 pub(crate) use module::names::{Names, is_name};
+pub use words::is_keyword;
+pub(in crate::target) use words::refuses_name;
 
 /// Choices for Rust.
 #[derive(Clone, Debug, Default, PartialEq)]
