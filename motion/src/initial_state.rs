@@ -50,7 +50,7 @@ impl Session {
     }
 
     /// The joints of one coordinate, mimic joints included, and the ball joints that are beyond the
-    /// file's limits at the initial q `[nq]`. The limit of a ball is that of its angle.
+    /// file's limits at the initial q `[nq]`. The limit of a ball joint is on its angle.
     pub fn beyond(&self, q: &[f64]) -> Vec<Beyond> {
         let beyond = |at: Freedom<'_>| {
             let ((lower, upper), found) = (self.of_the_file(at.body)?, at.own_coordinate(q)?);
@@ -81,7 +81,7 @@ pub struct Sunk {
 }
 
 impl Session {
-    /// Spheres whose centres are under their planes at the coordinates q `[nq]`.
+    /// Spheres with centres under their planes at the coordinates q `[nq]`.
     pub fn sunk(&self, q: &[f64]) -> Vec<Sunk> {
         if self.effects_of(EffectId::contact).next().is_none() {
             return Vec::new();

@@ -15,12 +15,12 @@ pub struct Rolling {
     pub file: String,
     /// The link.
     pub on: String,
-    /// Largest sum of the two speeds whose difference is the sliding speed, m/s: that of the
-    /// centre, and that of the lowest point about it.
+    /// Largest sum of the two speeds whose difference is the sliding speed, m/s: the centre's
+    /// speed, and that of the lowest point about the centre.
     pub rates: f64,
     /// The smoothing speed of its friction, m/s.
     pub speed: f64,
-    /// What the tolerance makes of the sliding speed, m/s.
+    /// Error of the sliding speed by the tolerance, m/s.
     pub tolerance: f64,
     /// The relative tolerance.
     pub rtol: f64,
@@ -31,8 +31,8 @@ const PART: f64 = 0.01;
 
 /// The rolling contacts of a motion, step by step.
 pub(crate) struct Rollers {
-    /// What is unknown of a difference of rates, in parts of them: the norm of the error is a mean
-    /// over all numbers of a step, so one of them may be off by more.
+    /// Relative error of a difference of rates: the norm of the error is a mean over all numbers of
+    /// a step, so one number may have a larger error.
     unknown: f64,
     rtol: f64,
     /// Of each contact the time that it rolls unresolved, s, and the largest rates, m/s.

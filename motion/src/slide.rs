@@ -1,7 +1,7 @@
 //! Contacts that move although friction would hold them.
 //!
-//! A contact that is not damped vibrates at rest, and slides a little whenever it presses less.
-//! Over a while it needs less than the friction it has, and moves all the same.
+//! An undamped contact vibrates at rest, and slides a little whenever it presses less. Over a while
+//! it needs less than the available friction, and moves all the same.
 
 use std::fmt;
 
@@ -11,7 +11,7 @@ use articulated_core::spatial::Vector3;
 
 use crate::touch::{Contact, Touch};
 
-/// A link whose contacts move although friction would hold them.
+/// A link with contacts that move although friction would hold them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slide {
     /// The scene's file.
@@ -35,7 +35,7 @@ const WINDOW: f64 = 0.2;
 /// A link that is off the plane for longer, s, lifts its contacts: it does not rest.
 const LIFTED: f64 = 0.1;
 
-/// Parts of friction up to which it would hold.
+/// Part of friction up to which it would hold.
 const HOLDS: f64 = 0.9;
 
 /// Windows from which on it is reported: a landing is in one or two.
@@ -44,7 +44,7 @@ const SEVERAL: u32 = 3;
 /// The contacts of one link, step by step.
 pub(crate) struct Sliding {
     on: String,
-    /// Which of the scene's contacts.
+    /// Indices among the scene's contacts.
     members: Vec<usize>,
     window: Window,
     /// Windows in which it moved like that, and how far, m, and how long, s.
@@ -68,7 +68,7 @@ struct Window {
     friction: f64,
     /// ∫F_n/k dt, m·s, the mean of the contacts that press.
     depth: f64,
-    /// Time since one of them pressed, s, and the longest so far.
+    /// Time since the last contact that pressed, s, and the longest so far.
     off: f64,
     longest_off: f64,
 }

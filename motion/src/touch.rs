@@ -1,4 +1,4 @@
-//! The contacts of a scene in a state: where they are, whether they press, and with what force.
+//! The contacts of a scene in a state: position, whether they press, and force.
 
 use articulated_core::effect::{Applied, EffectId, Station, unit, wrench};
 use articulated_core::index::FrameId;
@@ -49,8 +49,8 @@ pub(crate) struct Touch {
     pub(crate) press: f64,
     /// Force across the normal, N.
     pub(crate) drag: Vector3<f64>,
-    /// Sliding speed of the lowest point, m/s, and the sum of the speeds of which it is the
-    /// difference: that of the centre, and that of the lowest point about it.
+    /// Sliding speed of the lowest point, m/s, and the sum of the two speeds whose difference it
+    /// is: the centre's speed, and that of the lowest point about the centre.
     pub(crate) sliding: f64,
     pub(crate) rates: f64,
 }
@@ -109,7 +109,7 @@ impl Contact {
         Touch { centre, rotation, presses, press, drag: force - self.normal * press, sliding, rates: carried + turned }
     }
 
-    /// The part of a vector along the plane.
+    /// The component of a vector along the plane.
     pub(crate) fn along_plane(&self, x: Vector3<f64>) -> Vector3<f64> {
         x - self.normal * self.normal.dot(&x)
     }

@@ -12,7 +12,7 @@ use crate::initial::counted;
 use crate::series::{Places, ROW, Source};
 use crate::slots::Slots;
 
-/// What bounds a table.
+/// Upper bounds of a table.
 #[derive(Clone, Copy)]
 struct Most {
     /// Lines with numbers.
@@ -23,15 +23,14 @@ struct Most {
     line: u64,
     /// Lines, empty ones too.
     lines: u32,
-    /// Mistakes that are told before the rest is left alone.
+    /// Reported errors; after these, reading stops.
     wrong: usize,
 }
 
 const MOST: Most = Most { rows: 10_000_000, numbers: 1 << 28, line: 1 << 20, lines: 20_000_000, wrong: 100 };
 
-/// The table of a CSV for a robot; columns that are not there are neutral. What is wrong with it is
-/// told of its lines, and no more of them than the number or the name that is wrong; then the table
-/// is empty.
+/// The table of a CSV for a robot; missing columns are neutral. Errors are reported at their lines
+/// and quote only the wrong number or name; the table is then empty.
 pub(crate) fn read(from: Box<dyn BufRead>, hold: bool, slots: &Slots<'_>, log: &mut Diagnostics) -> Series {
     read_at_most(MOST, from, hold, slots, log)
 }
@@ -56,7 +55,7 @@ fn read_at_most(most: Most, from: Box<dyn BufRead>, hold: bool, slots: &Slots<'_
     if log.count() == 0 { table.series } else { Series::default() }
 }
 
-/// The names of the columns after the time; none of what is no table.
+/// The names of the columns after the time; `None` if the line is not a table's header.
 fn columns(text: &str, at: At, slots: &Slots<'_>, log: &mut Diagnostics) -> Option<Vec<String>> {
     let mut names = fields(text).into_iter();
     let first = names.next().unwrap_or_default();
@@ -84,8 +83,7 @@ struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// Takes the lines up to the end, to what bounds a table, or to so many mistakes that the rest
-    /// is left alone.
+    /// Reads lines up to the end, to a bound of the table, or to the maximum number of errors.
     fn fill(&mut self, lines: &mut Lines, most: Most, log: &mut Diagnostics) {
         let neutral = &self.slots.neutral;
         let rows = most.rows.min(most.numbers / neutral.len().max(1));
@@ -106,7 +104,7 @@ impl Table<'_> {
             if self.places.are_all() {
                 self.slots.normalise(&mut row, ("", &|_| at), log);
             }
-            // Of a table that is wrong nothing is used.
+            // A table with errors is not used.
             if log.count() == 0 {
                 self.series.times.push(numbers[0]);
                 self.series.rows.push(row);
@@ -121,7 +119,7 @@ impl Table<'_> {
         self.last = Some(time);
     }
 
-    /// The numbers of a line; none where one of them is wrong.
+    /// The numbers of a line; `None` if one of them is invalid.
     fn row(&self, text: &str, at: At, log: &mut Diagnostics) -> Option<Vec<f64>> {
         let words = fields(text);
         let width = self.columns.len() + 1;
@@ -150,8 +148,8 @@ struct Lines {
 }
 
 impl Lines {
-    /// The next of them; none at the end, and none after one that is no text or too long, which is
-    /// told.
+    /// The next line; `None` at the end and after a line that is not text or too long, which is
+    /// reported.
     fn next(&mut self, log: &mut Diagnostics) -> Option<(At, String)> {
         loop {
             self.count += 1;
@@ -188,8 +186,8 @@ impl Lines {
     }
 }
 
-/// What stands between the commas of a line, without the blanks around it; in quotation marks there
-/// may be commas too, and two marks are one (RFC 4180).
+/// The fields between the commas of a line, trimmed. Quoted fields may contain commas, and two
+/// quotation marks are one (RFC 4180).
 fn fields(line: &str) -> Vec<String> {
     let (mut fields, mut rest) = (Vec::new(), Some(line));
     while let Some(text) = rest {
@@ -200,7 +198,7 @@ fn fields(line: &str) -> Vec<String> {
     fields
 }
 
-/// A field, and what is behind its comma, if there is one.
+/// A field and the text after its comma, if there is one.
 type Field<'a> = (String, Option<&'a str>);
 
 fn up_to_comma(text: &str) -> Field<'_> {
@@ -241,7 +239,7 @@ mod tests {
         Model::new(&description, Base::Fixed).unwrap()
     }
 
-    /// Read within bounds: the table, or all that is told.
+    /// Reads within bounds: the table, or all reported errors.
     fn read_within(most: Most, from: impl BufRead + 'static) -> Result<Series, String> {
         let mut log = Diagnostics::new("t.csv");
         let series = read_at_most(most, Box::new(from), false, &Slots::of_joints(&arm(), Side::V), &mut log);
@@ -279,7 +277,7 @@ mod tests {
         }
     }
 
-    /// Garbage that goes on and on is not read to its end.
+    /// Endless garbage is not read to its end.
     #[test]
     fn after_many_mistakes_the_rest_is_left_alone() {
         struct Endless(u64);

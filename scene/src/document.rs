@@ -9,7 +9,7 @@ use crate::tree::{Entry, Node, Value};
 /// No scene is larger, bytes: tables of torques included.
 const LARGEST: usize = 16 << 20;
 
-/// The file's table; nothing if it is not TOML.
+/// The file's table; `None` if it is not TOML.
 pub(crate) fn parse(text: &str, log: &mut Diagnostics) -> Option<Node> {
     if text.len() > LARGEST {
         log.error((At::Nowhere, ""), Code::Syntax, format!("{} bytes", text.len()), format!("a scene, of {LARGEST} bytes at most"));

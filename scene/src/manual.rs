@@ -45,7 +45,7 @@ fn list() -> String {
     out
 }
 
-/// What may stand in the place of a table.
+/// The short forms that replace a table.
 fn ways(effect: &Effect) -> String {
     let mut ways = Vec::new();
     if crate::effects::shorthand(effect) {
