@@ -134,8 +134,8 @@ pub(crate) fn rotate(q: Quaternion, v: Vector) -> Vector {
     matrix(q).map(|row| dot(row, v))
 }
 
-/// The unit quaternion of a turn about a unit axis. A quarter turn, of which the double is a
-/// multiple of π/2, has two equal numbers, so that its matrix is exact.
+/// The unit quaternion of a turn about a unit axis. For a double that is a multiple of π/2, a
+/// quarter turn has two equal numbers, so that its matrix is exact.
 pub(crate) fn about(axis: Vector, angle: f64) -> Quaternion {
     let (sine, cosine) = half(angle);
     [cosine, axis[0] * sine, axis[1] * sine, axis[2] * sine]
@@ -212,7 +212,7 @@ pub(crate) fn turned(q: Quaternion, s: Symmetric) -> Symmetric {
     [entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)]
 }
 
-/// The inertia of a point of this mass, kg, so far from the origin.
+/// The inertia of a point of this mass, kg, at this position from the origin.
 pub(crate) fn of_point(mass: f64, [x, y, z]: Vector) -> Symmetric {
     [y * y + z * z, -x * y, -x * z, x * x + z * z, -y * z, x * x + y * y].map(|i| mass * i)
 }

@@ -1,4 +1,4 @@
-//! How to read a document, and what comes of it.
+//! Options for reading a document, and the result.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,16 +17,17 @@ use crate::{Format, Formats, Included, Input, LeaveOut, NoFiles, Sources, snap};
 pub struct Options {
     /// The name of the file in messages. It is not opened.
     pub file: String,
-    /// Whether the root link is the base or moves freely; decides only what is reported as unused.
+    /// Whether the root link is the base or moves freely; it only changes the list of unused
+    /// content.
     pub base: Base,
     /// Makes an inertia that is not positive semi-definite a warning instead of an error. One that
     /// is negative by rounding alone always is a warning.
     pub allow_unphysical_inertia: bool,
-    /// Takes the first of tags of a URDF or SDF that should be there once and contradict each
-    /// other, with a warning, as urdfdom does.
+    /// If a unique tag of a URDF or SDF is repeated with other content, takes the first, with a
+    /// warning, as urdfdom does.
     pub first_of_duplicates: bool,
-    /// Elements of an MJCF that change the motion and are not read, which are left out with a
-    /// warning. Those of another kind are errors.
+    /// Elements of an MJCF that change the motion and are not read, to leave out with a warning.
+    /// Those of other kinds are errors.
     pub leave_out: BTreeSet<LeaveOut>,
     /// Reads a URDF of a version other than 1.0, 1.1 and 1.2 as 1.0, with a warning instead of an
     /// error.
@@ -76,15 +77,15 @@ impl Options {
 /// A robot that was read, with the findings about its file.
 #[derive(Clone, Debug)]
 pub struct Reading {
-    /// The robot. A bound that the file leaves open is infinite: `lower` and `upper` of a
-    /// continuous joint, `effort` and `velocity` that are not given. `axis` is (1, 0, 0) and
-    /// `limit` and `dynamics` are `None` for joints that have no use for them.
+    /// The robot. A bound missing in the file is infinite: `lower` and `upper` of a continuous
+    /// joint, `effort` and `velocity`. `axis` is (1, 0, 0) and `limit` and `dynamics` are `None`
+    /// for joints that do not use them.
     pub description: Description,
-    /// What the file says beside it.
+    /// The world of the file.
     pub world: World,
-    /// What looks wrong; the values were used as written.
+    /// Suspicious content; the values were used as written.
     pub warnings: Vec<Diagnostic>,
-    /// What the file says and the description leaves out, or what only some scenes use.
+    /// Content of the file that the description leaves out, or that only some scenes use.
     pub unused: Vec<Unused>,
     /// Every angle that was replaced because of [`Options::snap_angles`].
     pub snapped: Vec<Diagnostic>,
@@ -115,7 +116,7 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Reading, Diagnostics> {
 pub fn included(sources: &dyn Sources, root: &Path, bytes: &[u8], options: &Options) -> Included {
     let recorder = Recorder { sources, root, known: RefCell::default() };
     if options.formats.of(&options.file, bytes).is_some_and(Format::includes_files) {
-        // What is wrong with the document is reported when it is read.
+        // Errors of the document are reported when it is read.
         drop(read_with(&recorder, bytes, options));
     }
     recorder.included()

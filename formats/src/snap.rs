@@ -9,11 +9,11 @@ use crate::urdf::right_angle;
 /// from a multiple of π/2 was not meant to be one.
 pub const MOST_SNAPPED: f64 = 0.5;
 
-/// What [`Options::snap_angles`](crate::Options::snap_angles) has to be, for messages.
+/// Allowed range of [`Options::snap_angles`](crate::Options::snap_angles), for messages.
 pub const SNAP_EXPECTED: &str = "a finite number above 0, at most 0.5 rad; leave it out to snap none";
 
-/// Whether [`Options::snap_angles`](crate::Options::snap_angles) may be so much, rad: above 0, at
-/// most [`MOST_SNAPPED`].
+/// Whether [`Options::snap_angles`](crate::Options::snap_angles) may have this value, rad: above 0,
+/// at most [`MOST_SNAPPED`].
 pub fn can_snap(tolerance: f64) -> bool {
     tolerance > 0.0 && tolerance <= MOST_SNAPPED
 }

@@ -84,7 +84,7 @@ fn the_extended_crane_is_sound() {
     assert!(answer(extended().as_bytes(), 0));
 }
 
-/// Every error says where and what; nothing is blamed on the reader itself.
+/// Every error has a place and a cause; none is an internal error.
 fn answer(bytes: &[u8], seed: u64) -> bool {
     let options = Options { snap_angles: Some(1e-3), ..Options::default() };
     match std::panic::catch_unwind(|| read(bytes, &options)) {

@@ -9,7 +9,7 @@ use super::element::{Element, Loader};
 use super::grammar;
 use crate::Input;
 
-/// A file may attach so many models.
+/// Maximum number of models that a file attaches.
 const MOST_MODELS: usize = 100;
 
 pub(crate) struct Documents {

@@ -15,7 +15,7 @@ pub(crate) struct Mass {
     pub(crate) mass: f64,
     /// In the axes of the pose.
     pub(crate) inertia: Symmetric,
-    /// The rotation from the pose to the principal axes, where it is not that of the inertia.
+    /// The rotation from the pose to the principal axes, if it is not that of the inertia.
     pub(crate) axes: Option<Quaternion>,
 }
 

@@ -18,7 +18,7 @@ pub(crate) enum InertiaFromGeom {
     Auto,
 }
 
-/// What `<compiler>` says.
+/// The settings of `<compiler>`.
 #[derive(Clone, Debug)]
 pub(crate) struct Compiler {
     pub(crate) auto_limits: bool,
@@ -183,7 +183,7 @@ impl<'a> Classes<'a> {
     }
 }
 
-/// What one document says beside its bodies.
+/// The settings of one document, without its bodies.
 #[derive(Debug)]
 pub(crate) struct Settings<'a> {
     /// The folder of the document.
@@ -195,7 +195,7 @@ pub(crate) struct Settings<'a> {
     pub(crate) height_fields: BTreeMap<String, &'a Element>,
     /// Other documents by their names.
     pub(crate) models: BTreeMap<String, &'a Element>,
-    /// What is in the sections of these names.
+    /// Tags in the sections of these names.
     pub(crate) tendons: Vec<&'a Element>,
     pub(crate) actuators: Vec<&'a Element>,
     pub(crate) equations: Vec<&'a Element>,

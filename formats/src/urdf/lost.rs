@@ -16,7 +16,7 @@ pub(crate) fn is_searched(name: &str) -> bool {
 
 /// Warns of all dynamics that `tag` and the tags inside it state. Whether there are some.
 pub(crate) fn report(tag: &Tag<'_>, parts: &Parts<'_>, log: &mut Diagnostics) -> bool {
-    // What is inside a tag that was reported belongs to it.
+    // Tags inside a reported tag belong to it.
     let (mut end, mut any) = (0, false);
     for inner in tag.descendants() {
         if inner.start() < end {
@@ -43,13 +43,13 @@ fn shown(tag: &Tag<'_>) -> String {
     }
 }
 
-/// What a tag states that is lost.
+/// The lost content of a tag.
 fn loss(tag: &Tag<'_>) -> Option<Loss> {
     let (what, expected) = stated(tag)?;
     Some(Loss { what: what.to_owned(), expected: expected.to_owned() })
 }
 
-/// What a tag states that is lost, and what is expected in its place.
+/// The lost content of a tag, and the expected replacement.
 fn stated(tag: &Tag<'_>) -> Option<(&'static str, &'static str)> {
     let name = letters(&tag.name());
     let has = |words: &[&str]| words.iter().any(|word| name.contains(word));

@@ -21,7 +21,7 @@ pub(crate) enum Version {
 
 const VERSIONS: [(&str, Version); 4] = [("1", Version::V1_0), ("1.0", Version::V1_0), ("1.1", Version::V1_1), ("1.2", Version::V1_2)];
 
-/// What decides how a tag is read, beside the tag itself.
+/// The context of reading a tag.
 pub(crate) struct Context<'a> {
     pub(crate) options: &'a Options,
     pub(crate) version: Version,
@@ -32,7 +32,7 @@ pub(crate) struct Context<'a> {
     pub(crate) materials: BTreeMap<String, [f64; 4]>,
 }
 
-/// All links and joints, with everything wrong about each of them reported.
+/// All links and joints; all errors of each are reported.
 pub(crate) fn draft(robot: &Tag<'_>, options: &Options, log: &mut Diagnostics) -> Draft {
     let name = robot.required_name("name", log).unwrap_or_default();
     unused::warn_of_blanks(robot, &name, log);

@@ -121,7 +121,7 @@ pub(super) fn is_of_every_file(name: &str) -> bool {
     GLOBAL.contains(&name) || MATH_UNREAD.contains(&name) || of_module("math", name).is_some() || own()
 }
 
-/// What a name stands for without a property of this name.
+/// The built-in meaning of a name, without a property of this name.
 pub(super) fn global(name: &str) -> Option<Value> {
     let module = MODULES.iter().find(|module| **module == name).map(|module| Value::Builtin(module));
     module.or_else(|| of_module("python", name)).or_else(|| of_module("math", name)).or_else(|| {
@@ -203,7 +203,7 @@ pub(super) fn call(function: &Value, arguments: Arguments, names: &mut dyn Names
     }
 }
 
-/// The bytes of a list of the items of a value, at most.
+/// Upper bound on the bytes of a list of a value's items.
 pub(super) fn weight(value: &Value) -> usize {
     match value {
         // Each character is a text of its own.
@@ -269,7 +269,7 @@ fn called(function: &str, values: &[Value]) -> String {
     format!("{function} of {}{more}", if shown.is_empty() { "nothing".to_owned() } else { shown.join(", ") })
 }
 
-/// As in Python, what has no value is an error.
+/// As in Python, undefined results are errors.
 fn result_of_math(name: &str, arguments: &[f64], value: f64) -> Result<Value> {
     if !value.is_finite() && arguments.iter().all(|x| x.is_finite()) {
         let shown: Vec<String> = arguments.iter().map(f64::to_string).collect();

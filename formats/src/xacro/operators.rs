@@ -1,4 +1,4 @@
-//! Operators, with the meaning that Python gives them.
+//! Operators, with their meaning in Python.
 
 use std::cmp::Ordering;
 

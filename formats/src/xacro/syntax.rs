@@ -191,8 +191,8 @@ fn number(word: &str) -> Result<Token> {
     }
 }
 
-/// A text in quotation marks, and how many bytes it takes. In a raw one, backslashes stand for
-/// themselves.
+/// A text in quotation marks, and its number of bytes. In a raw text, backslashes are plain
+/// characters.
 fn string(rest: &str, mark: char, is_raw: bool) -> Result<(String, usize)> {
     let mut out = String::new();
     let mut at = mark.len_utf8();
@@ -213,7 +213,7 @@ fn string(rest: &str, mark: char, is_raw: bool) -> Result<(String, usize)> {
     wrong("a text without its closing quotation mark", format!("the sign {mark}"))
 }
 
-/// What stands behind a backslash, as in Python, and how many bytes of `rest` it takes.
+/// The escape after a backslash, as in Python, and its number of bytes in `rest`.
 fn escape(rest: &str, out: &mut String) -> Result<usize> {
     let Some(first) = rest.chars().next() else { return Ok(0) };
     let plain = match first {
@@ -243,7 +243,7 @@ fn escape(rest: &str, out: &mut String) -> Result<usize> {
     Ok(first.len_utf8())
 }
 
-/// The character of a number of so many digits, behind `before` bytes.
+/// The character of a number of `count` digits, after `before` bytes.
 pub(super) fn coded(rest: &str, before: usize, (count, radix): (usize, u32), out: &mut String) -> Result<usize> {
     let digits = rest.get(before..before + count).filter(|digits| digits.bytes().all(|b| char::from(b).is_digit(radix)));
     match digits.and_then(|digits| char::from_u32(u32::from_str_radix(digits, radix).ok()?)) {
@@ -615,7 +615,7 @@ impl Parser {
     }
 }
 
-/// An expression may have so many operators with two operands: each may be one level of the tree.
+/// Maximum number of binary operators of an expression: each may be one level of the tree.
 const MOST_TERMS: usize = 1000;
 
 /// Operators with two operands, those that bind least first.

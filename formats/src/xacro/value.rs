@@ -1,4 +1,4 @@
-//! Values of expressions, with the meaning that Python gives them.
+//! Values of expressions, with their meaning in Python.
 
 use std::cmp::Ordering;
 use std::ops::Deref;
@@ -27,7 +27,7 @@ pub(super) enum Value {
     Scope(usize),
 }
 
-/// The items of a list, and how deeply lists are nested in it.
+/// The items of a list, and the depth of nested lists in it.
 #[derive(Debug)]
 pub(super) struct Items<T> {
     all: Box<[T]>,
@@ -47,7 +47,7 @@ const MOST_DEPTH: u8 = 32;
 /// Items of two lists that a comparison looks at, at most; beyond, they differ.
 const MOST_COMPARED: usize = 1 << 16;
 
-/// What is wrong with an expression.
+/// Errors of an expression.
 #[derive(Clone, Debug)]
 pub(super) enum Fault {
     /// What was found, and what is expected.
@@ -269,7 +269,7 @@ impl Value {
         }
     }
 
-    /// The order of two values; `None` where one is not a number. An error where they have none.
+    /// The order of two values; `None` if one is NaN. An error if they are not comparable.
     pub(super) fn order(&self, other: &Self) -> Result<Option<Ordering>> {
         if let (Some(a), Some(b)) = (self.integer(), other.integer()) {
             return Ok(Some(a.cmp(&b)));
@@ -302,7 +302,7 @@ fn nested<T>(items: Vec<T>, depth: impl Fn(&T) -> u8) -> Result<Rc<Items<T>>> {
 /// Longer texts of lists and dictionaries are cut off, bytes.
 const MOST_WRITTEN: usize = 1 << 20;
 
-/// A number as Python writes it: the fewest digits that stand for it, in scientific notation below
+/// A number as Python writes it: the fewest digits that identify it, in scientific notation below
 /// 1e-4 and from 1e16 on.
 fn float(value: f64) -> String {
     if !value.is_finite() {
@@ -351,8 +351,8 @@ pub(super) fn read_truth(text: &str) -> Option<bool> {
     }
 }
 
-/// The value that a text of a property or a parameter stands for: a number or a truth value, or
-/// what a single pair of `'` encloses, or the text.
+/// The value of a text of a property or a parameter: a number, a truth value, the text inside a
+/// single pair of `'`, or the text itself.
 pub(super) fn read_literal(text: &str) -> Value {
     if text.len() >= 2 && text.starts_with('\'') && text.ends_with('\'') {
         return Value::text(&text[1..text.len() - 1]);

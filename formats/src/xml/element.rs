@@ -66,7 +66,7 @@ impl<'a> Tag<'a> {
         node.children().filter(Node::is_element).map(move |node| Tag { node, lines, subject })
     }
 
-    /// The first text that stands in it, and its line.
+    /// The first text in it, and its line.
     pub(crate) fn text(&self) -> Option<(&'a str, At)> {
         let text = |node: Node<'a, 'a>| Some((node.text()?.trim(), self.lines.at(node.range().start)));
         self.node.children().filter(Node::is_text).filter_map(text).find(|(text, _)| !text.is_empty())
@@ -111,8 +111,8 @@ impl<'a> Tag<'a> {
         Place { at: self.at(), subject: self.subject, field }
     }
 
-    /// The one tag of this name, if there is one. A second one is an error, or a warning where it
-    /// says the same.
+    /// The only tag of this name, if there is one. A second one is an error, or a warning if it has
+    /// the same content.
     pub(crate) fn only(&self, name: &str, log: &mut Diagnostics) -> Option<Tag<'a>> {
         let mut all = self.children().filter(|tag| tag.is(name));
         let first = all.next()?;
@@ -121,8 +121,8 @@ impl<'a> Tag<'a> {
         Some(first)
     }
 
-    /// Reports this tag, a second one of which `first` is the one that counts: an error, or a
-    /// warning where it says the same. `of`: what follows the tag's name in the message.
+    /// Reports this tag, which repeats `first`; the first one counts. An error, or a warning if it
+    /// has the same content. `of`: the text after the tag's name in the message.
     pub(crate) fn report_again(&self, first: &Tag<'a>, name: &str, (of, expected): (&str, &str), log: &mut Diagnostics) {
         let (place, kind, line) = (self.place(name), Code::DuplicateTag, first.at().line().unwrap_or_default());
         if self.says_the_same(first) {

@@ -21,9 +21,9 @@ impl<'a> Lines<'a> {
         Self { text, starts, expressions_reported: false, first_of_duplicates: false, origins: Vec::new() }
     }
 
-    /// Of a text that was expanded from others: places are those of the source.
-    /// `expressions_reported`: expressions that are left over have errors of their own, and are no
-    /// second error as numbers.
+    /// For a text that was expanded from others: places are those of the source.
+    /// `expressions_reported`: remaining expressions have errors of their own, and are not reported
+    /// again as numbers.
     pub(crate) fn expanded(text: &'a str, origins: Vec<(usize, At)>, expressions_reported: bool) -> Self {
         Self { text, starts: vec![0], expressions_reported, first_of_duplicates: false, origins }
     }

@@ -81,7 +81,7 @@ fn checked<const N: usize>(value: &str, at: At, tag: &Tag<'_>, name: &str, log: 
     None
 }
 
-/// What is wrong with a list of numbers: its first bad word, or else how many there are.
+/// The error of a list of numbers: its first invalid word, or else its length.
 enum Wrong<'a> {
     Word(&'a str, Fault),
     Count(usize),

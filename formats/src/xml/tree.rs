@@ -36,12 +36,13 @@ pub(crate) struct File {
     pub(crate) included: bool,
     /// Whether the first counts of tags that should be there once.
     pub(crate) first_of_duplicates: bool,
-    /// Whether its tags are made from a file of another format, of which the warnings are told.
+    /// Whether its tags are made from a file of another format, whose warnings are already
+    /// reported.
     pub(crate) converted: bool,
 }
 
 impl Element {
-    /// Of a tag of a file, without its children.
+    /// From a tag of a file, without its children.
     pub(crate) fn of(tag: &Tag<'_>, file: &Rc<File>) -> Self {
         let attributes = tag
             .attributes_with_lines()
@@ -87,7 +88,7 @@ impl Element {
         Diagnostic::error(&self.file.name, Place { at, subject, field }, code, found, expected)
     }
 
-    /// Reports an error at one of the attributes, or at the tag where it has none of this name.
+    /// Reports an error at an attribute, or at the tag if it has no such attribute.
     pub(crate) fn error(
         &self,
         (subject, field): (&Subject, &str),
@@ -118,7 +119,7 @@ impl Element {
         self.attribute(field).map_or(self.at, |attribute| attribute.at)
     }
 
-    /// Reports what of it is not used: an attribute, or the tag.
+    /// Reports unused content: an attribute, or the tag.
     pub(crate) fn unused(&self, subject: &Subject, attribute: Option<&Attribute>, why: &str, log: &mut Diagnostics) {
         let what = attribute.map_or_else(|| self.name.clone(), |attribute| format!("{} {}", self.name, attribute.name));
         self.unused_part(subject, (attribute, what), why, log);
