@@ -1,4 +1,4 @@
-//! What the command prints: see [`articulated_lab::console`].
+//! Output of the command: see [`articulated_lab::console`].
 
 use std::cell::RefCell;
 
@@ -16,7 +16,7 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 }
 
 thread_local! {
-    /// Where this thread's report goes instead of the standard output.
+    /// Captures this thread's report instead of the standard output.
     static CAPTURED: RefCell<Option<Reports>> = const { RefCell::new(None) };
 }
 

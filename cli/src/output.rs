@@ -16,7 +16,7 @@ pub(crate) fn folder(option: &str, path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(|e| unwritable(path, &e))
 }
 
-/// Whether the file that an option names can be one: it stands in a folder and is none.
+/// Checks that the path is in an existing folder and is not a folder.
 pub(crate) fn file(option: &str, path: &Path) -> Result<(), Failure> {
     let wrong =
         |found: &str, expected: &str| Err(Failure::input([format!("{option} {}: found {found}, expected {expected}", path.display())]));
@@ -44,7 +44,7 @@ pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
     matches!((identity(a), identity(b)), (Ok(a), Ok(b)) if a == b)
 }
 
-/// What no two files have in common: device and number of the file.
+/// Unique identity of a file: its device and number.
 #[cfg(unix)]
 fn identity(path: &Path) -> io::Result<(u64, u64)> {
     use std::os::unix::fs::MetadataExt;
@@ -56,7 +56,7 @@ fn identity(path: &Path) -> io::Result<PathBuf> {
     path.canonicalize()
 }
 
-/// Writes a file; what was there stays as it is if that cannot be done.
+/// Writes a file; an old file stays unchanged after an error.
 pub(crate) fn write(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
     written(path, bytes.as_ref()).map_err(|e| unwritable(path, &e))
 }

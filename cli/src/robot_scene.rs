@@ -14,8 +14,8 @@ use crate::table::number;
 /// How long the motion is, s.
 const END: f64 = 5.0;
 
-/// A scene, as TOML, with the forces of the file that are smooth. What else the file has is in its
-/// comments. Errors: those of the file.
+/// A scene, as TOML, with the smooth forces of the file. Its comments list the other forces.
+/// Errors: those of the file.
 pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     let reading = read(path)?;
     let (joints, world) = (&reading.description.joints, &reading.world);
@@ -74,7 +74,8 @@ const SINKS: f64 = 1e-4;
 const POINTS: usize = 4;
 
 impl Resting {
-    /// Of all mass of a robot. Each point carries an equal part m of it: k = m g/x, T = 2 √(m/k).
+    /// For the mass of the whole robot. Each point carries an equal part m: k = m g/x, T = 2
+    /// √(m/k).
     fn of(reading: &Reading) -> Self {
         let links = &reading.description.links;
         let mass: f64 = links.iter().filter_map(|link| link.inertial).map(|inertial| inertial.mass).sum();
@@ -104,7 +105,7 @@ fn quoted(text: &str) -> String {
     out + "\""
 }
 
-/// What of the file such a scene leaves out, in words.
+/// Forces of the file that such a scene leaves out, in words.
 pub(crate) fn left_out(joints: &[Joint], has_collision: bool) -> Vec<&'static str> {
     let others = OTHERS.iter().filter(|(.., has)| joints.iter().any(has)).map(|(_, what, _)| *what);
     others.chain(has_collision.then_some("contacts")).collect()
@@ -112,7 +113,7 @@ pub(crate) fn left_out(joints: &[Joint], has_collision: bool) -> Vec<&'static st
 
 type Has = fn(&Joint) -> bool;
 
-/// Effects whose forces are smooth.
+/// Effects with smooth forces.
 const SMOOTH: [(&str, Has); 3] = [
     ("damping", |joint| is_not_zero(joint.dynamics.damping)),
     ("spring", |joint| is_not_zero(joint.dynamics.stiffness)),
@@ -140,7 +141,7 @@ fn read(path: &Path) -> Result<Reading, Failure> {
     Ok(read_with(&included, &bytes, &options)?)
 }
 
-/// A note on a scene that a robot's file was made into. Nothing is left out without a word.
+/// A note about the scene made from a robot's file: it lists all that is left out.
 pub(crate) fn note(path: &Path) -> Result<Option<String>, Failure> {
     let reading = read(path)?;
     let collides = reading.description.links.iter().any(|link| !link.collision.is_empty());

@@ -134,7 +134,7 @@ fn joints(rows: &[JointRow]) -> Table {
     table
 }
 
-/// What a joint follows: `0.5 · a - 0.5 · c + 0.1`.
+/// The law of a follower: `0.5 · a - 0.5 · c + 0.1`.
 fn sum(mimic: &MimicRow) -> String {
     let mut out = String::new();
     let sign = |x: f64| if x < 0.0 { " - " } else { " + " };

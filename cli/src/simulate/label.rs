@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use articulated_lab::plot::width;
 
-/// A text that is no wider than `most`, with … for what does not fit, in its middle: most names
-/// differ at their ends.
+/// A text no wider than `most`, with … in its middle if it is too long: most names differ at their
+/// ends.
 fn fitted(text: &str, size: f64, most: f64) -> String {
     if width(text, size) <= most {
         return text.to_owned();
@@ -19,7 +19,8 @@ fn fitted(text: &str, size: f64, most: f64) -> String {
     (0..letters.len()).rev().map(cut).find(|t| width(t, size) <= most).unwrap_or_default()
 }
 
-/// Each no wider than `most`; of names that would look alike, what they share is cut first.
+/// Each label is no wider than `most`; in names that would look alike, the common part is cut
+/// first.
 pub(super) fn told_apart(names: &[String], size: f64, most: f64) -> Vec<String> {
     let mut labels: Vec<String> = names.iter().map(|name| fitted(name, size, most)).collect();
     let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();

@@ -11,7 +11,7 @@ use super::files::is_page;
 use crate::console;
 use crate::failure::Failure;
 
-/// Bytes of a number with its comma, at most.
+/// Upper bound of bytes of a number with its comma.
 const NUMBER: f64 = 25.0;
 
 /// The command announces a size of this many bytes or more.

@@ -124,7 +124,7 @@ fn table(s: &Summary) -> Table {
     table
 }
 
-/// Events are words: the last column of a table of numbers would push them to the right.
+/// Events are words: as the last column of a table of numbers they would be aligned to the right.
 fn left_aligned(text: &str) -> String {
     text.lines()
         .map(|line| {

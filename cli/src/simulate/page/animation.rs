@@ -145,7 +145,7 @@ impl Page {
         out
     }
 
-    /// Lines on the ground, around what moves.
+    /// Lines on the ground, around the moving bodies.
     fn grid(&self, room: &Room, eye: &Eye) -> String {
         let center = room.center + room.up * (room.ground - room.up.dot(&room.center));
         let spot = |i: i32, j: i32| {
