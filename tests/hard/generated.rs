@@ -1,4 +1,4 @@
-//! Generated code of the hard robots: errors within what its level promises.
+//! Generated code of the hard robots: errors within the contract of its level.
 
 use articulated_codegen::Precision;
 use articulated_core::description::Description;

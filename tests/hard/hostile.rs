@@ -1,5 +1,5 @@
-//! A robot that reads is a model, or an error that says what overflows; what is computed of it is
-//! finite or an error, and nothing panics, whatever the numbers.
+//! A readable robot is a model, or an error that names the overflow; its results are finite or an
+//! error, and nothing panics, whatever the numbers.
 
 use articulated_codegen::model_pass::View;
 use articulated_codegen::{Request, generate};

@@ -137,7 +137,7 @@ def wrapped(peer, code, symbol, function, takes):
     known = "".join(f"  if (!{x}) __builtin_unreachable();\n" for x in ["r0", "r1", "r2"])
     arguments = ", ".join(f"(const {numbers} *){x}" for x in names)
     results = "".join(f"  {numbers} *r{k} = ({numbers} *){f'head->results[{k}]' if kept else 'out'};\n" for k in range(3))
-    # All of CasADi's functions, so that no compiler leaves one of them as it is: of squares g++ does.
+    # All of CasADi's functions, so that the compiler inlines each: g++ does not inline squares.
     kinds = [("int", (f"{symbol}_code_f0", symbol), f"const {numbers} **, {numbers} **, long long *, {numbers} *, int"),
              (numbers, (f"{symbol}_code_sq", f"{symbol}_code_fabs"), numbers)]
     inlined = "".join(f"static inline __attribute__((always_inline)) {gives} {name}({parts});\n" for gives, each, parts in kinds for name in each)

@@ -42,7 +42,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The crates of this workspace that a crate is compiled with; those of its tests apart.
+/// The workspace's crates that a crate depends on, without those of its tests.
 fn dependencies(folder: &str) -> Vec<String> {
     let manifest = fs::read_to_string(root().join(folder).join("Cargo.toml")).expect("a manifest");
     let mut section = String::new();
@@ -213,7 +213,7 @@ fn a_circle_is_found_and_a_tree_is_none() {
 /// The number only falls.
 const LONG_COMMENTS: usize = 80;
 
-/// All files of Rust in a folder and the folders below it, but for what builds write.
+/// All Rust files in a folder and its subfolders, except build outputs.
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()) {
         let name = entry.file_name().and_then(|name| name.to_str()).unwrap_or_default();

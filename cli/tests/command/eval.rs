@@ -331,8 +331,8 @@ fn a_robot_that_no_matrix_fits_is_refused() {
     }
 }
 
-/// Files as they are shipped, against closed forms: a hinge about y through the origin has M = I_yy
-/// + m (x² + z²), summed over the carried links.
+/// Files as they are shipped, against closed forms: a hinge about y through the origin has
+/// M = I_yy + m (x² + z²), summed over the carried links.
 #[test]
 fn robots_of_shipped_files_have_the_values_of_closed_forms() {
     let body = |name: &str, mass: &str, at: &str, moments: [&str; 4]| {

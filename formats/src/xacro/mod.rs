@@ -24,7 +24,7 @@
 //! * All errors are reported, not only the first.
 //! * `$(find name)` is `package://name` in the expanded document.
 //! * An expression without a value in the `filename` of a tag is a warning: names of meshes do not
-//! affect the dynamics.
+//!   affect the dynamics.
 //! * Integers have 127 bits.
 //!
 //! # Bounds

@@ -109,7 +109,7 @@ fn gravity_and_numbers_of_effects_are_inputs_where_they_are_asked_for() {
     }
 }
 
-/// Of one state, of fewer and more than blocks have, and of none.
+/// For one state, for fewer and more than a block, and for none.
 #[test]
 fn states_of_a_batch_have_parameters_of_their_own_or_one_set_for_all() {
     use tuned::batch_f64::{Lanes, LengthError};

@@ -99,7 +99,7 @@ fn report(robot: &Robot, reference: &Reference, model: &Model<f64>, rustc: &Rust
     }
 }
 
-/// One function and what it is measured on.
+/// One function and the objects that it is measured on.
 struct One<'a> {
     f: &'static Function<f64>,
     model: &'a Model<f64>,
@@ -171,7 +171,7 @@ impl One<'_> {
         Entry { point, verdicts: Vec::new() }
     }
 
-    /// The errors of all that take these states. States are shared out among the threads.
+    /// The errors of all contenders for these states. Threads share the states.
     fn judge(
         &self,
         single: bool,

@@ -1,8 +1,8 @@
-//! A sentence for what one would not have guessed.
+//! Sentences about unexpected results.
 
 use super::report::Point;
 
-/// What the points of one function say that is worth knowing.
+/// Notable results among the points of one function.
 pub(super) fn surprises(points: &[Point]) -> Vec<String> {
     let Some(plain) = points.iter().find(|p| p.level == "f64") else { return Vec::new() };
     let seen = Seen { points, plain };

@@ -18,7 +18,7 @@ use crate::robot::Robot;
 use crate::states::{self, State};
 use crate::tips::{FEW, Tips};
 
-/// What functions are prepared from.
+/// Inputs of the prepared functions.
 pub(super) struct Plan {
     pub(super) robot: Robot,
     /// The frames of each function, unless the user chose them.

@@ -8,7 +8,7 @@ pub(super) fn diagonal(m: &[f64]) -> Vec<f64> {
     (0..n).map(|k| m[k * (n + 1)].sqrt()).collect()
 }
 
-/// ‖x‖₂; no square of a small number is lost.
+/// ‖x‖₂, without underflow of squares of small numbers.
 pub(super) fn norm(x: &[f64]) -> f64 {
     let most = x.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     if most == 0.0 { 0.0 } else { most * x.iter().map(|x| (x / most) * (x / most)).sum::<f64>().sqrt() }

@@ -1,4 +1,4 @@
-//! The placements of joints in motion, each as the doc comments of [`JointKind`] say.
+//! The placements of moving joints, each according to the doc comments of [`JointKind`].
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -43,8 +43,7 @@ fn plane<S: Scalar>(normal: [f64; 3]) -> [Vector3<Jet<S>>; 2] {
     let x = match along {
         Some(k) if normal[k] > 0.0 || k == 0 => e[(k + 1) % 3],
         Some(_) => e[0],
-        // The coordinate axis that leans most away from the normal, the first of them, gives x = e
-        // × z.
+        // The coordinate axis furthest from the normal, the first of several, gives x = e × z.
         None => {
             let farthest = (0..3).fold(0, |best, k| if normal[k].abs() < normal[best].abs() { k } else { best });
             let x = e[farthest].cross(&z);

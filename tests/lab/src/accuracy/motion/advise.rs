@@ -16,21 +16,21 @@ pub(super) const UNITS: Units = Units(&[
     ("runs[].momentum", "the momentum at the start"),
 ]);
 
-/// What to take for one motion.
+/// The recommended integrator for one motion.
 #[derive(Clone, Debug, Serialize)]
 pub struct Advice<'a> {
     scene: &'a str,
     wish: f64,
     units: Units,
-    /// That of the fewest evaluations and that of the least time, which may be the same; none if
-    /// nothing measured is accurate enough.
+    /// The runs with the fewest evaluations and with the least time, which may be the same; empty
+    /// if no measured run is accurate enough.
     pub(super) runs: Vec<Run<'a>>,
 }
 
-/// An integrator with its setting, and what that comes to.
+/// An integrator with its setting and its results.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct Run<'a> {
-    /// Of what it takes least: `evaluations` or `wall`.
+    /// The minimal quantity: `evaluations` or `wall`.
     least: &'static str,
     pub(super) integrator: &'a str,
     #[serde(flatten)]

@@ -1,4 +1,4 @@
-//! Simplification: what each model pass does to the error of inverse dynamics.
+//! Simplification: the effect of each model pass on the error of inverse dynamics.
 
 use articulated_codegen::model_pass::{View, model_passes};
 use articulated_core::description::{Base, Description};

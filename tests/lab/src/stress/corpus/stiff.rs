@@ -1,5 +1,5 @@
-//! Stiff effects: implicit integrators decay as the motion does, explicit ones refuse and say which
-//! step they can take.
+//! Stiff effects: implicit integrators decay like the motion, explicit ones refuse and report their
+//! stable step.
 
 use articulated::simulate::{IntegratorId, NoTorque, Output, Recording, Settings, SimulateError, Simulation, integrators};
 use articulated_core::description::{JointKind, Origin};
@@ -43,7 +43,7 @@ struct Motion {
 }
 
 impl Motion {
-    /// Nothing: steps chosen by tolerances.
+    /// `step`: `None` for steps chosen by tolerances.
     fn run(&self, integrator: IntegratorId, step: Option<f64>) -> Result<Recording, SimulateError> {
         let settings = Settings { integrator, end: self.end, step, output: Output::Steps, rtol: 1e-8, atol: 1e-12, ..Settings::default() };
         Simulation::new(&self.robot, settings)?.run(&[self.q], &[self.v], &mut NoTorque, &mut [])
@@ -66,9 +66,9 @@ impl Motion {
         }
     }
 
-    /// Every explicit integrator refuses these steps and says from which on it is stable; with
-    /// three tenths of these, since a force that bends within a step is not its tangent, it comes
-    /// to rest in the right place.
+    /// Every explicit integrator refuses these steps and reports its stable step; with three tenths
+    /// of that, since a force that bends within a step differs from its tangent, it comes to rest
+    /// in the right place.
     fn refused(&self, case: &Case, step: f64) -> Vec<Row> {
         explicit()
             .map(|integrator| {
@@ -100,7 +100,7 @@ fn explicit() -> impl Iterator<Item = IntegratorId> {
     integrators().iter().filter(|row| !row.implicit).map(|row| row.id)
 }
 
-/// How often a sequence changes its sign; what has died away has none.
+/// Number of sign changes of a sequence, without those of numbers that have decayed.
 fn flips(v: &[f64]) -> f64 {
     v.windows(2).filter(|w| w[0] * w[1] < 0.0 && w[1].abs() > 1e-12).count() as f64
 }
