@@ -10,7 +10,7 @@ use std::process::Command;
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=ARTICULATED_COMMIT");
-    // The variable reaches the compiler as it is.
+    // The variable reaches the compiler unchanged.
     if std::env::var_os("ARTICULATED_COMMIT").is_some() || std::env::var("PROFILE").as_deref() != Ok("release") {
         return;
     }
@@ -27,7 +27,7 @@ fn packaged() -> Option<String> {
 }
 
 fn checked_out() -> Option<String> {
-    // A copy inside of somebody else's repository is not part of it.
+    // A copy inside another repository is not part of it.
     git(&["ls-files", "--error-unmatch", "Cargo.toml"])?;
     let commit = git(&["rev-parse", "HEAD"])?;
     // Files that change with every commit and every change of branch. A missing path would cause a

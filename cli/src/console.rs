@@ -10,7 +10,7 @@ use crate::arguments::Format;
 use crate::excerpt::Excerpts;
 use crate::failure::Failure;
 
-/// Writes to the standard output. A reader that has gone away is not an error.
+/// Writes to the standard output. A closed pipe is not an error.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     articulated_lab::console::print(text).map_err(|error| Failure::input([format!("standard output: {error}")]))
 }

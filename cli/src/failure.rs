@@ -9,7 +9,7 @@ use crate::diagnostic::Diagnostic;
 
 /// Everything went well.
 pub const OK: u8 = 0;
-/// The input was found wrong or unusable.
+/// The input is wrong or unusable.
 pub const INPUT: u8 = 1;
 /// The command line is wrong.
 pub const USAGE: u8 = 2;
@@ -38,7 +38,7 @@ Exit status:
 pub(crate) struct Failure {
     pub(crate) status: u8,
     pub(crate) errors: Vec<Diagnostic>,
-    /// Whether a report was printed: as JSON it is all there is to print.
+    /// Whether a report was printed: as JSON it is the whole output.
     pub(crate) reported: bool,
 }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
 
-/// The folder that an option names, made if it is not there.
+/// The folder of an option, created if it is missing.
 pub(crate) fn folder(option: &str, path: &Path) -> Result<(), Failure> {
     if path.exists() && !path.is_dir() {
         let expected = "a folder, which is made if it is not there";
@@ -78,7 +78,7 @@ fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let folder = target.parent().filter(|parent| *parent != Path::new("")).unwrap_or(Path::new("."));
     let (beside, mut file) = match beside(folder) {
         Ok(made) => made,
-        // Where no file can be made, one that is there can be written all the same.
+        // If no file can be created, an existing one can still be written.
         Err(error) if error.kind() == io::ErrorKind::PermissionDenied && old.is_some() => return fs::write(target, bytes),
         Err(error) => return Err(error),
     };
@@ -90,7 +90,7 @@ fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
     replaced
 }
 
-/// A new file in a folder, with the permissions that new files have here.
+/// A new file in a folder, with the default permissions.
 fn beside(folder: &Path) -> io::Result<(PathBuf, fs::File)> {
     for number in 0_u32.. {
         let path = folder.join(format!(".articulated{}_{number}", std::process::id()));

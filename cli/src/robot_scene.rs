@@ -57,25 +57,26 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     Ok(out)
 }
 
-/// Numbers of contacts on which a robot rests: they sink in by [`SINKS`] and are damped critically.
+/// Parameters of contacts on which a robot rests: they sink in by [`SINKS`] and are damped
+/// critically.
 struct Resting {
     /// N/m.
     stiffness: f64,
     /// s.
     damping_time: f64,
-    /// For which mass on how many points, in words.
+    /// The mass and the number of points, in words.
     on: String,
 }
 
-/// How far contacts sink in under the robot, m.
+/// Depth of contacts under the robot's weight, m.
 const SINKS: f64 = 1e-4;
 
-/// Points on which a robot rests, if it has as many.
+/// Number of points on which a robot rests, at most.
 const POINTS: usize = 4;
 
 impl Resting {
-    /// For the mass of the whole robot. Each point carries an equal part m: k = m g/x, T = 2
-    /// √(m/k).
+    /// For the mass of the whole robot, of which each point carries an equal part m:
+    /// k = m g/x, T = 2 √(m/k).
     fn of(reading: &Reading) -> Self {
         let links = &reading.description.links;
         let mass: f64 = links.iter().filter_map(|link| link.inertial).map(|inertial| inertial.mass).sum();
@@ -124,7 +125,7 @@ fn is_not_zero(number: Option<f64>) -> bool {
     number.is_some_and(|number| number != 0.0)
 }
 
-/// Others, as a scene turns them on.
+/// Other effects, which a scene can turn on.
 const OTHERS: [(&str, &str, Has); 2] = [
     ("friction = \"file\"", "dry friction", |joint| is_not_zero(joint.dynamics.friction)),
     ("limit = { from = \"file\", stiffness = 1e4, damping = 10 }", "limits", |joint| {

@@ -39,7 +39,7 @@ pub trait Sources {
         None
     }
 
-    /// A variable of the environment, where these sources have one.
+    /// A variable of the environment, if these sources have one.
     fn variable(&self, _name: &str) -> Option<String> {
         None
     }
@@ -146,8 +146,8 @@ impl Sources for NoFiles {
     }
 }
 
-/// The files that a document includes, read before it is: the document can be read again, without
-/// the file system. Cheap to clone.
+/// The files that a document includes, read before the document: it can be read again without the
+/// file system. Cheap to clone.
 #[derive(Clone, Default, PartialEq)]
 pub struct Included(Arc<Known>);
 
@@ -283,7 +283,7 @@ pub fn nearest_file(path: &Path) -> Option<String> {
     })
 }
 
-/// No robot file is larger, bytes: one of 100 000 links stays well below.
+/// Maximum size of a robot file, bytes: one of 100 000 links is well below.
 pub const MOST_BYTES: u64 = 64 << 20;
 
 /// The bytes of the regular file at `path`, `most` at most. Errors: those of [`open_file`].
@@ -428,7 +428,7 @@ mod tests {
         std::fs::remove_dir_all(folder).unwrap();
     }
 
-    /// As one that somebody writes to while it is read.
+    /// Like a file that grows while it is read.
     #[test]
     fn a_file_that_grows_is_refused_where_it_gets_too_large() {
         let mut reader = AtMost::new(&b"robots"[..], 5);

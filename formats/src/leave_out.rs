@@ -6,8 +6,8 @@ use std::str::FromStr;
 use articulated_core::suggest::nearest;
 
 /// Elements of an MJCF that change the motion and are not read. They are errors, unless
-/// [`Options::leave_out`](crate::Options::leave_out) has their kind: then they are warnings, and
-/// the motion is that without them.
+/// [`Options::leave_out`](crate::Options::leave_out) contains their kind: then they are warnings,
+/// and the motion is computed without them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LeaveOut {
     /// Flexible bodies: `flex` and `flexcomp`.

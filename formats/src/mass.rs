@@ -2,7 +2,7 @@
 
 use articulated_core::Plain;
 
-/// The greatest mass of a link that is not reported, kg: a thousand tonnes.
+/// Greatest plausible mass of a link, kg: a thousand tonnes.
 const MOST: f64 = 1e6;
 
 /// The found and the expected text for an implausible mass, kg, of a link; `None` for a plausible

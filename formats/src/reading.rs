@@ -38,8 +38,8 @@ pub struct Options {
     pub snap_angles: Option<f64>,
     /// The formats to choose from.
     pub formats: Formats,
-    /// Values of arguments of the file, as `<xacro:arg>` declares them. One that the file does not
-    /// have is a warning.
+    /// Values of arguments of the file, as declared by `<xacro:arg>`. An undeclared one is a
+    /// warning.
     pub arguments: BTreeMap<String, String>,
     /// Folders of packages, for files that the file includes from them.
     pub packages: BTreeMap<String, PathBuf>,
@@ -63,7 +63,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Warns of arguments other than those that the document declares.
+    /// Warns of undeclared arguments.
     pub(crate) fn warn_of_arguments(&self, declared: &BTreeSet<String>, log: &mut Diagnostics) {
         for name in self.arguments.keys().filter(|name| !declared.contains(*name)) {
             let near =
@@ -92,14 +92,14 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Withdraws findings about mass that the fixed base carries, of the links that an edit has let
-    /// `go`.
+    /// Withdraws findings about mass that the fixed base carries, for links that an edit has
+    /// released (`go`).
     pub fn release(&mut self, go: impl Fn(&str) -> bool) {
         self.unused.retain(|u| !(u.why == HELD && matches!(&u.subject, Subject::Link(name) if go(name))));
     }
 }
 
-/// Why mass that the fixed base carries is not used.
+/// Reason why mass that the fixed base carries is not used.
 pub(crate) const HELD: &str = "the base is fixed, and this link with it";
 
 /// The robot in `bytes`; files that it includes are refused. Lengths in m, masses in kg, angles in
@@ -111,8 +111,8 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Reading, Diagnostics> {
     read_with(&NoFiles, bytes, options)
 }
 
-/// The files that a document includes, for reading it again with [`read_with`]. Their names are as
-/// the document and `options.file` make them; `root` is the folder that they start from.
+/// The files that a document includes, for reading it again with [`read_with`]. Their names are
+/// built from the document and `options.file`; `root` is the folder that they are relative to.
 pub fn included(sources: &dyn Sources, root: &Path, bytes: &[u8], options: &Options) -> Included {
     let recorder = Recorder { sources, root, known: RefCell::default() };
     if options.formats.of(&options.file, bytes).is_some_and(Format::includes_files) {

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use articulated_core::description::{Coupling, Description};
 use articulated_core::diagnostic::At;
 
-/// A robot and its world, as a format reads them.
+/// A robot and its world, as read by a format.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Document {
     /// The robot.
@@ -130,9 +130,9 @@ impl ContactMask {
 pub struct Loop {
     /// Its name; may be empty.
     pub name: String,
-    /// Its kind, as the file calls it: `connect`, `weld`, `joint`, `tendon`.
+    /// Its kind, with the file's name for it: `connect`, `weld`, `joint`, `tendon`.
     pub kind: String,
-    /// The links or joints that it is about.
+    /// Its links or joints.
     pub between: Vec<String>,
     /// Place in the file.
     pub place: At,

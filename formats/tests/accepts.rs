@@ -124,7 +124,7 @@ fn floating_and_planar_joints_are_described() {
     }
 }
 
-/// Programs differ in what they take for its plane.
+/// Other programs use different planes for it.
 #[test]
 fn a_planar_joint_without_an_axis_moves_across_x_and_is_warned_of() {
     let reading = accepted(&slew("planar", ""));
@@ -272,7 +272,7 @@ fn expressions_of_xacro_in_names_of_files_play_no_part() {
     let reading = accepted(&crane("<link name=\"hook\"/>", mesh));
     assert!(reading.warnings.is_empty(), "{:?}", reading.warnings);
     let mut description = reading.description;
-    // Meshes are named, and that is all.
+    // Only the names of meshes are kept.
     let named = std::mem::take(&mut description.links[LinkId(3)].collision);
     let shape = CollisionShape::Mesh { file: "$(arg folder)/hook.stl".into(), scale: [1.0; 3] };
     assert_eq!(named, [Collision { origin: Origin::default(), shape }]);

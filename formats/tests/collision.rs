@@ -1,5 +1,5 @@
-//! Shapes of links: read where they are right. Collision geometry that is wrong is a warning, and
-//! appearance plays no part in the dynamics.
+//! Shapes of links: valid ones are read. Invalid collision geometry is a warning, and appearance
+//! has no effect on the dynamics.
 
 mod corpus;
 
@@ -89,7 +89,7 @@ fn geometry_that_cannot_be_read_is_a_warning_and_says_why() {
     assert!(reading.warnings.len() == 2 && why.ends_with(", and 1 more"), "{why}");
 }
 
-/// One that cannot be read leaves the others.
+/// An unreadable one leaves the others unchanged.
 #[test]
 fn each_piece_is_read_by_itself() {
     let reading = hook(&[geometry("<sphere radius='-1'/>"), geometry("<sphere radius='2'/>")].concat());
@@ -111,7 +111,7 @@ fn what_is_not_known_of_geometry_is_reported_and_what_is_meant_for_others_is_lis
     assert_eq!(of_hook(&reading).len(), 1);
 }
 
-/// An expression of xacro in a size is an error, as everywhere but in names of files.
+/// An expression of xacro in a size is an error, as everywhere except in names of files.
 #[test]
 fn expressions_of_xacro_in_sizes_are_errors() {
     let text = crane("<link name=\"hook\"/>", &format!("<link name=\"hook\">{}</link>", geometry("<sphere radius='${r}'/>")));

@@ -224,7 +224,7 @@ fn a_ring_beside_the_tree_is_named() {
     assert!(error.found.contains("\"ab\"") && error.found.contains("\"ba\""), "{error}");
 }
 
-/// How many roots there are shows once the ring is gone.
+/// The number of roots is found once the ring is removed.
 #[test]
 fn a_ring_beside_two_roots_is_the_one_error() {
     let links: String = ["one", "two", "a", "b"].map(|name| format!("<link name='{name}'/>")).concat();
@@ -251,7 +251,7 @@ fn a_link_with_two_parents_is_named_with_both_joints() {
     assert!(["\"hook\"", "\"swing\"", "\"again\""].iter().all(|name| message.contains(name)), "{message}");
 }
 
-/// A follower with a law that is not read would be another mechanism.
+/// A follower with an unread law would be another mechanism.
 #[test]
 fn what_may_change_the_law_of_a_follower_is_an_error_that_names_joint_and_attribute() {
     let with = |mimic: &str| crane("<axis xyz=\"0 1 0\"/>", &format!("<axis xyz=\"0 1 0\"/>\n{mimic}"));

@@ -274,7 +274,7 @@ fn included_files_are_in_the_place_of_their_tags() {
     let reading = read_with(&files, MAIN.as_bytes(), &options()).unwrap();
     let mass = reading.description.links[LinkId(1)].inertial.unwrap().mass;
     assert!((mass - 1000.0 * (32.0 * std::f64::consts::PI / 3.0 + 1.0 / 6.0)).abs() < 1e-9, "{mass}");
-    // Kept files are as good as those that they were.
+    // Recorded files give the same result as the original ones.
     let kept = included(&files, Path::new(""), MAIN.as_bytes(), &options());
     let names: Vec<_> = kept.files().map(|(path, _)| path.to_str().unwrap()).collect();
     assert_eq!(names, ["robots/m.obj", "robots/parts/common.xml", "robots/parts/more.xml"]);

@@ -1,4 +1,4 @@
-//! MJCF: masses and frames of bodies. The right numbers are MuJoCo's (4.0.0).
+//! MJCF: masses and frames of bodies. The expected numbers are MuJoCo's (4.0.0).
 
 use std::collections::BTreeMap;
 use std::io::{Error, ErrorKind, Result};
@@ -115,7 +115,7 @@ fn the_frame_of_an_aligned_free_body_is_that_of_its_inertia() {
 
 #[test]
 fn axes_of_a_diagonal_inertia_are_those_of_the_file() {
-    // MuJoCo sorts moments that it computes, and no others.
+    // MuJoCo sorts only moments that it computes.
     let text = "<mujoco><worldbody><body name=\"b\" pos=\"1 2 3\"><freejoint align=\"true\"/>
         <inertial pos=\"0.5 0 0\" mass=\"2\" diaginertia=\"0.3 0.5 0.4\"/></body></worldbody></mujoco>";
     let reading = accepted(text);

@@ -151,8 +151,8 @@ fn a_mass_or_an_inertia_alone_on_a_fixed_base_is_told_and_zeros_are_not() {
     assert!(told("1", "0") && told("0", "1") && !told("0", "0"));
 }
 
-/// A number with a unit, an angle in degrees, a loop that is to be closed: another robot is meant
-/// than is read. Extensions of others are not.
+/// A number with a unit, an angle in degrees, a loop to be closed: the intended robot differs from
+/// the one read. Extensions of others do not count.
 #[test]
 fn what_nobody_knows_is_warned_of() {
     let told = |from: &str, to: &str| {
@@ -342,7 +342,7 @@ fn content_of_links_and_joints_that_is_not_used_is_reported() {
     }
 }
 
-/// A thousand tonnes are no link's: most often the mass is in grams, or a placeholder.
+/// No link has a thousand tonnes: most often the mass is in grams, or a placeholder.
 #[test]
 fn a_mass_beyond_any_link_is_a_warning_in_every_format() {
     let moments = "ixx='1e7' ixy='0' ixz='0' iyy='1e7' iyz='0' izz='1e7'";

@@ -506,7 +506,7 @@ fn planes_of_still_models_are_planes_of_the_world() {
     assert_eq!(planes(&ground(""))[0].normal, found[0].normal);
     let wrong = accepted(&model("1.9", &ground("<normal>0 0 0</normal>")));
     assert!(wrong.world.planes.is_empty() && wrong.warnings[0].to_string().contains("makes no contact"), "{:?}", wrong.warnings);
-    // One that moves is a shape that is not read.
+    // A moving one is a shape that is not read.
     let moves = accepted(&model("1.9", &ground("").replace("true", "false")));
     assert!(moves.world.planes.is_empty() && moves.warnings.iter().any(|warning| warning.to_string().contains("<plane>")));
 }
@@ -540,7 +540,7 @@ fn files_are_included_by_their_paths() {
     assert_eq!(&read_with(&kept, main.as_bytes(), &options()).unwrap().description, robot);
     let missing = read_with(&NoFiles, main.as_bytes(), &options()).unwrap_err();
     assert!(missing.errors.iter().any(|error| error.code == Code::File && error.line() == Some(4)), "{missing}");
-    // A mistake in an included file has that file's name.
+    // An error in an included file has that file's name.
     let bad =
         Files::of(&[("robots/arm.sdf", "<sdf version=\"1.9\">\n<model name='x'><include><uri>arm.sdf</uri></include></model></sdf>")]);
     let ring =

@@ -10,7 +10,7 @@ use articulated_core::listed;
 /// All errors that keep a scene from moving.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionErrors {
-    /// In the order in which they were found, each once; never empty.
+    /// In the order of detection, without duplicates; never empty.
     pub errors: Vec<MotionError>,
 }
 

@@ -47,7 +47,7 @@ impl Session {
         })
     }
 
-    /// Name for events of a degree of freedom: its joint, with an index where that has several.
+    /// Name for events of a degree of freedom: its joint, with an index if the joint has several.
     pub(crate) fn name_of(&self, at: &Freedom<'_>) -> String {
         let several = self.model.joints().iter().find(|joint| joint.name == at.joint() && joint.v.1 > 1);
         several.map_or_else(|| at.joint().to_owned(), |joint| format!("{}[{}]", joint.name, at.terms[0].v - joint.v.0))

@@ -67,9 +67,9 @@ impl Session {
     }
 }
 
-/// A contact whose sphere starts with its centre under the plane: a warning, since the stored
-/// energy throws the robot up. A point (radius 0) rests below its plane, so it counts only where it
-/// pushes with more than the robot's weight.
+/// A contact sphere that starts with its centre under the plane: a warning, since the stored energy
+/// throws the robot up. A point (radius 0) rests below its plane, so it counts only if it pushes
+/// with more than the robot's weight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sunk {
     /// The scene's file.

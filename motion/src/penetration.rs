@@ -39,7 +39,7 @@ struct Part<'s> {
     /// The link's frame.
     frame: FrameId,
     spheres: Vec<ContactSphere>,
-    /// How much deeper than contact it may be, m.
+    /// Tolerated depth beyond that of the contacts, m.
     beside: f64,
 }
 
@@ -60,7 +60,7 @@ pub(crate) struct Depths<'s> {
     planes: Vec<Plane>,
     parts: Vec<Part<'s>>,
     found: Vec<Option<Penetration>>,
-    /// Depth of each part in the first state, m; 0 where it was not too deep.
+    /// Depth of each part in the first state, m; 0 if it was not too deep.
     at_start: Option<Vec<f64>>,
 }
 
@@ -93,7 +93,7 @@ impl<'s> Depths<'s> {
         self.at_start.get_or_insert_with(depths);
     }
 
-    /// The links that went too deep, the deepest first. Those that were there from the start on are
+    /// The links that went too deep, the deepest first. Those that were too deep from the start are
     /// left out unless they sank much deeper.
     pub(crate) fn found(self) -> Vec<Penetration> {
         let at_start = self.at_start.unwrap_or_default();

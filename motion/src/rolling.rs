@@ -7,8 +7,8 @@ use articulated_core::Plain;
 
 use crate::touch::{Contact, Touch};
 
-/// A sphere that rolls so fast that the tolerance of its rates is larger than the sliding speed
-/// below which its friction is smooth: steps are rejected, or pass over the layer.
+/// A sphere that rolls so fast that the tolerance of its rates exceeds the sliding speed below
+/// which its friction is smooth: steps are rejected, or pass over the layer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rolling {
     /// The scene's file.
@@ -26,7 +26,7 @@ pub struct Rolling {
     pub rtol: f64,
 }
 
-/// Part of the motion from which on it is reported.
+/// Minimum part of the motion for a report.
 const PART: f64 = 0.01;
 
 /// The rolling contacts of a motion, step by step.
@@ -60,7 +60,7 @@ impl Rollers {
         }
     }
 
-    /// Those that roll like that for a part of the motion; of each link the fastest.
+    /// Those that roll unresolved for this part of the motion; the fastest one of each link.
     pub(crate) fn found(self, contacts: &[Contact], file: &str) -> Vec<Rolling> {
         let mut found: Vec<Rolling> = Vec::new();
         for (contact, (rolls, rates)) in contacts.iter().zip(self.each) {

@@ -84,7 +84,7 @@ impl Contact {
         })
     }
 
-    /// It in a state; at rest at the origin where the state has no such frame.
+    /// The contact in a state; at rest at the origin if the state has no such frame.
     pub(crate) fn at(&self, frames: &Frames<'_>) -> Touch {
         let number = |x: &[f64], each: usize, k: usize| x.get(each * self.frame.0 + k).copied().unwrap_or(0.0);
         let place = |k: usize| number(frames.places, 12, k);
@@ -114,8 +114,8 @@ impl Contact {
         x - self.normal * self.normal.dot(&x)
     }
 
-    /// How far the lowest point of the sphere slides along the plane from one state to a close one,
-    /// m: less than its centre moves where it rolls.
+    /// Path of the sphere's lowest point along the plane from one state to a close one, m: less
+    /// than that of its centre if it rolls.
     pub(crate) fn slip(&self, from: &Touch, to: &Touch) -> Vector3<f64> {
         let turn = to.rotation * from.rotation.transpose();
         let angle = Vector3::new(turn[(2, 1)] - turn[(1, 2)], turn[(0, 2)] - turn[(2, 0)], turn[(1, 0)] - turn[(0, 1)]) * 0.5;

@@ -27,7 +27,7 @@ pub struct Control {
     pub without: Vec<(String, At)>,
     /// Place of the control in the scene.
     pub place: At,
-    /// The file of its table and where the scene names it, also where other keys are wrong.
+    /// The file of its table and its place in the scene, even if other keys are wrong.
     pub table: Option<(String, At)>,
 }
 

@@ -1,5 +1,4 @@
-//! A table over time in a CSV, read line by line: in memory are the numbers that are used, whatever
-//! else the file holds.
+//! A table over time in a CSV, read line by line: only the used numbers are kept in memory.
 
 use crate::table::bare;
 use articulated_core::diagnostic::{At, Code, Diagnostics, quote_number};
@@ -17,7 +16,7 @@ use crate::slots::Slots;
 struct Most {
     /// Lines with numbers.
     rows: usize,
-    /// Numbers of all rows together, as the robot has them: 2 GiB.
+    /// Numbers of all rows together, with the robot's row length: 2 GiB.
     numbers: usize,
     /// Bytes of a line, without its end.
     line: u64,
@@ -140,7 +139,7 @@ impl Table<'_> {
     }
 }
 
-/// The lines of a text that are not empty.
+/// The non-empty lines of a text.
 struct Lines {
     from: Box<dyn BufRead>,
     count: u32,
@@ -257,7 +256,7 @@ mod tests {
         assert_eq!(of_text(few, &table(2)).unwrap().times, [0.0, 1.0]);
         let told = Err("t.csv:4: found row 3, expected at most 2 rows".to_owned());
         assert_eq!((of_text(few, &table(3)), of_text(few, &table(4))), (told.clone(), told));
-        // This robot has one number a row.
+        // This robot has one number per row.
         let told = Err("t.csv:3: found row 2, expected at most 1 rows".to_owned());
         assert_eq!(of_text(Most { numbers: 1, ..MOST }, &table(3)), told);
         let told = Err("t.csv:4: found one line more, expected at most 3 lines".to_owned());

@@ -9,7 +9,7 @@ use crate::scene::{KEYS, Scene};
 use crate::shaft;
 use crate::table::MEANT;
 
-/// Keys at the top that change neither how the robot is read nor its links, joints and base.
+/// Keys at the top that change neither the reading of the robot nor its links, joints and base.
 const HARMLESS: [&str; 17] = [
     "summary",
     "gravity",
@@ -66,12 +66,12 @@ impl Scene {
         })
     }
 
-    /// Whether a finding about the robot is one without the keys that were left out, too.
+    /// Whether a finding about the robot does not depend on the keys that were left out.
     fn is_certain(&self, error: &Diagnostic) -> bool {
         let only = |keys: &[&str]| self.doubted().all(|key| HARMLESS.contains(&key) || keys.contains(&key));
         match error.code {
             Code::UnknownFunction | Code::File => true,
-            // A table that cannot be opened is a mistake of its own.
+            // A table that cannot be opened is an error of its own.
             _ if error.field == "control.file" => true,
             Code::UnknownName | Code::UnknownLink | Code::UnknownJoint | Code::DuplicateName | Code::Rename | Code::NameClash => {
                 only(&OF_KNOWN_NAMES) && !(error.field.contains(FLOATING_BASE) && self.doubts("base"))

@@ -7,7 +7,7 @@ use articulated_core::diagnostic::{At, Code, Diagnostics};
 use crate::table::{Row, Spot};
 use crate::tree::Value;
 
-/// A joint and where it is locked.
+/// A joint and the coordinates at which it is locked.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lock {
     /// The joint.
@@ -67,7 +67,7 @@ pub(crate) fn locks(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Lock> {
 
 /// `{ joint = { joint = […], coefficients = […], offset = 0 }, … }`.
 /// The same, or the word `file`: the couplings of the scene, and whether those of the robot's file
-/// count.
+/// apply.
 pub(crate) fn couplings(spot: &Spot<'_>, log: &mut Diagnostics) -> (Vec<Follower>, bool) {
     match &spot.node.value {
         Value::Text(word) if word == "file" => (Vec::new(), true),

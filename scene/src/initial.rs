@@ -65,7 +65,7 @@ pub struct Named {
     pub place: At,
 }
 
-/// Where a floating base is, and how it moves.
+/// Place and velocity of a floating base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaseState {
     /// Its origin in the world frame, m.

@@ -1,5 +1,4 @@
-//! The tables of `docs/scenes.md` and `docs/effects.md`, made from the tables that scenes are read
-//! by.
+//! The tables of `docs/scenes.md` and `docs/effects.md`, generated from the tables of the reader.
 
 use std::fmt::Write;
 

@@ -24,8 +24,8 @@ pub struct Report {
     pub links: usize,
 }
 
-/// On how many joints or links an effect is, and where its numbers come from. An effect that takes
-/// any of its numbers from the robot's file counts as one of the file.
+/// Number of joints or links of an effect, and the source of its numbers. An effect with any number
+/// from the robot's file counts as one from the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EffectCount {
     /// Which.
@@ -66,7 +66,7 @@ impl Report {
     }
 }
 
-/// Where the numbers of an effect come from.
+/// Source of an effect's numbers.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Source {
     File,

@@ -23,10 +23,10 @@ use crate::simulation::{self, Simulation};
 use crate::table::{Row, Spot};
 use crate::tree::{Node, Value};
 
-/// A scene as its file has it: names are not looked up yet, files not opened.
+/// A scene in the form of its file: names are not looked up yet, files not opened.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
-    /// The file, as it was called when it was read.
+    /// The file's name when it was read.
     pub file: String,
     /// Summary, one line.
     pub summary: String,
@@ -51,8 +51,8 @@ pub struct Scene {
     pub control: Control,
     /// A ball to be hit.
     pub impact: Option<Impact>,
-    /// Paths of the keys that are wrong in its text and were left out: see
-    /// [`Scene::keep_certain`]. Empty for a scene without mistakes.
+    /// Paths of the keys that are invalid in its text and were left out: see
+    /// [`Scene::keep_certain`]. Empty for a scene without errors.
     pub left_out: Vec<String>,
 }
 
@@ -108,13 +108,13 @@ pub struct CodeOptions {
     pub snap_angles: Option<f64>,
     /// Limbs that are alike at once.
     pub limbs: Option<bool>,
-    /// Types of numbers for which there are functions of many states.
+    /// Types of numbers for functions of many states.
     pub batch: Option<Vec<Real>>,
     /// How accurate the functions are.
     pub level: Option<Precision>,
     /// No `unsafe` in the generated code.
     pub forbid_unsafe: Option<bool>,
-    /// How much code the functions may become, MB.
+    /// Maximum size of the functions' code, MB.
     pub max_code_size: Option<u64>,
     /// Places of these in the scene.
     pub places: Places,
@@ -156,8 +156,8 @@ impl Scene {
         scene
     }
 
-    /// The scene in a text that no file has, for the robot in `file`: findings name that file and
-    /// no place in it.
+    /// The scene in a text without a file, for the robot in `file`: findings name that file and no
+    /// place in it.
     ///
     /// # Errors
     /// As [`Scene::read`].

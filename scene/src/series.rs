@@ -23,7 +23,7 @@ pub struct Source {
     pub rows: Vec<Vec<f64>>,
     /// Each row holds until the next; otherwise linear between them.
     pub hold: bool,
-    /// Where the scene names the file, or the columns.
+    /// Place of the file, or of the columns, in the scene.
     pub place: At,
     /// Where each column is named.
     pub column_places: Vec<At>,
@@ -70,8 +70,8 @@ impl Source {
         }
     }
 
-    /// Each column is there once, by its name; other names of one place only the robot shows, see
-    /// [`Source::places`].
+    /// Each column occurs once, by its name; different names of one place are only found with the
+    /// robot, see [`Source::places`].
     pub(crate) fn check_columns(&self, key: &dyn Fn(usize) -> String, log: &mut Diagnostics) {
         let mut seen = HashSet::new();
         for (i, name) in self.columns.iter().enumerate().filter(|(_, name)| !seen.insert(name.as_str())) {
@@ -104,8 +104,8 @@ impl Source {
         }
     }
 
-    /// The table with rows of these numbers; those without a column are neutral. Without `read` a
-    /// file is left alone.
+    /// The table with rows of these numbers; those without a column are neutral. Without `read` no
+    /// file is opened.
     pub(crate) fn series(&self, slots: &Slots<'_>, read: Option<&mut Reader<'_>>, log: &mut Diagnostics) -> Series {
         let Some(file) = &self.file else {
             let keys: [&Key; 2] = [&|i| format!("control.columns[{i}]"), &|i| format!("control.rows[{i}]")];

@@ -45,7 +45,7 @@ fn mutated(urdf: &str, random: &mut Random) -> String {
     out.join("\"")
 }
 
-/// How many times as much as in every run: HOSTILE=100 takes a while.
+/// Factor on the number of cases of a normal run: HOSTILE=100 takes a while.
 fn patience() -> u64 {
     std::env::var("HOSTILE").ok().and_then(|n| n.parse().ok()).unwrap_or(1)
 }

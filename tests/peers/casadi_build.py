@@ -24,7 +24,8 @@ def fnv(data):
 
 
 TABLES = ("inverse_dynamics", "mass_matrix", "forward_dynamics", "inverse_dynamics_derivatives")  # of real robots no others are made
-# What stays inside until it is asked for, as CasADi gives it: without the zeros, and of symmetric matrices the upper triangle.
+# Results that stay inside until they are requested, in CasADi's form: without the zeros, and the
+# upper triangle of symmetric matrices.
 KEPT = ("mass_matrix", "mass_matrix_inverse", "inverse_dynamics_derivatives", "forward_dynamics_derivatives", "center_of_mass_jacobian",
         "centroidal_momentum_matrix")
 TURNED = ("center_of_mass_jacobian", "centroidal_momentum_matrix")  # its columns are rows

@@ -19,7 +19,7 @@ pub struct Program {
     file: PathBuf,
     /// How long the compiler took.
     pub time: Duration,
-    /// A variable that is set where it runs.
+    /// A variable that is set for the run.
     variable: Option<&'static str>,
     _folder: Arc<tempfile::TempDir>,
 }

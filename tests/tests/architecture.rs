@@ -1,5 +1,5 @@
-//! How the code is laid out: arrows between crates point downward, files import each other in no
-//! more circles than are known, and comments wrap at 100 columns.
+//! The layout of the code: dependencies between crates point downward, files import each other in
+//! no more circles than are known, and comments wrap at 100 columns.
 //!
 //! `cargo test -p articulated-tests --test architecture -- --nocapture` prints the graph of crates
 //! and all circles.
@@ -234,7 +234,7 @@ fn comments_wrap_at_100_columns() {
         let text = fs::read_to_string(file).expect("a source");
         for (k, line) in text.lines().enumerate() {
             let words = line.trim_start();
-            // Rows of tables are as long as they are.
+            // Rows of tables may be long.
             let is_row = words.trim_start_matches(['/', '!']).trim_start().starts_with('|');
             if words.starts_with("//") && !is_row && line.chars().count() > 100 {
                 long.push(format!("{}:{}: {line}", file.display(), k + 1));

@@ -25,7 +25,7 @@ pub(super) struct Base {
     pub(super) identifiable: usize,
     /// Fixed and locked joints, whose links are part of the body they are fixed to.
     pub(super) merged_joints: usize,
-    /// From the tips inward: each is determined by torques when those before it are known.
+    /// From the tips inward: torques determine each if the previous ones are known.
     pub(super) joints: Vec<BaseRow>,
 }
 
@@ -36,7 +36,7 @@ pub(super) struct BaseRow {
     pub(super) slid: [f64; 3],
     /// rad, by which it was turned about the joint.
     pub(super) turned: f64,
-    /// Whether the body is the same from all sides, so that no torque depends on the joint's angle.
+    /// Whether the body is rotationally symmetric, so that no torque depends on the joint's angle.
     pub(super) round: bool,
     /// Remaining parameters of the body; the others are its parent's.
     pub(super) parameters: Vec<Parameter>,
@@ -139,7 +139,7 @@ mod tests {
         assert_eq!(round, ["wrist_3_joint"]);
     }
 
-    /// A floating base feels everything that regrouping leaves.
+    /// For a floating base all parameters after regrouping are identifiable.
     #[test]
     fn a_floating_base_leaves_nothing_in_the_dark() {
         let quadruped = base("quadruped");

@@ -61,7 +61,7 @@ fn describe(robot: &Robot, built: &BuiltRobot, report: &mut Report) {
     let mut findings = Diagnostics::new(&robot.file);
     articulated_codegen::check_names(&request, built, &mut findings);
     for finding in &findings.errors {
-        // Names that are one in code are in the way of code alone.
+        // Name clashes in generated code matter only for code.
         match finding.code {
             Code::NameClash => report.warn(Diagnostic::of(finding).into_warning()),
             _ => report.errors.push(Diagnostic::of(finding)),

@@ -13,7 +13,8 @@ use crate::diagnostic::Diagnostic;
 use crate::robot::Robot;
 use articulated_lab::json::Units;
 
-/// Beyond this many bodies some questions are left unasked: no robot, and quadratic work.
+/// Beyond this number of bodies some questions are not answered: it is no robot, and the work is
+/// quadratic.
 const MANY: usize = 5000;
 
 #[derive(Clone, Debug, Serialize)]

@@ -32,11 +32,11 @@ struct Variant {
 pub(super) struct Part {
     variants: Vec<Variant>,
     functions: Vec<String>,
-    /// Why one is not defined without effects.
+    /// The reason why a function is not defined without effects.
     why: Vec<Option<String>>,
 }
 
-/// Number of the variant that others are compared with.
+/// Index of the variant that others are compared with.
 const FIRST: usize = 0;
 /// States that functions are timed on.
 const STATES: usize = 64;

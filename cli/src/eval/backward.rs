@@ -9,7 +9,7 @@ use articulated_reference::ROUNDOFF;
 
 use super::BOUND;
 
-/// A result is judged by its torques where one unit of the bound is more than this part of it.
+/// A result is judged by its torques if one unit of the bound exceeds this part of it.
 pub(super) const LOOSE: f64 = 1e-3;
 
 /// The largest backward error of the states that are judged by it.

@@ -35,8 +35,8 @@ impl Names {
     }
 }
 
-/// A result with its names: objects by joint or link, a list where a joint has several numbers or
-/// where a dimension has no names.
+/// A result with its names: objects by joint or link, a list if a joint has several numbers or a
+/// dimension has no names.
 pub(super) fn labelled(function: &Function<f64>, out: &[f64], model: &Model<f64>) -> Labelled {
     let names: Vec<Names> = function.gives.iter().map(|d| Names::of(*d, model)).collect();
     nested(&names, out)

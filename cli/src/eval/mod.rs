@@ -85,7 +85,7 @@ fn read_states(path: &Path, model: &Model<f64>, functions: &[&'static Function<f
     if missing.is_empty() { Ok(states) } else { Err(wrong(states::listed(missing))) }
 }
 
-/// The arguments that functions do not find, a line each.
+/// The missing arguments of functions, a line each.
 fn missing(states: &[State], model: &Model<f64>, functions: &[&'static Function<f64>]) -> Vec<String> {
     let mut lines = Vec::new();
     for (k, state) in states.iter().enumerate() {

@@ -46,7 +46,7 @@ pub(super) struct FunctionRow {
 #[serde(rename_all = "snake_case")]
 pub(super) enum Cell {
     Cost(Cost),
-    /// Why the robot does not have the function.
+    /// The reason why the robot does not have the function.
     Undefined(String),
 }
 

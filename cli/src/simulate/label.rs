@@ -1,4 +1,4 @@
-//! Names that are cut to the room there is for them.
+//! Names that are cut to the available room.
 
 use std::collections::BTreeMap;
 
@@ -40,7 +40,7 @@ pub(super) fn told_apart(names: &[String], size: f64, most: f64) -> Vec<String> 
     labels
 }
 
-/// How many letters all names begin and end with, whole numbers only.
+/// Number of letters that all names begin and end with, without splitting numbers.
 fn shared(names: &[Vec<char>]) -> (usize, usize) {
     let Some(first) = names.first() else { return (0, 0) };
     let shortest = names.iter().map(Vec::len).min().unwrap_or(0);
@@ -56,7 +56,7 @@ fn shared(names: &[Vec<char>]) -> (usize, usize) {
     (head, tail)
 }
 
-/// As much of the head and of the tail about the middle as fits.
+/// As much of the head and of the tail around the middle as fits.
 fn around(head: &[char], middle: &str, tail: &[char], size: f64, most: f64) -> String {
     let cut = |keep: usize| {
         let (begin, end) = (keep.min(head.len()), tail.len() - keep.min(tail.len()));

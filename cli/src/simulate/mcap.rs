@@ -19,7 +19,7 @@ use super::recording::Recording;
 
 /// The first and the last bytes of a file.
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
-/// A chunk ends when it has as many bytes.
+/// Bytes after which a chunk ends.
 const CHUNK: usize = 1 << 20;
 
 /// Topics with the names that viewers know their schemas by.

@@ -33,7 +33,7 @@ pub(super) struct Motion {
     pub(super) wall: Duration,
     /// Kinetic energy that the ball of the scene's impact got, J, if it was hit.
     pub(super) ball: Option<f64>,
-    /// Why it did not go on to its end.
+    /// The reason why it did not reach its end.
     pub(super) error: Option<String>,
     /// Warnings about its initial state, its events and its steps.
     pub(super) warnings: Vec<String>,

@@ -12,7 +12,7 @@ pub(super) struct Picture {
     pub(super) svg: String,
 }
 
-/// More events than this are counted and not drawn: they would be all that is seen.
+/// More events than this are counted and not drawn: they would hide the curves.
 const EVENTS: usize = 60;
 
 /// Relative to the largest number of a picture: a curve that is never larger is usually a rounding
@@ -200,8 +200,8 @@ fn legend(out: &mut Drawing, panel: &Panel, strokes: &[Stroke], events: bool, [x
     }
 }
 
-/// The curve's points, in pieces where it is not finite: of many that share a place along the axis,
-/// the first, the least, the most and the last.
+/// The curve's points, in finite pieces: of many points at the same place of the axis, the first,
+/// the least, the largest and the last.
 fn thinned(t: &[f64], values: &[f64], time: &Axis, value: &Axis) -> Vec<Vec<Point>> {
     let mut pieces: Vec<Vec<Point>> = Vec::new();
     let mut bin: Vec<Point> = Vec::new();
@@ -266,7 +266,7 @@ struct Stroke {
 const APART: f64 = 0.75;
 /// Visible part of each of several coinciding curves, in points.
 const SHOWN: f64 = 6.0;
-/// Points to an oscillation for a line of full width; with fewer it is thinner.
+/// Minimum points per oscillation for a line of full width; with fewer it is thinner.
 const WAVE: f64 = 12.0;
 
 /// Widths of a line.
@@ -288,7 +288,7 @@ fn strokes(curves: &[Curve], value: &Axis, width: f64) -> Vec<Stroke> {
     (0..first.len()).map(|k| Stroke { colour: COLOURS[k % COLOURS.len()], width: line(k), dash: dash(k) }).collect()
 }
 
-/// For each curve the first that lies where it does.
+/// For each curve the first curve that it coincides with.
 fn firsts(curves: &[Curve], value: &Axis) -> Vec<usize> {
     let same = |a: f64, b: f64| (a.is_nan() && b.is_nan()) || (value.at(a) - value.at(b)).abs() < APART;
     let mut out: Vec<usize> = Vec::new();

@@ -8,7 +8,7 @@ use serde::Serialize;
 /// A coordinate or a rate: its joint and its unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Named {
-    /// The joint's name, with the number of the coordinate where the joint has several: `elbow`,
+    /// The joint's name, with the index of the coordinate if the joint has several: `elbow`,
     /// `base[3]`.
     pub(crate) name: String,
     /// For people: `elbow`, `base y`.
@@ -58,8 +58,7 @@ impl From<Occurrence> for EventRecord {
     }
 }
 
-/// A motion at the times of its output. Vectors of vectors are one behind the other, one of each a
-/// time.
+/// A motion at the times of its output. Vectors of vectors are concatenated, one for each time.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Recording {
     /// The coordinates.

@@ -30,8 +30,8 @@ pub(super) fn of(session: &Session, arguments: &SimulateArguments) -> Result<Set
     Ok(settings)
 }
 
-/// Fixed steps of which a motion makes less than it needs to its end, unless an event ends it
-/// before.
+/// Reports fixed steps that need more than the maximum number to the end, unless an event ends the
+/// motion before.
 fn too_many_steps(settings: &Settings) -> Option<String> {
     let (step, most) = (settings.step?, settings.max_steps);
     let (steps, reached) = ((settings.end - settings.start) / step, settings.start + step * most as f64);

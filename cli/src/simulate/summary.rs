@@ -44,7 +44,7 @@ pub(super) struct Summary {
     pub(super) events: Vec<EventRecord>,
     /// Whether the ball of the scene's impact was reached and hit; `None` without a ball.
     pub(super) ball_reached: Option<bool>,
-    /// Its speed along the normal once its turn came.
+    /// Its speed along the normal after its event.
     pub(super) ball_speed_m_per_s: Option<f64>,
     pub(super) wall_s: f64,
     pub(super) simulated_s_per_wall_s: f64,
@@ -55,10 +55,10 @@ pub(super) struct Summary {
     /// The columns of the table among them, with their units.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) columns: Vec<Unit>,
-    /// Pictures that are not, since all that they would show is zero throughout, or since the ends
-    /// alone are recorded.
+    /// Pictures that are not written, since all their curves are zero throughout, or since only the
+    /// ends are recorded.
     pub(super) pictures_left_out: Vec<&'static str>,
-    /// Whether the page is not either, since the ends alone are recorded.
+    /// Whether the page is not written either, since only the ends are recorded.
     pub(super) page_left_out: bool,
     pub(super) units: Units,
 }
@@ -273,10 +273,10 @@ impl Energy {
 /// Tolerated error of the energy balance, relative to the largest energy moved.
 const NOT_KEPT: f64 = 0.1;
 
-/// Part from which on fixed steps deserve to be shorter.
+/// Fixed steps with a larger imbalance should be shorter.
 const LOOSE_STEPS: f64 = 0.01;
 
-/// Part from which on steps chosen by tolerances deserve smaller tolerances.
+/// Steps by tolerance with a larger imbalance should have smaller tolerances.
 const LOOSE: f64 = 1e-4;
 
 impl Summary {

@@ -21,7 +21,7 @@ fn every_effect_is_on_or_off_and_what_each_adds_is_counted() {
     let of = |what: &str| inverse.iter().find(|a| a["what"] == what).unwrap_or_else(|| panic!("{what}: {report}"));
     // One addition per joint, and the places are those that the scene requests.
     assert_eq!((of("damping")["places"].as_u64(), of("damping")["operations"]["additions"].as_i64()), (Some(7), Some(7)));
-    // The first joint's acceleration has a constant for a factor already.
+    // The first joint's acceleration already has a constant factor.
     assert_eq!(of("armature")["operations"]["instructions"], 6);
     assert!(of("gravity")["operations"]["additions"].as_i64().unwrap() > 0);
     // The same operations; the number of fused additions depends on the splitting of sums.

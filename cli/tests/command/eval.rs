@@ -223,8 +223,8 @@ fn every_function_has_a_result_by_name() {
     assert!(text.lines_with("largest difference") == all.len() && text.lines_with(&format!("[1] {cart}")) >= 1, "{}", text.out);
 }
 
-/// Turned about z, y, z with y = 0 the first and the last axis are one: M is singular there, and
-/// next to it as good as that.
+/// Turned about z, y, z with y = 0, the first and the last axis coincide: M is singular there, and
+/// nearly singular next to it.
 #[test]
 fn results_of_a_singular_mass_matrix_are_told() {
     let joint = |k: usize, axis: &str| {

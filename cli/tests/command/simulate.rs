@@ -541,7 +541,7 @@ fn much_is_told_before_it_is_written_and_more_than_may_be_is_refused() {
         assert_eq!(run(&["simulate", file.name(), "-o", out, "--max-output-size", "9"]).status, 1);
     }
 
-    // Only the motion shows how many steps there are.
+    // The number of steps is known only after the motion.
     let steps = scene("1e4", "\"steps\"");
     let ended = run(&["simulate", steps.name(), "-o", out, "--max-output-size", "1", "--rtol", "1e-9", "--atol", "1e-9"]);
     assert!(ended.status == 1 && ended.err.contains("unless --max-output-size allows more than 1 MB"), "{}", ended.err);
@@ -567,7 +567,7 @@ fn a_picture_of_nothing_is_not_written_and_that_is_said() {
     assert!(!folder.path().join("positions.svg").exists() && folder.path().join("energy.svg").is_file());
 }
 
-/// Pictures of another motion would pass for pictures of this one.
+/// Pictures of another motion would look like those of this one.
 #[test]
 fn pictures_that_a_motion_has_not_are_removed() {
     let scene = |v: f64| {

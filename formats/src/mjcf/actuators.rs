@@ -51,7 +51,7 @@ pub(crate) struct Control {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Dynamics {
     None,
-    /// With a state, as the file calls it.
+    /// With a state, under its name in the file.
     State(&'static str),
 }
 
@@ -163,7 +163,7 @@ impl Default for General {
 impl General {
     /// The defaults of a class and of the classes above, the farthest first.
     fn defaults(class: usize, settings: &Settings<'_>, log: &mut Diagnostics) -> Vec<Self> {
-        // A mistake in a default is one error, not one for each class below.
+        // An error in a default is reported once, not for each class below.
         let mut own = log.apart();
         let mut above = vec![Self::default()];
         for tags in settings.classes.lineage(class) {
@@ -323,7 +323,7 @@ impl General {
         }
     }
 
-    /// Whether the control is a length that the force leads to.
+    /// Whether the control is a target length of the force.
     fn is_servo(&self) -> bool {
         (self.gain, self.bias) == (Gain::Fixed, Bias::Affine) && self.gains[0] == -self.biases[1]
     }
@@ -348,14 +348,14 @@ impl General {
         }
     }
 
-    /// The law of the force, where the ratio of damping is not one yet.
+    /// The law of the force, without a damping ratio.
     fn law(&self) -> ([f64; 3], [f64; 3]) {
         let first = |all: &[f64; 10]| [all[0], all[1], all[2]];
         let gain = if self.gain == Gain::Affine { first(&self.gains) } else { [self.gains[0], 0.0, 0.0] };
         (gain, if self.bias == Bias::None { [0.0; 3] } else { first(&self.biases) })
     }
 
-    /// The bounds of control and force of an actuator on something of this range.
+    /// The bounds of control and force of an actuator with a target of this range.
     fn bounds(&self, element: &Element, settings: &Settings<'_>, target: Option<[f64; 2]>, log: &mut Diagnostics) -> [Option<[f64; 2]>; 2] {
         let mut control = self.control_range;
         if self.is_servo() && self.inherit_range > 0.0 {
@@ -405,8 +405,8 @@ struct Target {
     is_ball: bool,
 }
 
-/// Reads all actuators; returns the controls of all of the file, and the armatures of actuators and
-/// tendons with the lengths that they are on.
+/// Reads all actuators; returns the controls of the whole file, and the armatures of actuators and
+/// tendons with the lengths that they act on.
 pub(crate) fn actuators(
     scope: &mut Scope<'_>,
     tendons: &[Tendon],
@@ -593,7 +593,7 @@ fn damp(
                 lose(element, "an actuator with a dampratio and kp below zero", scope, log);
                 lost.push(*index);
             }
-            // What the mistakes are is reported.
+            // These errors are already reported.
             Err(Unknown::Mistakes) => {}
             Err(why) => {
                 lose(element, &why.found("an actuator with a dampratio"), scope, log);

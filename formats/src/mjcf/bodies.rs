@@ -135,7 +135,7 @@ pub(crate) enum Extent {
     Whole,
     /// A body or a frame. The rest of the document applies if it refers to nothing outside.
     Attached,
-    /// One of several copies. The rest of the document counts as far as it is about the copy.
+    /// One of several copies. The rest of the document applies if it refers to the copy.
     Copy,
 }
 
@@ -147,7 +147,7 @@ pub(crate) struct Part<'a> {
     pub(crate) extent: Extent,
     /// The part that it is in; of the main document itself.
     pub(crate) parent: usize,
-    /// Whether it is in no copy but the first.
+    /// Whether it is outside all copies except the first.
     pub(crate) is_first: bool,
     /// Indices of its bodies, and of the parts from it to those that are attached inside.
     pub(crate) bodies: Range<usize>,
@@ -422,7 +422,7 @@ impl<'a> Build<'a> {
             Some(name) => match self.documents.model(context.document, name) {
                 Some(document) => document,
                 None => {
-                    // A file that cannot be read has an error already.
+                    // An unreadable file has an error already.
                     if !context.settings.models.contains_key(name) {
                         element.error(
                             (&Subject::Document, "model"),
@@ -522,9 +522,9 @@ fn joint<'a>(name: Option<String>, values: &Values<'a>, context: &Context<'a>, f
         axis = rotate(context.frame.rotation, if is_of_length_one(given) { given } else { unit });
     }
     let (is_limited, limit, force_range) = limits(values, kind, context, flags, log);
-    // A number that the kind does not have is not parsed.
+    // A number that does not exist for the kind is not parsed.
     let scalar = |name: &str, log: &mut Diagnostics| if is_scalar { values.number(name, log).map_or(0.0, angle) } else { 0.0 };
-    // Mistakes in these are reported above and below.
+    // Errors in these are reported above and below.
     let mut reported = log.apart();
     Some(Joint {
         name,
@@ -632,7 +632,7 @@ fn dynamics(values: &Values<'_>, kind: Kind, flags: Flags, angle: &dyn Fn(f64) -
         values.element.warning((&values.subject, "springyield"), Code::LostDynamics, "a spring that yields", expected, log);
     }
     if kind != Kind::Free {
-        // A ball joint is slack where its coordinate is the identity.
+        // A ball joint is relaxed at the identity.
         let rest = if kind == Kind::Ball { None } else { values.number("springref", log).map(angle) };
         return JointDynamics { damping, friction, armature, stiffness, rest: rest.filter(|_| stiffness.is_some()) };
     }

@@ -86,7 +86,7 @@ impl Documents {
         &self.all[index].root
     }
 
-    /// The document that is called so in another one.
+    /// The document with this name in another one.
     pub(crate) fn model(&self, document: usize, name: &str) -> Option<usize> {
         self.all[document].models.get(name).copied()
     }

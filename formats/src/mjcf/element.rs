@@ -12,7 +12,7 @@ use crate::xml::element::Tag;
 use crate::xml::lines::Lines;
 pub(crate) use crate::xml::tree::{Attribute, Element, File};
 
-/// Tags may be nested so deeply, included ones in those that include them.
+/// Maximum depth of nested tags; included ones count inside those that include them.
 const MOST_DEPTH: usize = 256;
 /// Maximum number of included files, and of all their tags.
 const MOST_FILES: usize = 1000;

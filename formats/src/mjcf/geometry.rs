@@ -81,7 +81,7 @@ pub(crate) fn between(values: &Values<'_>, log: &mut Diagnostics) -> Option<(Pos
     Some((Pose { position: scale(add(from, to), 0.5), rotation }, length / 2.0))
 }
 
-/// A geom, of which meshes are not read yet.
+/// A geom; its mesh is not read yet.
 pub(crate) fn geom<'a>(
     values: &Values<'a>,
     settings: &Rc<Settings<'a>>,
@@ -202,7 +202,7 @@ fn size(values: &Values<'_>, kind: Kind, has_mesh: bool, settings: &Settings<'_>
                 field.error("size", Code::Number, quote(field.text("size").unwrap_or_default()), "4 numbers above zero, m", log);
                 return None;
             };
-            // As if it was half as high everywhere; its base is below.
+            // As with half the height everywhere; its base is below.
             Some([x, y, 0.25 * elevation + 0.5 * base])
         }
         (_, Some(_), _) => {
@@ -259,7 +259,7 @@ impl Geom<'_> {
         (mass > TINY).then(|| Mass { mass, pose, inertia: inertia.map(|x| mass * x), axes: Some(axes) })
     }
 
-    /// Moves it, as the frame of its body moves the other way.
+    /// Moves it when the frame of its body moves the other way.
     pub(crate) fn move_by(&mut self, pose: &Pose) {
         self.pose = pose.then(&self.pose);
     }

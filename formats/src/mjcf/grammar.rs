@@ -358,7 +358,7 @@ fn row_of(name: &str, within: &str) -> Option<&'static Row> {
     ROWS.iter().find(|row| row.name == name && (row.within.is_empty() || has(row.within, within)))
 }
 
-/// Reports all that is not used and all that the format does not have.
+/// Reports all unused and all unknown content.
 pub(crate) fn check(root: &Element, log: &mut Diagnostics) {
     let mut suggester = Suggester::default();
     let mut next = vec![(root, "")];

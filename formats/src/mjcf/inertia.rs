@@ -29,7 +29,7 @@ pub(crate) fn of_bodies(bodies: &[Body<'_>], meshes: &mut Meshes<'_>, log: &mut 
     all
 }
 
-/// Warns of masses that no body has.
+/// Warns of implausible masses.
 fn warn_of_masses(bodies: &[Body<'_>], all: &[Option<Mass>], log: &mut Diagnostics) {
     for (body, own) in bodies.iter().zip(all) {
         if let Some((found, expected)) = own.and_then(|own| beyond_any_mass(own.mass)) {
@@ -89,7 +89,7 @@ fn of_body<'b>(body: &'b Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostic
     ((own.mass != 0.0 || own.inertia != [0.0; 6]).then_some(own), given)
 }
 
-/// The masses of all geoms of the groups that count, as one.
+/// The total mass of all geoms in the groups that count.
 fn of_geoms(body: &Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Option<Mass> {
     let [first, last] = body.settings.compiler.groups;
     let counted = body.geoms.iter().filter(|geom| (first..=last).contains(&geom.group));

@@ -55,7 +55,7 @@ pub(crate) struct Scope<'a> {
     names: BTreeMap<(Sort, String), (usize, usize)>,
     /// Names as the documents have them.
     own: BTreeSet<(Sort, &'a str)>,
-    /// Whether all joints are known: else a name that is not may be one with a mistake.
+    /// Whether all joints are known: otherwise an unknown name may be that of an invalid joint.
     is_complete: bool,
     /// Reported warnings, by the address of the tag: a document may be in several parts.
     reported: BTreeSet<(*const Element, String)>,
@@ -150,7 +150,7 @@ impl<'a> Scope<'a> {
             let unknown =
                 |(sort, _, own): &&(Sort, &'static str, &str)| !self.own.contains(&(*sort, *own)) && self.find(part, *sort, own).is_none();
             if let Some((sort, field, own)) = references.iter().find(unknown) {
-                // A search for the nearest name of each of very many mistakes takes too long.
+                // Searching the nearest name for very many errors takes too long.
                 let names = self.names.keys().filter(|(known, _)| known == sort && log.errors.len() < HINTS).map(|(_, name)| name.as_str());
                 let hint = nearest(own, names).map(|near| format!(" (did you mean {near:?}?)")).unwrap_or_default();
                 let expected = format!("the name of a {}{hint}", sort.name());
@@ -160,7 +160,7 @@ impl<'a> Scope<'a> {
         all.filter(|_| is_inside)
     }
 
-    /// Reports once that a tag is not used; a warning if the motion is another without it.
+    /// Reports once that a tag is not used; a warning if the motion differs without it.
     pub(crate) fn unread(&mut self, element: &Element, why: &str, lost: Option<(&str, &str)>, log: &mut Diagnostics) {
         if self.reported.insert((std::ptr::from_ref(element), String::new())) {
             element.unused(&Subject::Document, None, why, log);

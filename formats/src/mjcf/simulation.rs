@@ -26,8 +26,8 @@ pub(crate) struct Flags {
 }
 
 impl Flags {
-    /// Without springs and dampers MuJoCo computes no passive force, of the medium and of
-    /// `gravcomp` neither.
+    /// Without springs and dampers MuJoCo computes no passive force, so also none of the medium or
+    /// `gravcomp`.
     pub(crate) fn no_passive_force(self) -> bool {
         self.no_spring && self.no_damper
     }
@@ -159,7 +159,7 @@ impl<'a> Simulation<'a> {
                 for (name, _) in FLAGS {
                     if let Some(disabled) = values.word(name, &[("disable", true), ("enable", false)], log) {
                         all.flags.insert(name, disabled);
-                        // The gravity of the section is another number.
+                        // The gravity of the section is another value.
                         all.places.insert(if name == "gravity" { "gravity flag" } else { name }, flag);
                     }
                 }

@@ -32,7 +32,7 @@ impl<'a> Values<'a> {
         self.layers.iter().find_map(|layer| Some((*layer, layer.attribute(name)?)))
     }
 
-    /// As [`Self::nearest`], of lists of numbers: an empty one is an absent one.
+    /// As [`Self::nearest`], for lists of numbers: an empty one counts as missing.
     fn nearest_list(&self, name: &str) -> Option<(&'a Element, &'a Attribute)> {
         self.layers.iter().find_map(|layer| Some((*layer, list(layer, name)?)))
     }

@@ -182,7 +182,7 @@ impl Maker<'_> {
     }
 }
 
-/// Each number with as many digits as it takes to read it back.
+/// Each number with enough digits to read it back exactly.
 fn spelled(numbers: &[f64]) -> String {
     numbers.iter().map(|number| format!("{number:?}")).collect::<Vec<_>>().join(" ")
 }

@@ -178,7 +178,7 @@ fn reason(row: &Row, name: &str) -> Option<&'static str> {
     row.unused.iter().find(|(names, _)| has(names, name)).map(|(_, why)| *why)
 }
 
-/// Reports all that is not used and all that the format does not have.
+/// Reports all unused and all unknown content.
 pub(crate) fn check(root: &Element, log: &mut Diagnostics) {
     let mut suggester = Suggester::default();
     let mut next = vec![(root, "", Subject::Document)];

@@ -192,7 +192,7 @@ impl<'a> Graph<'a> {
         found
     }
 
-    /// Finds the parents of joints and the frames of their axes; false where one is missing.
+    /// Finds the parents of joints and the frames of their axes; false if one is missing.
     fn resolve_joints(&mut self, log: &mut Diagnostics) -> bool {
         let mut is_good = true;
         let mut joints = std::mem::take(&mut self.joints);
@@ -224,13 +224,13 @@ impl<'a> Graph<'a> {
         }
     }
 
-    /// Resolves all references of nodes; false where that is not possible.
+    /// Resolves all references of nodes; false if that is impossible.
     fn connect(&mut self, log: &mut Diagnostics) -> bool {
         let all = |log: &mut Diagnostics, of: &dyn Fn(&Node<'a>) -> To<'a>| -> Vec<Option<usize>> {
             self.nodes.iter().map(|node| self.to(&of(node), log)).collect()
         };
         let above = all(log, &|node| node.relative_to);
-        // Where both are one name, it is reported once.
+        // If both are one name, it is reported once.
         let mut again = log.apart();
         let attached = all(&mut again, &|node| node.attached_to);
         let is_reported = |error: &articulated_core::diagnostic::Diagnostic| {
@@ -254,7 +254,7 @@ impl<'a> Graph<'a> {
         self.place_models(log)
     }
 
-    /// Whether there are nodes that depend on themselves, which is reported.
+    /// Reports nodes that depend on themselves, and returns whether there are any.
     fn report_rings(&self, what: &str, on: impl Fn(usize) -> Option<usize>, log: &mut Diagnostics) -> bool {
         let rings = cycles(self.nodes.len(), &on);
         for node in &rings {

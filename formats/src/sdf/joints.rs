@@ -42,7 +42,7 @@ impl Type {
     /// How many axes it has.
     pub(crate) fn axes(self) -> usize {
         match self {
-            // A gearbox is read where it is cut.
+            // A gearbox is read only if it is cut.
             Self::Fixed | Self::Ball | Self::Gearbox => 0,
             Self::Universal | Self::Revolute2 => 2,
             Self::Revolute | Self::Continuous | Self::Prismatic | Self::Screw => 1,
@@ -89,7 +89,7 @@ impl Axis<'_> {
 #[derive(Clone, Copy)]
 pub(crate) struct Mimic<'a> {
     pub(crate) leader: Reference<'a>,
-    /// Which axis of the leader, from 0.
+    /// Index of the leader's axis, from 0.
     pub(crate) axis: usize,
     pub(crate) multiplier: f64,
     pub(crate) offset: f64,

@@ -17,7 +17,7 @@ use crate::xml::markup;
 use crate::xml::tree::{Element, File};
 use crate::{Format, Input, Options};
 
-/// Tags may be nested so deeply, included ones in those that include them.
+/// Maximum depth of nested tags; included ones count inside those that include them.
 const MOST_DEPTH: usize = 256;
 /// Maximum number of included files, and of all their tags.
 const MOST_FILES: usize = 1000;

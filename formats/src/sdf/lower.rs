@@ -63,7 +63,7 @@ pub(crate) fn lower(graph: &Graph<'_>, options: &Options, log: &mut Diagnostics)
 struct Hangs {
     /// The body before it.
     on: usize,
-    /// Its joint; `None` for a body that hangs on the world without one.
+    /// Its joint; `None` for a body on the world without a joint.
     joint: Option<usize>,
     /// Whether it is the parent of the joint.
     is_reversed: bool,
@@ -199,7 +199,7 @@ struct Motion {
     second_axis: Vector,
     limit: Option<Limit>,
     dynamics: articulated_core::description::JointDynamics,
-    /// Which axis of the joint it is.
+    /// Index of the joint's axis.
     of: usize,
 }
 
@@ -209,11 +209,11 @@ struct Lower<'a, 'g> {
     /// Names of links and frames, and of joints, that are taken.
     links: Taken,
     joints: Taken,
-    /// For each joint, the one of the description of its first axis and of its second.
+    /// For each joint, the description's joints of its first axis and of its second.
     first: Vec<Option<[JointId; 2]>>,
     /// Names of `<frame>`s, in their order.
     frames: Vec<String>,
-    /// The coordinates of free joints at the poses of the file, where they are not zero.
+    /// The non-zero coordinates of free joints at the poses of the file.
     start: Vec<(String, Vec<f64>)>,
     /// Planes of links that do not move.
     planes: Vec<Plane>,
@@ -436,7 +436,7 @@ impl Lower<'_, '_> {
     }
 }
 
-/// The link of a body of the graph: the world is the first of both.
+/// The link of a body of the graph: the world is the first one of both.
 fn link_id(body: usize) -> LinkId {
     LinkId(body)
 }

@@ -32,7 +32,7 @@ pub(crate) fn only<'a>(parent: &'a Element, name: &str, subject: &Subject, log: 
     Some(first)
 }
 
-/// The text of a tag; empty if there is none.
+/// The text of a tag; empty if it has none.
 pub(crate) fn text(element: &Element) -> &str {
     element.content.as_deref().unwrap_or_default()
 }
@@ -90,7 +90,7 @@ pub(crate) fn exactly<const N: usize>(element: &Element, subject: &Subject, log:
     counted(element, false, subject, log)
 }
 
-/// The number in a child, if it is there and right.
+/// The number in a child, if there is a valid one.
 pub(crate) fn number(parent: &Element, name: &str, subject: &Subject, log: &mut Diagnostics) -> Option<f64> {
     counted::<1>(only(parent, name, subject, log)?, false, subject, log).map(|[number]| number)
 }

@@ -3,7 +3,7 @@
 use articulated_core::description::{Collision, Inertial, JointDynamics, JointKind, Limit, Origin, Visual};
 use articulated_core::diagnostic::{At, Subject};
 
-/// The joint that Drake has for types that the format does not know.
+/// Drake's joint for types that the format does not have.
 pub(crate) const DRAKE_JOINT: &str = "drake:joint";
 
 #[derive(Default)]
@@ -53,7 +53,7 @@ pub(crate) struct DraftJoint {
     pub(crate) dynamics: JointDynamics,
 }
 
-/// The name of a link or joint where it is referred to.
+/// A reference to the name of a link or joint.
 pub(crate) struct Reference {
     pub(crate) name: String,
     pub(crate) at: At,

@@ -10,8 +10,8 @@ use super::ast::Draft;
 use super::plain::{self, Piece};
 use super::tree::Tree;
 
-/// An internal error, if the robot that `urdf-rs` reads from the plain documents is not the one
-/// that was `found`.
+/// An internal error, if the robot that `urdf-rs` reads from the plain documents differs from
+/// `found`.
 pub(crate) fn compare(found: &Description, draft: &Draft, tree: &Tree, leaders: &[Option<usize>], log: &mut Diagnostics) {
     let mut description = Description { name: draft.name.clone(), ..Description::default() };
     for piece in plain::pieces(draft, tree, leaders) {

@@ -136,7 +136,7 @@ mod tests {
         assert_eq!(right_angle(0.0, 1e-5), None);
         assert_eq!(right_angle(FRAC_PI_2 + 4e-6, f64::NAN), None);
         assert_eq!(right_angle(1e300, 1.0), None);
-        // Beyond 250 turns an angle is a mistake of another sort.
+        // Beyond 250 turns an angle is an error of another kind.
         assert_eq!(right_angle(1000.0 * FRAC_PI_2 + 1e-6, 1e-5), Some((1000.0, 1000.0 * FRAC_PI_2)));
         assert_eq!(right_angle(1001.0 * FRAC_PI_2 + 1e-6, 1e-5), None);
     }

@@ -1,4 +1,4 @@
-//! Whether a mass and its inertia can be: the inertia by its principal moments.
+//! Checks of a mass and its inertia: of the inertia by its principal moments.
 
 use articulated_core::description::PrincipalMoments;
 use articulated_core::diagnostic::{Code, Diagnostics, Place};
@@ -6,7 +6,7 @@ use articulated_core::diagnostic::{Code, Diagnostics, Place};
 use super::robot::Context;
 use crate::mass::beyond_any_mass;
 
-/// Reports a mass or an inertia that is impossible or looks wrong.
+/// Reports an impossible or suspicious mass or inertia.
 pub(crate) fn check(mass: Option<f64>, inertia: Option<[f64; 6]>, context: &Context<'_>, place: &Place<'_>, log: &mut Diagnostics) {
     let place = |field| Place { field, ..*place };
     if let Some(mass) = mass.filter(|mass| *mass < 0.0) {

@@ -20,7 +20,7 @@ const ATTRIBUTES: [&str; 3] = ["joint", "multiplier", "offset"];
 /// Other attributes that only label the tag.
 const LABELS: [&str; 4] = ["name", "id", "comment", "description"];
 
-/// The joints that a joint follows. Two tags for one leader are one too many.
+/// The joints that a joint follows. Two tags for one leader are an error.
 pub(crate) fn mimics(joint: &Tag<'_>, log: &mut Diagnostics) -> Vec<DraftMimic> {
     let mut first: HashMap<&str, Tag<'_>> = HashMap::new();
     let mut mimics = Vec::new();

@@ -138,8 +138,7 @@ impl Out {
     }
 }
 
-/// A number in the fewest digits that are read back exactly, with an exponent where that is
-/// shorter.
+/// A number in the fewest digits that are read back exactly, with an exponent if that is shorter.
 struct Number(f64);
 
 impl fmt::Display for Number {

@@ -15,7 +15,7 @@ pub(crate) enum Version {
     V1_0,
     /// Adds `quat_xyzw`.
     V1_1,
-    /// A bound that is left out is infinite; before, it is zero.
+    /// A missing bound is infinite; before, it is zero.
     V1_2,
 }
 
@@ -61,7 +61,7 @@ pub(crate) fn draft(robot: &Tag<'_>, options: &Options, log: &mut Diagnostics) -
     draft
 }
 
-/// The name of the link that other programs add where a joint hangs on it and no link has it.
+/// The name of the link that other programs add if a joint hangs on it and it is not declared.
 const WORLD: &str = "world";
 
 /// Adds the link `world`, if joints hang on it and the file does not declare it.

@@ -61,7 +61,8 @@ pub(crate) fn child_of(tag: &Tag<'_>, child: &Tag<'_>, parts: &Parts<'_>, tags: 
     let name = child.name();
     let parent = tag.name();
     let why = KNOWN.iter().find(|(within, known, _)| *within == parent && *known == name);
-    // Links may hang on a joint of another program: directly inside the robot it closes no loop.
+    // Links may hang on a joint of another program: directly inside the robot it does not close a
+    // loop.
     match why {
         Some((_, _, why)) => {
             if lost::is_searched(&name) {
@@ -121,8 +122,8 @@ fn around_links(tag: &Tag<'_>, name: &str, log: &mut Diagnostics) -> bool {
     true
 }
 
-/// Warns of a name that looks like another one: with blanks at its ends, or with characters that
-/// are not visible.
+/// Warns of a name that looks like another one: with blanks at its ends, or with invisible
+/// characters.
 pub(crate) fn warn_of_blanks(tag: &Tag<'_>, name: &str, log: &mut Diagnostics) {
     let found = if name.trim() != name {
         "a name with blanks at an end"

@@ -47,7 +47,7 @@ impl Expander<'_> {
         }
     }
 
-    /// An attribute that has to be there: without it, something of the robot is missing.
+    /// A required attribute: without it, a part of the robot is missing.
     fn required<'e>(&mut self, element: &'e Element, name: &str) -> Option<&'e Attribute> {
         let found = element.attribute(name);
         if found.is_none() {
@@ -66,7 +66,7 @@ impl Expander<'_> {
         }
     }
 
-    /// The text of an attribute that has to be there.
+    /// The text of a required attribute.
     fn required_text(&mut self, element: &Element, name: &str, scope: usize) -> Option<(String, At)> {
         let attribute = self.required(element, name)?;
         self.text_of(element, attribute, scope)

@@ -22,9 +22,9 @@ use crate::Input;
 use crate::xml::document;
 use crate::xml::markup::as_written;
 
-/// Macros, conditions, included files and tags may be nested so deeply altogether.
+/// Maximum total depth of nested macros, conditions, included files and tags.
 const MOST_FRAMES: usize = 2000;
-/// Tags of the expanded document may be nested so deeply.
+/// Maximum depth of nested tags of the expanded document.
 const MOST_DEPTH: usize = 200;
 /// Bounds of the expanded document, with the blocks of macros: tags and attributes, and bytes.
 const MOST_NODES: usize = 1 << 20;
@@ -39,7 +39,7 @@ const STEPS: usize = 16;
 /// A file that is expanded.
 pub(super) struct File {
     pub(super) path: PathBuf,
-    /// How many files include each other up to this one.
+    /// Depth of nested included files.
     depth: usize,
 }
 
@@ -51,7 +51,7 @@ pub(super) struct Frame {
     pub(super) file: Rc<File>,
     content: Content,
     finish: Finish,
-    /// How many tags of the expanded document it is in.
+    /// Depth in the expanded document.
     depth: usize,
 }
 
@@ -84,7 +84,7 @@ pub(super) struct Expander<'a> {
     pub(super) arguments: BTreeMap<String, Rc<str>>,
     /// Names of arguments that the file declares or uses.
     pub(super) declared: BTreeSet<String>,
-    /// Whether something that the robot consists of is missing, which has been reported.
+    /// Whether a part of the robot is missing, which has been reported.
     pub(super) incomplete: bool,
     /// Whether a bound was reached, which has been reported.
     stopped: bool,
@@ -100,7 +100,7 @@ pub(super) struct Expander<'a> {
     included: usize,
     nodes: usize,
     bytes: usize,
-    /// Files and lines that a warning is about.
+    /// Files and lines with a warning.
     warned: BTreeSet<(String, u32)>,
 }
 
@@ -179,7 +179,7 @@ impl<'a> Expander<'a> {
         Subject::Document
     }
 
-    /// The place where the macro is called that is expanded.
+    /// The place of the call of the expanded macro.
     fn caller(&self) -> Option<String> {
         let index = self.frames.iter().rposition(|frame| matches!(frame.finish, Finish::Body { .. }))?;
         let Finish::Body { name, at } = &self.frames[index].finish else { return None };
@@ -273,7 +273,7 @@ impl<'a> Expander<'a> {
         }
         match self.evaluated(&attribute.value, attribute.at, scope) {
             Ok(value) => files::written(&value.written()).into(),
-            // Names of files play no part in the dynamics.
+            // Names of files have no effect on the dynamics.
             Err(Fault::Wrong { found, expected }) if &*attribute.name == "filename" => {
                 let found = format!("the xacro expression {} with {found}", quote(&attribute.value));
                 self.warning(

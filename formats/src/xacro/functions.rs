@@ -87,7 +87,7 @@ const MODULES: [&str; 3] = ["math", "python", "xacro"];
 const GLOBAL: [&str; 15] =
     ["list", "dict", "map", "len", "str", "float", "int", "True", "False", "min", "max", "round", "sorted", "range", "python"];
 
-/// Names of the module `math` that are not read, and are taken all the same.
+/// Names of the module `math` that are not implemented, but reserved.
 const MATH_UNREAD: [&str; 23] = [
     "comb",
     "dist",
@@ -114,8 +114,8 @@ const MATH_UNREAD: [&str; 23] = [
     "math",
 ];
 
-/// Whether xacro has this name in every file, so that a property of this name takes its place:
-/// builtins, all of the module `math`, and some of its own.
+/// Whether the name is built in, so that a property of this name replaces it: builtins, all of the
+/// module `math`, and some of xacro's own.
 pub(super) fn is_of_every_file(name: &str) -> bool {
     let own = || name == "xacro" || XACRO[..3].contains(&name);
     GLOBAL.contains(&name) || MATH_UNREAD.contains(&name) || of_module("math", name).is_some() || own()
@@ -192,7 +192,7 @@ pub(super) fn call(function: &Value, arguments: Arguments, names: &mut dyn Names
         }
         Value::Builtin(name) => {
             let mut arguments = arguments;
-            // The location that a message prints is printed always.
+            // The location in a message is always printed.
             arguments.named.retain(|(key, _)| !(matches!(&**key, "print_location" | "file") && XACRO.contains(name)));
             if *name != "sorted" {
                 no_names(name, &arguments)?;
@@ -335,7 +335,7 @@ fn sum(name: &str, values: &[Value], start: Value) -> Result<Value> {
     Ok(total)
 }
 
-/// The integer that a number without digits behind the point is.
+/// The integer equal to a number without a fractional part.
 fn integer_of(name: &str, value: f64) -> Result<Value> {
     const MOST: f64 = 1e36;
     if value.abs() < MOST { Ok(Value::Int(value as i128)) } else { wrong(format!("{name} of {value}"), "a number below 1e36") }
@@ -380,7 +380,7 @@ fn call_python(name: &'static str, arguments: &Arguments, names: &mut dyn Names)
             for item in items(list)? {
                 names.work().steps(1)?;
                 let arguments = Arguments { values: vec![item], named: Vec::new() };
-                // A function that calls others again would nest without an end.
+                // A function that calls others again would nest endlessly.
                 if matches!(function, Value::Builtin("map")) {
                     return wrong("map of map", "a function of one value");
                 }
@@ -470,7 +470,7 @@ fn sorted(all: &[Value], named: &[(Rc<str>, Value)], names: &mut dyn Names) -> R
         }
     }
     names.work().steps(all.iter().map(|one| 1 + one.size()).sum::<usize>() * 20)?;
-    // All orders, before: a comparison that fails has no place in a sort.
+    // All comparisons in advance: a comparison cannot fail inside a sort.
     for pair in all.windows(2) {
         pair[0].order(&pair[1])?;
     }

@@ -13,7 +13,7 @@ use super::value::Value;
 #[derive(Clone)]
 pub(super) enum Symbol {
     Value(Value),
-    /// A text that is evaluated where it is used first.
+    /// A text that is evaluated at its first use.
     Lazy(Rc<str>, At),
     /// One that is being evaluated.
     Pending,
@@ -123,8 +123,8 @@ impl Scopes {
         self.all[scope].macros.insert(name.into(), Rc::new(new));
     }
 
-    /// A macro by its name, with the names of namespaces before it, and the scope that its own is
-    /// inside.
+    /// A macro by its name, with the names of namespaces before it, and the parent scope of its
+    /// own.
     pub(super) fn find_macro(&self, scope: usize, name: &str) -> Option<(usize, Rc<Macro>)> {
         if let Some(found) = self.own_macro(scope, name) {
             return Some((scope, found));

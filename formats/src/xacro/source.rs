@@ -119,8 +119,8 @@ impl Reader<'_> {
     }
 }
 
-/// An expanded document, as text, and where it comes from: positions in order, each with the place
-/// of the source that the text from there on comes from.
+/// An expanded document as text, and its sources: positions in order, each with the source place of
+/// the text from there on.
 pub(crate) struct Expanded {
     pub(crate) text: String,
     pub(crate) origins: Vec<(usize, At)>,

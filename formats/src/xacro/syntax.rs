@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::value::{Result, Value, wrong};
 
-/// An expression may be so long, bytes, and nested so deeply.
+/// Maximum length of an expression, bytes, and maximum depth.
 const MOST_BYTES: usize = 64 << 10;
 const MOST_DEPTH: usize = 48;
 
@@ -15,11 +15,11 @@ pub(super) enum Expression {
     List(Vec<Expression>),
     Tuple(Vec<Expression>),
     Table(Vec<(Expression, Expression)>),
-    /// A list of an expression for each value of others.
+    /// A list with an expression for each value of others.
     Each(Box<Each>),
     Unary(Unary, Box<Expression>),
     Binary(Binary, Box<[Expression; 2]>),
-    /// The first, and further ones with how each compares with the one before.
+    /// The first one, and further ones, each with its comparison to the previous one.
     Compare(Box<Expression>, Vec<(Compare, Expression)>),
     And(Vec<Expression>),
     Or(Vec<Expression>),
@@ -36,7 +36,7 @@ pub(super) enum Expression {
 #[derive(Clone, Debug)]
 pub(super) struct Each {
     pub(super) item: Expression,
-    /// In a dictionary, the value; the item is the key.
+    /// In a dictionary the value; the item is the key.
     pub(super) value: Option<Expression>,
     pub(super) names: Vec<Rc<str>>,
     pub(super) source: Expression,
@@ -354,7 +354,7 @@ impl Parser {
             count += 1;
         }
         let mut result = self.comparison()?;
-        // Twice is a truth value, as once is.
+        // Two negations give a truth value, as one does.
         for _ in 0..if count > 2 { 2 - count % 2 } else { count } {
             result = Expression::Unary(Unary::Not, Box::new(result));
         }
@@ -618,7 +618,7 @@ impl Parser {
 /// Maximum number of binary operators of an expression: each may be one level of the tree.
 const MOST_TERMS: usize = 1000;
 
-/// Operators with two operands, those that bind least first.
+/// Binary operators, from the lowest precedence to the highest.
 const LEVELS: [&[(&str, Binary)]; 6] = [
     &[("|", Binary::BitOr)],
     &[("^", Binary::BitXor)],

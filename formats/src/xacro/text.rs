@@ -51,9 +51,9 @@ pub(super) fn pieces(text: &str) -> Result<Vec<Piece<'_>>> {
 /// A parameter of a macro.
 #[derive(Debug, PartialEq)]
 pub(super) struct Parameter<'a> {
-    /// With `*` or `**` before it for a block.
+    /// With a prefix `*` or `**` for a block.
     pub(super) name: &'a str,
-    /// Whether the default is the property of the same name where the macro is called: `^`.
+    /// Whether the default is the property of the same name at the call of the macro: `^`.
     pub(super) forwards: bool,
     pub(super) default: Option<&'a str>,
 }

@@ -11,7 +11,7 @@ use articulated_core::diagnostic::quote;
 pub(super) enum Value {
     None,
     Bool(bool),
-    /// Python's have no bound: these are 128 bits, and more is an error.
+    /// Python's integers are unbounded: these have 128 bits, and larger ones are an error.
     Int(i128),
     Float(f64),
     Text(Rc<str>),
@@ -42,9 +42,9 @@ impl<T> Deref for Items<T> {
     }
 }
 
-/// Lists are nested so deeply, at most.
+/// Maximum depth of nested lists.
 const MOST_DEPTH: u8 = 32;
-/// Items of two lists that a comparison looks at, at most; beyond, they differ.
+/// Maximum number of compared items of two lists; beyond it they count as different.
 const MOST_COMPARED: usize = 1 << 16;
 
 /// Errors of an expression.
@@ -54,7 +54,7 @@ pub(super) enum Fault {
     Wrong { found: String, expected: String },
     /// An error was reported already.
     Reported,
-    /// The work is more than any robot takes: found, and the bound.
+    /// The work exceeds that of any robot: found, and the bound.
     TooLarge { found: &'static str, most: usize },
 }
 
@@ -94,7 +94,7 @@ impl Value {
         }
     }
 
-    /// The number of items, for the work that they make.
+    /// The number of items, as a measure of their work.
     pub(super) fn size(&self) -> usize {
         match self {
             Self::List(items) | Self::Tuple(items) => items.len(),
@@ -177,7 +177,7 @@ impl Value {
     }
 
     fn write(&self, out: &mut String, is_literal: bool, depth: usize) {
-        // A value that holds itself many times over would be written without an end.
+        // A value that contains itself many times over would be written endlessly.
         if depth > 16 || out.len() > MOST_WRITTEN {
             return out.push_str("...");
         }
@@ -290,7 +290,7 @@ impl Value {
     }
 }
 
-/// Items with how deeply they are nested: `depth` of each, and one more.
+/// Items with their depth: `depth` of each, plus one.
 fn nested<T>(items: Vec<T>, depth: impl Fn(&T) -> u8) -> Result<Rc<Items<T>>> {
     let depth = items.iter().map(depth).max().unwrap_or_default() + 1;
     if depth > MOST_DEPTH {

@@ -210,7 +210,7 @@ impl<'a> Reader<'a, '_> {
         }
     }
 
-    /// A scalar, or a flow value that may go on in the lines below.
+    /// A scalar, or a flow value that may continue on the lines below.
     fn scalar_or_flow(&mut self, text: &'a str, depth: usize) -> Result<Value> {
         if text.starts_with(['|', '>']) {
             return wrong("a block scalar", "a text in quotation marks");

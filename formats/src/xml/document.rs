@@ -7,8 +7,8 @@ use super::lines::{Lines, line_of};
 use super::markup;
 use crate::files::MOST_BYTES;
 
-/// The text of the file, prepared for a strict XML reader; see [`markup::prepare`]. Lines are where
-/// they were.
+/// The text of the file, prepared for a strict XML reader; see [`markup::prepare`]. Line numbers
+/// are unchanged.
 pub(crate) fn text(bytes: &[u8], log: &mut Diagnostics) -> Option<String> {
     if bytes.len() as u64 > MOST_BYTES {
         let found = format!("{} bytes", bytes.len());

@@ -46,7 +46,7 @@ pub(crate) fn root(bytes: &[u8]) -> Option<&[u8]> {
     }
 }
 
-/// Why a text is refused at first sight.
+/// Reason why a text is refused before parsing.
 pub(crate) struct Fault {
     pub(crate) position: usize,
     pub(crate) kind: Code,
@@ -68,7 +68,7 @@ pub(crate) fn prepare(text: &str) -> Result<String, Fault> {
 
 struct Look<'a> {
     text: &'a str,
-    /// All before is done; always between two characters.
+    /// All text before it is done; always between two characters.
     at: usize,
     out: String,
     depth: usize,
@@ -154,7 +154,7 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// Copies names, with another sign for the colon.
+    /// Copies names, and replaces the colon.
     fn names(&mut self, length: usize) {
         for piece in self.rest()[..length].split_inclusive(':') {
             match piece.strip_suffix(':') {

@@ -34,7 +34,7 @@ pub(crate) struct File {
     pub(crate) name: String,
     /// Whether another file includes it.
     pub(crate) included: bool,
-    /// Whether the first counts of tags that should be there once.
+    /// Whether the first one of repeated unique tags counts.
     pub(crate) first_of_duplicates: bool,
     /// Whether its tags are made from a file of another format, whose warnings are already
     /// reported.
@@ -125,7 +125,7 @@ impl Element {
         self.unused_part(subject, (attribute, what), why, log);
     }
 
-    /// As [`Self::unused`], under a name of its own.
+    /// As [`Self::unused`], under another name.
     pub(crate) fn unused_part(&self, subject: &Subject, (attribute, what): (Option<&Attribute>, String), why: &str, log: &mut Diagnostics) {
         if self.file.converted {
             return;

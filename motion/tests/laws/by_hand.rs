@@ -142,7 +142,7 @@ fn a_sampled_controller_holds_its_torques() {
     assert!(r.tau[3] < 12.0 && r.tau[3] == r.tau[4] && r.tau[5] < r.tau[4], "{:?}", r.tau);
 }
 
-/// The law of the scene's control by hand, sampled as that is; its events and its end are the
+/// The law of the scene's control by hand, with the same sampling; its events and its end are the
 /// scene's.
 #[test]
 fn a_control_of_ones_own_moves_the_scene() {
@@ -161,7 +161,7 @@ fn a_control_of_ones_own_moves_the_scene() {
     assert!(instead.recording.tau.iter().all(|tau| *tau == 0.0));
 }
 
-/// Drive and detectors are for a simulation of one's own too, which may look for more.
+/// Drive and detectors also serve a user's own simulation, which may have more events.
 #[test]
 fn the_parts_put_together_move_as_the_whole() {
     let session = session(include_str!("arm.toml").replace("restitution", "stop = true\nrestitution").as_str(), ARM);

@@ -81,7 +81,8 @@ fn a_robot_of_another_mass_is_another() {
     assert!(["2.02", "1.98"].into_iter().all(|mass| matches!(fault(mass), Some(Fault::Dynamics { .. }))));
 }
 
-/// A gain may be one for all that a joint has; a torque is not the same about every axis by chance.
+/// One gain may apply to all degrees of freedom of a joint; a torque rarely has the same number
+/// about every axis.
 #[test]
 fn torques_of_a_ball_are_three() {
     let arm = session("simulation = { end = 0.1 }", ARM);
@@ -125,7 +126,7 @@ fn functions_that_the_robot_has_not_are_told_together() {
     assert_eq!(told[1], "s.toml: this robot was generated without difference: add it to `functions`");
 }
 
-/// The scene's control may be another than that which the motion is begun with.
+/// The control may differ from the one that the motion starts with.
 #[test]
 fn a_controller_that_the_robot_has_not_the_functions_for_is_refused() {
     let session = session("simulation = { end = 0.1 }", articulated_models::robot("panda_like").unwrap().urdf);

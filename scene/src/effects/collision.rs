@@ -98,7 +98,7 @@ impl<'a> Resolving<'a> {
                     radius.and_then(|at| filled.get_mut(at)).into_iter().for_each(|(_, tag)| *tag = Some(WORD));
                     self.put_filled(row, &link.name, Origin { xyz: sphere.center, ..Origin::default() }, one, &filled);
                 }
-                // It lacks for each of the points.
+                // It is missing for each of the points.
                 Err(field) => return missing(row, field, one, &format!("link {:?}", link.name), log),
             }
         }

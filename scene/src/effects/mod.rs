@@ -53,7 +53,7 @@ pub struct EffectRequest {
 /// The joints or links of a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Selector {
-    /// `*`: all joints that move, or all links that move and have mass; but those that are named.
+    /// `*`: all moving joints, or all moving links with mass, except the named ones.
     All,
     /// The joint, link or frame of this name.
     Named(String),
@@ -78,7 +78,7 @@ pub struct Numbers {
 const FRAME: [&str; 2] = ["xyz", "rpy"];
 /// The key for the source of numbers.
 const FROM: &str = "from";
-/// The selector of everything that is not named.
+/// The selector of all unnamed joints or links.
 const ALL: &str = "*";
 
 /// Reads the table `effects` into the scene.
@@ -237,8 +237,8 @@ fn quoted_with_reason(word: &str) -> String {
     format!("{}{why}", quote(word))
 }
 
-/// The field as it is on a ball joint, if that has as many numbers as are written: the kind of the
-/// joint is not known here.
+/// The field on a ball joint, if its length is that of the written numbers: the kind of the joint
+/// is unknown here.
 fn as_written(row: &'static Effect, field: &'static Field, spot: &Spot<'_>) -> &'static Field {
     let Some(count) = spot.list().map(|list| list.len()) else { return field };
     let on_ball = row.ball_fields.unwrap_or_default().iter().find(|other| other.name == field.name && other.len == count);
@@ -262,7 +262,7 @@ fn number(field: &Field, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<f64> 
     spot.within(log, field.range)
 }
 
-/// Checks the joint constraint of the numbers. Where one still comes from the file or from `*`, the
+/// Checks the joint constraint of the numbers. If a number comes from the file or from `*`, the
 /// model checks it.
 fn check(row: &'static Effect, numbers: &Numbers, spot: &Spot<'_>, log: &mut Diagnostics) {
     let default = |field: &Field| resolve::default_of(row, field, std::iter::once(numbers));
@@ -281,8 +281,8 @@ fn check(row: &'static Effect, numbers: &Numbers, spot: &Spot<'_>, log: &mut Dia
     }
 }
 
-/// The fields to blame for a broken rule, with their part of `all`: the rule's own if it is
-/// written, else those written that break it with zeros for the others.
+/// The fields that break a rule, with their part of `all`: the rule's own field if it is written,
+/// else written fields that break it with zeros for the others.
 fn blamed<'a>(row: &'static Effect, numbers: &Numbers, broken: &'static Field, all: &'a [f64]) -> Vec<(&'static Field, &'a [f64])> {
     let parts = row.fields_of(all.len()).iter().zip(&numbers.fields).scan(0, |end, (field, said)| {
         let start = *end;

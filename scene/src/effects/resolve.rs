@@ -17,7 +17,7 @@ use articulated_core::effect::{Applied, Effect, EffectId, Enters, Field, On, Zer
 use articulated_core::model::FLOATING_BASE;
 use articulated_formats::world::World;
 
-/// A robot as the scene's edits left it.
+/// A robot after the scene's edits.
 #[derive(Clone, Copy, Debug)]
 pub struct Edited<'a> {
     /// The robot.
@@ -37,7 +37,7 @@ pub struct Edited<'a> {
 /// Effects with all their numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Resolved {
-    /// In the order of the list of effects, then of the robot, whatever the order of the scene.
+    /// In the order of the list of effects, then of the robot; independent of the scene's order.
     pub effects: Vec<Applied>,
     /// The place of each effect in the scene.
     pub places: Vec<At>,
@@ -60,7 +60,7 @@ impl Scene {
         log.result(resolved)
     }
 
-    /// As [`resolve`](Self::resolve), without the effects that are wrong.
+    /// As [`resolve`](Self::resolve), without the invalid effects.
     pub(crate) fn resolve_into(&self, robot: &Edited<'_>, log: &mut Diagnostics) -> Resolved {
         let (still, moving) = (still(robot.description, robot.base), moving(robot.description));
         let index = Index::of(robot, &self.shafts);
@@ -125,7 +125,7 @@ impl<'a> Resolving<'a> {
         self.robot.description.joints.iter().zip(moving).filter(|(_, moving)| *moving).map(|(joint, _)| joint)
     }
 
-    /// Whether everything that is named is there and moves.
+    /// Whether all named joints and links exist and move.
     fn known_names(&self, row: &'static Effect, asked: &[&EffectRequest], log: &mut Diagnostics) {
         for one in asked {
             let Selector::Named(name) = &one.on else { continue };
@@ -210,7 +210,7 @@ impl<'a> Resolving<'a> {
                 self.put(row, one, (place, key), &vec![None; row.fields.len()]);
             }
             let named = by_name.get(&joint.name).first().copied();
-            // Numbers for all joints are for those that have such numbers.
+            // A request for all joints applies to those with such numbers.
             let fits = |one: &&EffectRequest| one.says.as_ref().is_none_or(|says| fits(row, says, joint.kind));
             let all = all.filter(fits);
             let spread = all.filter(|_| self.is_spread_over(row.id, joint));
@@ -265,8 +265,8 @@ impl<'a> Resolving<'a> {
         }
     }
 
-    /// Warns if the numbers of all joints are to come from the robot's file, which has them for no
-    /// joint, not even for one that is locked, or has zeros.
+    /// Warns if the numbers of all joints are requested from the robot's file, which has them for
+    /// no joint, not even a locked one, or has zeros.
     fn warn_of_no_numbers(&mut self, row: &'static Effect, asked: &[&EffectRequest]) {
         let Some((one, says)) = for_all(asked).and_then(|one| Some((one, one.says.as_ref()?))).filter(|(_, says)| says.from_urdf) else {
             return;

@@ -2,8 +2,8 @@
 
 use articulated_core::description::{Base, ById, Description, Joint, JointId, LinkId};
 
-/// For each joint, whether it lets its child move: it is not fixed, not locked, and does not follow
-/// joints that all are. A chain of followers without an end lets it.
+/// For each joint, whether its child can move: it is not fixed, not locked, and does not follow
+/// only such joints. A cyclic chain of followers can move.
 pub(crate) fn moving(description: &Description) -> ById<JointId, bool> {
     let joints = &description.joints;
     let mut moving: ById<JointId, bool> = vec![true; joints.len()].into();

@@ -137,8 +137,8 @@ impl Joining<'_> {
         Coupling { joint: self.named(&coupling.joint), leaders: self.all_named(coupling.leaders), offset: coupling.offset }
     }
 
-    /// States with controls for the actuators of both: `[own, appended]`. Controls that a state
-    /// does not have are 0, and joints that it does not have are where the file begins.
+    /// States with controls for the actuators of both: `[own, appended]`. Missing controls of a
+    /// state are 0, and missing joints have the file's initial coordinates.
     fn keyframes(&self, world: &mut World, other: Vec<Keyframe>, [own, appended]: [usize; 2]) {
         let full = |control: Vec<f64>, count: usize| if control.len() == count { control } else { vec![0.0; count] };
         for keyframe in &mut world.keyframes {

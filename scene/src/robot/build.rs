@@ -108,7 +108,7 @@ impl RobotRequest<'_> {
         }
     }
 
-    /// Numbers that cannot be, whatever the robot.
+    /// Checks numbers that are invalid for any robot.
     fn check_numbers(&self, log: &mut Diagnostics) {
         let wrong = |key, found, expected| Diagnostic::error("", (Default::default(), key), Code::Number, found, expected);
         if let Some(gravity) = self.options.gravity.filter(|gravity| gravity.iter().any(|x| !x.is_finite())) {
@@ -168,7 +168,7 @@ impl RobotRequest<'_> {
                 scene.check_file_step(&editing.reading.world, &mut own);
                 own.take(scene.fits(RobotInWorld { model: &model, world: &editing.reading.world }).err().unwrap_or_default());
             }
-            // A refused shaft would have brought names.
+            // Names that a refused shaft would have added.
             let refused: Vec<&str> = scene
                 .shafts
                 .iter()
@@ -239,7 +239,7 @@ impl RobotRequest<'_> {
     }
 }
 
-/// Whether a finding is about a joint or a link that only a refused shaft would have brought.
+/// Whether a finding is about a joint or a link of a refused shaft.
 fn is_about_shaft(error: &Diagnostic, refused: &[&str]) -> bool {
     let may_name = |name: &str| refused.iter().any(|joint| articulated_core::description::Shaft::may_name(joint, name));
     error.field.split(['.', '[']).any(may_name)
@@ -274,7 +274,7 @@ impl<'a> Entry<'a> {
 }
 
 impl Editing<'_> {
-    /// Makes all edits that can be made. Whether all robots were appended.
+    /// Makes all edits that can be made. Returns whether all robots were appended.
     fn edit(&mut self, log: &mut Diagnostics) -> bool {
         let mut description = std::mem::take(&mut self.reading.description);
         let mut editor = Editor::of(&mut description);
@@ -308,8 +308,8 @@ impl Editing<'_> {
         appended
     }
 
-    /// Linear equations of the robot's file and of those appended are edits. Warnings that they are
-    /// not applied go. `appended`: whether all robots were appended.
+    /// Linear equations of the robot's file and of appended ones are edits. Warnings that they are
+    /// not applied are removed. `appended`: whether all robots were appended.
     fn couple_as_the_files_say(&mut self, appended: bool, editor: &mut Editor<'_>, log: &mut Diagnostics) {
         if appended && self.reading.world.couplings.is_empty() {
             let place = (Default::default(), "coupling");
@@ -382,7 +382,7 @@ mod tests {
     use super::*;
     use crate::Appended;
 
-    /// An inertia that no body has, which is a warning.
+    /// An implausible inertia, which is a warning.
     const LINK: &str = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='3'/></inertial>";
 
     /// A link that turns on another, between these bounds, with an unused colour; its axis is
@@ -521,7 +521,7 @@ mod tests {
         assert_eq!(told([0.0, 0.0, 0.0, 1.0, 1e-7, 1.0]), []);
     }
 
-    /// A body that a free joint holds to the root, of this name and with this content.
+    /// A body with a free joint on the root of this name, with this content.
     fn free(root: &str, content: &str) -> TestRequest {
         let urdf = format!(
             "<robot name='quad'><link name='{root}'>{content}</link><link name='stand'/><link name='trunk'>{LINK}</link>

@@ -22,7 +22,7 @@ pub struct Bundled<'a> {
     pub name: &'a str,
     /// Its document.
     pub document: &'a str,
-    /// The base that it is meant for.
+    /// The intended base.
     pub base: Base,
 }
 
@@ -33,7 +33,7 @@ pub struct Loader<'a> {
     pub sources: &'a dyn Sources,
     /// The folder that names of files start from.
     pub root: PathBuf,
-    /// The same in messages: `, seen from …`; empty for the folder in which the program runs.
+    /// The same for messages: `, seen from …`; empty for the program's working folder.
     pub seen_from: &'static str,
     /// The robots that scenes may call by name.
     pub bundled: &'a [Bundled<'a>],
@@ -118,7 +118,7 @@ pub fn open_in_into(scene: Scene, folder: &Path, bundled: &[Bundled<'_>], log: &
 }
 
 impl Default for Loader<'_> {
-    /// Of the file system, from the folder in which the program runs; no bundled robots.
+    /// The file system, from the program's working folder; no bundled robots.
     fn default() -> Self {
         Self { sources: &Disk, root: PathBuf::new(), seen_from: "", bundled: &[], files: Vec::new(), included: Included::default() }
     }
@@ -153,7 +153,7 @@ impl Loader<'_> {
     }
 
     /// Reads the files that a robot's document includes; `name`: the document's, `robot`: the
-    /// arguments and packages that it is read with later.
+    /// arguments and packages for reading it later.
     pub fn include(&mut self, name: &str, document: &[u8], robot: &RobotOptions) {
         let RobotOptions { formats, arguments, packages, .. } = robot;
         let (arguments, packages) = (arguments.clone(), packages.clone());
@@ -211,7 +211,7 @@ impl Loader<'_> {
         }
     }
 
-    /// Reads the robots to append; `folder`: the scene's. Whether all are there.
+    /// Reads the robots to append; `folder`: the scene's. Returns whether all are there.
     pub fn append(&mut self, folder: &Path, options: &mut RobotOptions, log: &mut Diagnostics) -> bool {
         let mut all = true;
         let mut append = std::mem::take(&mut options.append);
@@ -242,8 +242,8 @@ impl Loader<'_> {
     }
 }
 
-/// A file as the root sees it: one that an invocation names as it is, one that a scene names from
-/// the scene's folder.
+/// A file as the root sees it: a name in an invocation is unchanged, a name in a scene is relative
+/// to the scene's folder.
 fn seen_from(at: At, folder: &Path, name: &str) -> PathBuf {
     if matches!(at, At::Word(_)) { name.into() } else { folder.join(name) }
 }
@@ -254,7 +254,7 @@ pub fn folder_of(file: &Path) -> &Path {
     file.parent().unwrap_or(Path::new(""))
 }
 
-/// A file that a scene names, as seen from where the scene is seen.
+/// A file that a scene names, relative to the root that the scene is relative to.
 #[must_use]
 pub fn beside(scene: &str, name: &str) -> String {
     let folder = Path::new(scene).parent().filter(|folder| *folder != Path::new(""));
@@ -272,7 +272,7 @@ impl Opened {
         Self { scene, file: file.to_owned(), document, options, files: Vec::new() }
     }
 
-    /// The robot as the scene requests it.
+    /// The robot requested by the scene.
     #[must_use]
     pub fn robot(&self) -> RobotRequest<'_> {
         RobotRequest { file: &self.file, document: &self.document, options: &self.options, scene: Some(&self.scene), checks_motion: true }

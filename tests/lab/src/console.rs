@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use crate::table::{escaped, is_obeyed, plain};
 
-/// Writes to the standard output. A reader that has gone away is not an error.
+/// Writes to the standard output. A closed pipe is not an error.
 pub fn print(text: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     match out.write_all(harmless(text).as_bytes()).and_then(|()| out.flush()) {
@@ -116,7 +116,7 @@ impl Progress {
         Self::start(Bar { steps: steps as u64, ..Bar::default() })
     }
 
-    /// For something whole, of which parts get done.
+    /// For a whole whose parts get done.
     pub fn of_whole(what: String) -> Self {
         Self::start(Bar { message: what, steps: 1000, whole: true, ..Bar::default() })
     }

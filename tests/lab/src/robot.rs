@@ -1,4 +1,4 @@
-//! A loaded robot: its document, where it is from, and how it is read.
+//! A loaded robot: its document, its source, and the options of reading it.
 
 use std::path::{Path, PathBuf};
 

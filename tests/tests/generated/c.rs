@@ -110,7 +110,7 @@ static WAYS: LazyLock<Vec<(Vectors, Program)>> = LazyLock::new(|| {
     ways.into_iter().map(|vectors| (vectors, c_program::build(&all, vectors, "-O0"))).collect()
 });
 
-/// States one after the other, and in blocks of which the last is not full.
+/// States one after the other, and in blocks with an incomplete last one.
 #[test]
 fn c_of_many_states_gives_what_the_generic_library_gives() {
     // In units of roundoff of the type: 3.6 were seen in f64, and 17 in f32, for a Coriolis matrix

@@ -49,7 +49,7 @@ articulated::robot! {
 }
 
 articulated::robot! {
-    /// Four wheels in lanes, of which three are round.
+    /// Four wheels in lanes, three of them round.
     mod rover {
         urdf = "robots/rover.urdf",
         base = floating,

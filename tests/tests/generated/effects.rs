@@ -1,5 +1,4 @@
-//! Effects in generated code: those that are on are the generic library's, those that are off are
-//! not there.
+//! Effects in generated code: active ones equal the generic library's, inactive ones are absent.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;

@@ -9,7 +9,7 @@ use articulated_tests::case::read;
 use crate::choices::{A, Q, URDF, V, same, states};
 
 articulated::robot! {
-    /// Parameters that are known only when it runs.
+    /// Parameters that are known only at run time.
     mod tuned {
         urdf = "robots/arm.urdf",
         functions = [inverse_dynamics, forward_dynamics, mass_matrix, potential_energy, placements],
@@ -19,7 +19,7 @@ articulated::robot! {
 }
 
 articulated::robot! {
-    /// Gravity and a damper that are known only when it runs.
+    /// Gravity and a damper that are known only at run time.
     mod elsewhere {
         urdf = "robots/arm.urdf",
         functions = [inverse_dynamics],

@@ -135,7 +135,7 @@ fn a_wrong_number_of_arguments_is_an_error() {
     });
 }
 
-/// Neither values that are no numbers nor huge ones stop the generic library.
+/// Neither NaN nor infinite nor huge values stop the generic library.
 #[test]
 fn no_value_makes_an_algorithm_panic() {
     for_each_tree(10, Flavour::ANY, |case, _| {
@@ -212,7 +212,7 @@ fn inertia_in_all_directions_is_no_number_where_a_frame_cannot_move_in_all() {
     }
 }
 
-/// Six joints of which one follows another are five degrees of freedom.
+/// Six joints, one a follower, have five degrees of freedom.
 #[test]
 fn inertia_in_all_directions_is_no_number_where_joints_follow_others() {
     let chain = |follows: bool| {

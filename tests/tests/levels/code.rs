@@ -95,7 +95,7 @@ fn states_in_parts(model: &Model<f64>, count: usize) -> impl Iterator<Item = (Ve
 
 const PART: usize = 1000;
 
-/// Errors are within their bounds, and levels are as exact, one to another, as they promise.
+/// Errors are within their bounds, and the relative accuracy of levels is as promised.
 fn hold(robot: &str, count: usize) {
     let levels = LEVELS.map(|name| build(robot, name, Target::Own));
     let mut worst = [0.0_f64; LEVELS.len()];

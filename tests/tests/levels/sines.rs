@@ -111,7 +111,7 @@ fn singles(bits: [u32; 4]) -> usize {
     doubtful
 }
 
-/// The `f32` nearest to a number that is within 4 ulps of doubles of this, where that decides.
+/// The nearest `f32` to a number within 4 ulps of doubles of this one, if that decides it.
 fn decided(known: f64) -> Option<f32> {
     let (low, high) = (known * (1.0 - 4.0 * f64::EPSILON), known * (1.0 + 4.0 * f64::EPSILON));
     (low as f32 == high as f32).then_some(high as f32)

@@ -2,17 +2,17 @@
 
 use std::cmp::Ordering;
 
-/// How long a motion is seen at the fastest and at the slowest speed that is offered, s.
+/// Playing time of a motion at the fastest and at the slowest speed, s.
 const OFFERED: [f64; 2] = [1.0, 1000.0];
 
-/// How long it should be seen at first, s.
+/// Intended playing time at first, s.
 const SEEN: [f64; 2] = [5.0, 15.0];
 
 /// For rounding.
 const SLACK: f64 = 1e-9;
 
-/// Seconds of the motion a second that are offered for a motion of this length, s, from the
-/// slowest: round numbers, and 1.
+/// Playing speeds, seconds of the motion per second, for a motion of this length, s, starting with
+/// the slowest: round numbers, and 1.
 pub(super) fn speeds(length: f64) -> Vec<f64> {
     let [slowest, fastest] = [(1.0 - SLACK) * length / OFFERED[1], (1.0 + SLACK) * length / OFFERED[0]];
     let mut all = vec![1.0];

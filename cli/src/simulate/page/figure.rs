@@ -49,7 +49,7 @@ pub(super) struct Mark {
     body: usize,
     place: [f64; 3],
     name: String,
-    /// The name, or as much of it as there is room for.
+    /// The name, cut to the available room.
     label: String,
 }
 
@@ -64,7 +64,7 @@ pub(super) struct Box {
     mass: f64,
     /// Index of its limb of the base, for its colour.
     pub(super) limb: usize,
-    /// No visual shape of the link is drawn: the box is all there is to see of it.
+    /// No visual shape of the link is drawn: the box is its only drawing.
     alone: bool,
 }
 

@@ -24,7 +24,7 @@ pub(super) struct Geometry {
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
-/// As the player reads it: numbers of 32 bits.
+/// In the player's format: numbers of 32 bits.
 impl Serialize for Geometry {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         let points = base64(&self.points.iter().flatten().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>());
@@ -56,8 +56,8 @@ impl Geometry {
         Self { points: (0..8).map(corner).collect(), triangles }
     }
 
-    /// The surface that a line of points (distance from the z axis, height), from below, makes
-    /// about that axis.
+    /// The surface of revolution of a line of points (distance from the z axis, height), from
+    /// below.
     fn turned(line: &[[f64; 2]]) -> Self {
         let around = |k: usize| (k as f64 * TAU / AROUND as f64).sin_cos();
         let point = |&[r, z]: &[f64; 2], k: usize| {
@@ -101,7 +101,7 @@ impl Geometry {
         found
     }
 
-    /// With one point for each key, the mean of those that have it.
+    /// With one point for each key, the mean of its points.
     fn clustered(&self, key: impl Fn([f32; 3]) -> [u32; 3]) -> Self {
         let mut found: HashMap<[u32; 3], u32> = HashMap::new();
         let mut sums: Vec<(Vector3<f64>, f64)> = Vec::new();

@@ -39,7 +39,7 @@ impl<'a> Meshes<'a> {
         self.log.into_inner()
     }
 
-    /// The mesh of a link, with at most this share of all triangles; a warning, if there is none.
+    /// The mesh of a link, with at most this share of all triangles; a warning if there is none.
     pub(super) fn mesh(&self, link: &str, name: &str, pieces: usize) -> Option<Geometry> {
         let most = (MOST_OF_ALL / pieces.max(1)).clamp(LEAST, MOST);
         let found = self.find(name).and_then(|path| self.read(&path).map_err(|why| (format!("{}: {why}", path.display()), EXPECTED)));

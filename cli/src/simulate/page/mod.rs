@@ -77,7 +77,7 @@ struct Motion<'a> {
     size: f64,
     #[serde(flatten)]
     figure: &'a Figure,
-    /// Seconds of the motion a second that are offered, and the one that it begins with.
+    /// Playing speeds, seconds of the motion per second, and the initial one.
     speeds: Vec<f64>,
     speed: f64,
     /// Decimal places of the clock.
@@ -217,7 +217,7 @@ impl Space {
     }
 }
 
-/// The box that holds all of these.
+/// The box around all of these.
 fn bounds(all: impl Iterator<Item = (Vector3<f64>, f64)>) -> (Vector3<f64>, Vector3<f64>) {
     let mut ends: Option<(Vector3<f64>, Vector3<f64>)> = None;
     for (p, r) in all {

@@ -1,4 +1,4 @@
-//! Where the bodies are in each frame of the animation, in 14 bytes a body.
+//! Places of the bodies in each frame of the animation, in 14 bytes per body.
 
 use articulated_core::spatial::Placement;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};

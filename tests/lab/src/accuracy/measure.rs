@@ -269,7 +269,7 @@ impl Theirs {
         self.arguments.iter().take(states).map(|x| x.iter().map(Vec::as_slice).collect()).collect()
     }
 
-    /// The result in our order; not a number where the peer keeps it to itself.
+    /// The result in our order; NaN if the peer does not return it.
     fn call(&self, k: usize, peer: &Peer, ours: &[f64], f: &Function<f64>, model: &Model<f64>) -> Vec<f64> {
         let arguments: Vec<&[f64]> = self.arguments[k].iter().map(Vec::as_slice).collect();
         let result = self.contender.call(&arguments);

@@ -64,7 +64,7 @@ impl Report {
         advise::text(self, wish)
     }
 
-    /// The functions of which no level is accurate enough, in a sentence.
+    /// The functions without an accurate enough level, in a sentence.
     pub fn short_of(&self, wish: f64) -> Option<String> {
         advise::short(self, wish)
     }

@@ -113,7 +113,7 @@ pub(super) struct Point {
     pub(super) hard: Option<(f64, &'static str)>,
     /// The largest guaranteed bound on `rounding`, over the random states.
     pub(super) bound: Option<f64>,
-    /// How much of its bound an error reached at most.
+    /// The largest ratio of an error to its bound.
     pub(super) reached: Option<f64>,
     pub(super) instructions: Option<u64>,
     pub(super) operations: Option<u64>,

@@ -79,7 +79,7 @@ impl Reference {
     }
 }
 
-/// On how many of the states errors are looked at: a derivative in 96 digits takes its time.
+/// Maximum number of states whose errors are computed: a derivative in 96 digits is slow.
 const JUDGED: usize = 16;
 
 /// The function for the torques that a function's result needs, if it is judged by them.
@@ -131,7 +131,7 @@ pub(crate) fn singular(exact: &[Big]) -> bool {
     exact.iter().map(|x| x.to_f64()).any(|x| x.is_nan() || x.abs() >= 1e40)
 }
 
-/// Errors beyond this are looked at once more: see [`scales_of_generated`].
+/// Larger errors are checked again: see [`scales_of_generated`].
 const SUSPECT: f64 = 16.0;
 
 /// |found − exact| over the scale of the result, of each that was found.
@@ -262,7 +262,7 @@ pub(crate) fn largest(exact: &[Big], found: &[f64], scale: &[f64]) -> f64 {
     errors.fold(0.0, worse)
 }
 
-/// The larger of two errors, and not a number if either is not.
+/// The larger of two errors; NaN if one is.
 pub fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || a >= b { a } else { b }
 }

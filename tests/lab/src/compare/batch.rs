@@ -65,7 +65,7 @@ impl<'a> Many<'a> {
         compiled.batches.iter().map(|batch| Self::of(batch, seconds, states, out_len)).collect()
     }
 
-    /// A last block that is not full has the last state again and again.
+    /// An incomplete last block is filled with repetitions of the last state.
     fn of(batch: &'a Batch, compilation_seconds: f64, states: &[Vec<&[f64]>], out_len: usize) -> Self {
         let lanes = batch.layout.states(batch.real);
         let count = states.len().div_ceil(lanes);

@@ -42,7 +42,7 @@ impl<'a> Contender<'a> {
         Self { way: Way::Generic { function, model, workspace }, out: function.len(model.shape()) }
     }
 
-    /// The result in one state; empty where a peer keeps it to itself.
+    /// The result in one state; empty if a peer does not return it.
     pub fn call(&self, arguments: &[&[f64]]) -> Vec<f64> {
         let mut out = vec![0.0; self.out];
         match &self.way {
@@ -135,7 +135,7 @@ struct Room {
 
 impl Room {
     const PAGE: usize = 4096 / size_of::<f64>();
-    /// Some cache lines, and as many as there are in a page before a place comes again.
+    /// A step of some cache lines, so that all lines of a page are used before a place repeats.
     const STEP: usize = 5 * 64 / size_of::<f64>();
 
     fn new(out: usize) -> Self {

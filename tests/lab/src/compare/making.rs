@@ -12,7 +12,7 @@ use crate::error::Error;
 
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Making {
-    /// All those that were compared of which these generators have code.
+    /// The compared functions for which these generators have code.
     pub(super) functions: Vec<&'static str>,
     pub(super) generation_seconds: f64,
     /// `rustc` on one module to its object file, start included, as the peers' compilers are timed.

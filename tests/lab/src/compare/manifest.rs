@@ -66,7 +66,7 @@ impl Library {
         self.robots.iter().find(|r| r.hash == hash && r.floating == floating)
     }
 
-    /// How far its results may be from ours, relative to the magnitude.
+    /// Tolerated difference of its results from ours, relative to the magnitude.
     pub(crate) fn bound(&self) -> f64 {
         if self.element.as_deref() == Some("f32") { SINGLE_BOUND } else { BOUND }
     }

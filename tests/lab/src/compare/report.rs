@@ -81,7 +81,7 @@ pub struct Settings {
     pub states: u32,
     /// Their seed.
     pub seed: u64,
-    /// The largest error that is right, in units of 2⁻⁵³ of the sum of the magnitudes of the terms.
+    /// Largest accepted error, in units of 2⁻⁵³ of the sum of the magnitudes of the terms.
     pub bound: f64,
 }
 
@@ -108,7 +108,7 @@ pub struct Report {
     pub(super) reference: Against,
     /// Bits of its numbers.
     pub(super) reference_bits: usize,
-    /// The largest error that is right, in units of 2⁻⁵³ of the magnitude.
+    /// Largest accepted error, in units of 2⁻⁵³ of the magnitude.
     pub(super) bound: f64,
     /// Whether the command itself is optimised; generic code and generation are as fast as it is.
     pub(super) optimised: bool,

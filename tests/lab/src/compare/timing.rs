@@ -55,11 +55,11 @@ pub fn interleaved(runs: &mut [Run<'_>], repetitions: usize) -> Vec<Vec<f64>> {
     times
 }
 
-/// How many rounds make a batch; finding out warms up.
+/// Number of rounds in a batch; the measurement also warms up.
 fn rounds_of_a_batch(run: &mut Run<'_>) -> usize {
     let mut rounds = 1;
     loop {
-        // The least of three: a machine with other work to do interrupts.
+        // The minimum of three: other processes interrupt.
         let time = (0..3).map(|_| run.go(rounds)).min().unwrap_or_default();
         if time * 4 >= BATCH || rounds > 1 << 24 {
             let scale = BATCH.as_secs_f64() / time.as_secs_f64().max(1e-9);

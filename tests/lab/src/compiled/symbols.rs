@@ -1,4 +1,4 @@
-//! How much machine code a function is.
+//! Size of a function's machine code.
 
 use std::path::Path;
 

@@ -56,7 +56,7 @@ impl NativePeer {
         // SAFETY: the type of the interface.
         let at: Option<extern "C" fn(H, *const c_char) -> P> = unsafe { robot.function("entry") };
         // SAFETY: by the interface a function takes the arrays of its arguments, and one for its
-        // result where it does not keep it, whether it is known by its name or by its address.
+        // result unless it keeps it, for a function by name or by address.
         let entry = unsafe {
             match (kept, at.map(|at| at(robot.handle, told.as_ptr()))) {
                 (false, None) => Entry::Writing(Writing::open(&robot.native, &symbol, arguments.len())?),

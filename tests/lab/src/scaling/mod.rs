@@ -18,8 +18,8 @@ use crate::table::counted;
 use measure::Cold;
 pub use report::Report;
 
-/// Lengths of chains, and the most numbers that a result may have: a matrix grows with the square
-/// of the chain, and so does all that it costs.
+/// Lengths of chains, and the maximum length of a result: a matrix and its costs grow with the
+/// square of the chain.
 struct Extent {
     joints: &'static [usize],
     numbers: usize,

@@ -117,8 +117,7 @@ fn crossover(points: &[Point]) -> Crossover {
     }
 }
 
-/// Where a curve (n, ratio) rises above 1 for good; between two points as a straight line of both
-/// logarithms.
+/// Where a curve (n, ratio) last rises above 1; linear in both logarithms between two points.
 fn last_crossing(curve: &[(f64, f64)]) -> Option<f64> {
     let below = curve.iter().rposition(|(_, ratio)| *ratio < 1.0);
     let (n, above) = *curve.get(below.map_or(0, |k| k + 1))?;

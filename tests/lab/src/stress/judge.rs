@@ -79,7 +79,7 @@ impl<'a, F: Machine> Judge<'a, F> {
         Self { case, wide: wide(&model), model }
     }
 
-    /// Right up to the limit; of one that is infinite, to be seen.
+    /// A row with a limit; one with an infinite limit is only shown.
     fn row(&self, what: &str, measured: f64, limit: f64, unit: &'static str) -> Row {
         let what = format!("{what}, {}", F::NAME);
         if limit.is_finite() { self.case.row(what, measured, limit, unit) } else { self.case.shown(what, measured, unit) }

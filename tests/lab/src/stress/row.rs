@@ -61,7 +61,7 @@ impl Case {
         self.of(what.into(), measured, Some(limit), unit, pass)
     }
 
-    /// Right between two limits, of which the upper is shown.
+    /// Passes between two limits; the upper one is shown.
     pub fn between(&self, what: impl Into<String>, measured: f64, [least, most]: [f64; 2], unit: &'static str) -> Row {
         self.of(what.into(), measured, Some(most), unit, (least..=most).contains(&measured))
     }

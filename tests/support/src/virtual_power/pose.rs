@@ -67,8 +67,8 @@ pub(super) fn place<S: Scalar>(origin: &Origin) -> Pose<S> {
     (about(2) * about(1) * about(0), Vector3::from(origin.xyz).map(Jet::from_f64))
 }
 
-/// (sin, cos); the double nearest to a right angle is a right angle: that is a convention and no
-/// matter of dynamics.
+/// (sin, cos); the double nearest to a right angle is a right angle: that is a convention, not
+/// dynamics.
 fn written<S: Scalar>(angle: f64) -> (S, S) {
     let turns = (angle / FRAC_PI_2).round();
     if turns * FRAC_PI_2 != angle || turns.abs() > 4.0 {

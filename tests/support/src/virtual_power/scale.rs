@@ -19,7 +19,7 @@ struct Way {
     spin: f64,
 }
 
-/// How much of the moment and of the force beyond a joint one of its rates feels.
+/// Part of the moment and of the force beyond a joint that one of its rates feels.
 type Share = (f64, f64);
 
 const TURN: Share = (1.0, 0.0);
@@ -40,7 +40,7 @@ fn shares(joint: &Joint) -> Vec<Share> {
     }
 }
 
-/// How many turns and slides along an axis a joint is made of, at least one.
+/// Number of turns and slides along an axis that a joint consists of, at least one.
 fn elementary(kind: JointKind) -> f64 {
     match kind {
         JointKind::Helical | JointKind::Universal => 2.0,

@@ -37,7 +37,7 @@ pub(super) struct Run<'a> {
     pub(super) sample: &'a Sample,
 }
 
-/// By evaluations and by the clock; of each integrator those runs count that are no lucky hits.
+/// By evaluations and by the clock; only runs that are not lucky hits count.
 pub(super) fn all(m: &Motion, wish: f64) -> Advice<'_> {
     let own = m.curves.iter().filter(|c| !c.peer);
     let fit: Vec<(&str, &Sample)> = own.flat_map(|c| lasting(&c.samples, wish).iter().map(|s| (c.integrator.as_str(), s))).collect();
@@ -48,8 +48,8 @@ pub(super) fn all(m: &Motion, wish: f64) -> Advice<'_> {
     Advice { scene: &m.scene, wish, units: UNITS, runs }
 }
 
-/// The finest runs, all of which reach the error; two at least. A run that reaches it while a finer
-/// one does not has hit it by accident.
+/// The finest runs that all reach the error; at least two. A run is a lucky hit if a finer one does
+/// not reach it.
 fn lasting(samples: &[Sample], wish: f64) -> &[Sample] {
     let from = samples.iter().rposition(|s| s.error.is_nan() || s.error > wish).map_or(0, |k| k + 1);
     if samples.len() - from >= 2 { &samples[from..] } else { &[] }

@@ -142,9 +142,9 @@ fn repeated() -> Vec<Row> {
     rows
 }
 
-/// The same with next to no mass between, on a slide: the two turn against each other a billion
-/// times as fast as anything else moves, and roundings of that reach the slide, which they do not
-/// move. Refined they do not.
+/// The same with almost no mass between, on a slide: the two turn against each other a billion
+/// times as fast as the other motions, and their rounding errors reach the slide, which they do not
+/// move. With refinement they do not reach it.
 fn nearly_repeated() -> Vec<Row> {
     let case = Case::new(
         NAME,

@@ -30,7 +30,7 @@ fn slider(effect: EffectId, on_link: bool, parameters: Vec<f64>, weight: bool) -
     robot.with_effects(&[Applied { effect, on, at: Origin::default(), parameters }]).expect("parameters that the effect takes")
 }
 
-/// A slider, where it begins, and how it is to end.
+/// A slider, its start, and its expected end.
 struct Motion {
     robot: Model<f64>,
     q: f64,
@@ -38,7 +38,7 @@ struct Motion {
     end: f64,
     /// Place at the end, m.
     rest: f64,
-    /// How far from it is right, m.
+    /// Tolerated distance from it, m.
     near: f64,
 }
 
@@ -49,7 +49,7 @@ impl Motion {
         Simulation::new(&self.robot, settings)?.run(&[self.q], &[self.v], &mut NoTorque, &mut [])
     }
 
-    /// How far from its rest a motion ended, m.
+    /// Distance of a motion's end from its rest, m.
     fn off(&self, motion: &Recording) -> f64 {
         (motion.q[motion.q.len() - 1] - self.rest).abs()
     }
@@ -76,7 +76,7 @@ impl Motion {
                 let off = loop {
                     match self.run(integrator, Some(h)) {
                         Ok(motion) => break self.off(&motion),
-                        // It may get stiffer on its way than where it was refused.
+                        // On its way it may get stiffer than at the refusal.
                         Err(SimulateError::Unstable { admissible, .. }) if admissible < h && found.len() < 3 => {
                             found.push(admissible);
                             h = 0.3 * admissible;
@@ -149,8 +149,7 @@ fn damping() -> Vec<Row> {
     rows
 }
 
-/// Whether a step of h·d/m = z is refused where it is unstable and only there, with the longest
-/// that is not.
+/// Whether a step of h·d/m = z is refused exactly if it is unstable, with the longest stable step.
 fn refuses_beyond(integrator: IntegratorId, z: f64, h: f64, motion: &Motion) -> bool {
     // The largest z with |R(−z)| ≤ 1.
     let limit = match integrator {
