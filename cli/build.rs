@@ -1,8 +1,8 @@
-//! Which commit is built: reports of measurements name it.
+//! The built commit: reports of measurements name it.
 //!
-//! `ARTICULATED_COMMIT` if it is set; else what a package says that it was made from; else what git
-//! says, if this folder is part of a checkout; else nothing. Builds without optimisation are not
-//! told: they would be made anew after every commit, and are not what one measures with.
+//! `ARTICULATED_COMMIT` if it is set; else the commit recorded in a package; else git's, if this
+//! folder is part of a checkout; else none. Builds without optimisation have no commit: they would
+//! be rebuilt after every commit, and are not used for measurements.
 
 use std::path::Path;
 use std::process::Command;
@@ -10,7 +10,7 @@ use std::process::Command;
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=ARTICULATED_COMMIT");
-    // The variable reaches the compiler as it is.
+    // The variable reaches the compiler unchanged.
     if std::env::var_os("ARTICULATED_COMMIT").is_some() || std::env::var("PROFILE").as_deref() != Ok("release") {
         return;
     }
@@ -27,11 +27,11 @@ fn packaged() -> Option<String> {
 }
 
 fn checked_out() -> Option<String> {
-    // A copy inside of somebody else's repository is not part of it.
+    // A copy inside another repository is not part of it.
     git(&["ls-files", "--error-unmatch", "Cargo.toml"])?;
     let commit = git(&["rev-parse", "HEAD"])?;
-    // What changes with every commit and every change of branch. A path that is not there would
-    // have this run every time.
+    // Files that change with every commit and every change of branch. A missing path would cause a
+    // run every time.
     let watched = ["HEAD", "logs/HEAD", "packed-refs"].map(str::to_owned).into_iter().chain(git(&["symbolic-ref", "--quiet", "HEAD"]));
     for path in watched.filter_map(|name| git(&["rev-parse", "--git-path", &name])).filter(|path| Path::new(path).exists()) {
         println!("cargo::rerun-if-changed={path}");
@@ -47,7 +47,7 @@ fn short(commit: &str) -> String {
     commit[..12].to_owned()
 }
 
-/// The first line that git prints; `None` if there is no git, or if it refuses.
+/// The first line of git's output; `None` if git is missing or fails.
 fn git(words: &[&str]) -> Option<String> {
     let output = Command::new("git").args(words).output().ok()?;
     let line = String::from_utf8(output.stdout).ok()?.lines().next()?.to_owned();

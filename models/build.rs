@@ -1,4 +1,4 @@
-//! Writes out the arm that the crate gives by way of a build script.
+//! Generates the arm of the crate by a build script.
 
 fn main() {
     #[cfg(feature = "generated")]

@@ -150,7 +150,7 @@ fn motions(arguments: &AccuracyArguments, format: Format) -> Result<(), Failure>
     concluded(arguments, &text, || motion.files(), wish.and_then(|wish| motion.short_of(wish)))
 }
 
-/// Prints a report, writes its files, and fails if `short` says that a goal is missed.
+/// Prints a report, writes its files, and fails if `short` names a missed goal.
 fn concluded(
     arguments: &AccuracyArguments,
     text: &str,
@@ -158,7 +158,7 @@ fn concluded(
     short: Option<String>,
 ) -> Result<(), Failure> {
     console::print(text)?;
-    // What took minutes to measure is printed even if the files cannot be written.
+    // Results of long measurements are printed even if the files cannot be written.
     if let Some(folder) = &arguments.output {
         for (name, content) in files() {
             output::write(&folder.join(name), content).map_err(Failure::after_report)?;

@@ -288,7 +288,7 @@ fn argument(text: &str) -> Result<(String, String), String> {
     Ok((name.to_owned(), value.to_owned()))
 }
 
-/// `name=RUST_NAME`; the name in the file may hold such a sign too.
+/// `name=RUST_NAME`; the name in the file may contain `=` too.
 fn renaming(text: &str) -> Result<(String, String), String> {
     let (from, to) = text.rsplit_once('=').filter(|(from, _)| !from.is_empty()).ok_or("expected NAME=RUST_NAME, as in a-b=A_MINUS_B")?;
     Ok((from.to_owned(), to.trim().to_owned()))

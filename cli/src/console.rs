@@ -1,4 +1,4 @@
-//! What the command prints: see [`articulated_lab::console`].
+//! Output of the command: see [`articulated_lab::console`].
 
 use std::cell::RefCell;
 
@@ -10,13 +10,13 @@ use crate::arguments::Format;
 use crate::excerpt::Excerpts;
 use crate::failure::Failure;
 
-/// Writes to the standard output. A reader that has gone away is not an error.
+/// Writes to the standard output. A closed pipe is not an error.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     articulated_lab::console::print(text).map_err(|error| Failure::input([format!("standard output: {error}")]))
 }
 
 thread_local! {
-    /// Where this thread's report goes instead of the standard output.
+    /// Captures this thread's report instead of the standard output.
     static CAPTURED: RefCell<Option<Reports>> = const { RefCell::new(None) };
 }
 

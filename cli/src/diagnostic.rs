@@ -1,4 +1,4 @@
-//! A finding as data: the same in the report of `check` and of a command that fails.
+//! A finding as data: the same in the report of `check` and of a failed command.
 
 use articulated_core::diagnostic::{self, Severity, Subject};
 use serde::Serialize;
@@ -7,7 +7,7 @@ use serde::Serialize;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Diagnostic {
     severity: &'static str,
-    /// Its sort, for programs; none for a message of the command itself.
+    /// Its kind, for programs; `None` for a message of the command itself.
     code: Option<&'static str>,
     pub(crate) file: Option<String>,
     pub(crate) line: Option<u32>,

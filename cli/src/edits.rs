@@ -67,7 +67,7 @@ fn reference(text: &str) -> Result<Reference, String> {
 }
 
 fn lock(text: &str) -> Result<Lock, String> {
-    // The last: a name may have one too, a number has none.
+    // The last `=`: a name may contain one, a number does not.
     let (joint, at) = text.rsplit_once('=').ok_or("expected JOINT=VALUE, as elbow=0.5")?;
     Ok(Lock { joint: joint.to_owned(), at: numbers(at)? })
 }
@@ -123,7 +123,8 @@ fn appended(text: &OsStr) -> Result<Appended, String> {
     Ok(Appended { file, at, prefix, origin })
 }
 
-/// The file before the last `@`, and what is after it. A path need not be UTF-8, a name is.
+/// The file before the last `@`, and the text after it. A path need not be UTF-8, but a name must
+/// be.
 fn split(text: &OsStr) -> Option<(PathBuf, String)> {
     #[cfg(unix)]
     {

@@ -1,4 +1,4 @@
-//! The line of a file that a finding is about, with a caret below.
+//! The line of a file that a finding refers to, with a caret below.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,7 +19,7 @@ pub(crate) struct Excerpts {
 }
 
 impl Excerpts {
-    /// The excerpt for a finding. `None`: it has no line, or its file cannot be read (any more).
+    /// The excerpt for a finding. `None`: it has no line, or its file is unreadable.
     pub(crate) fn of(&mut self, finding: &Diagnostic) -> Option<String> {
         let (file, line) = (finding.file.as_ref()?, finding.line? as usize);
         if self.shown >= MOST {

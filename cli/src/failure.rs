@@ -1,4 +1,4 @@
-//! Why a command ended without doing what was asked, and the status it ends with.
+//! The reason why a command failed, and its exit status.
 
 use articulated_core::diagnostic::{self, Code, Diagnostics};
 use articulated_motion::{Fault, MotionErrors};
@@ -9,7 +9,7 @@ use crate::diagnostic::Diagnostic;
 
 /// Everything went well.
 pub const OK: u8 = 0;
-/// The input was found wrong or unusable.
+/// The input is wrong or unusable.
 pub const INPUT: u8 = 1;
 /// The command line is wrong.
 pub const USAGE: u8 = 2;
@@ -19,10 +19,10 @@ pub const TOOL: u8 = 3;
 pub const BOUND: u8 = 4;
 /// A motion ended, but outside its own tolerance: its balance of energy is not kept.
 pub const OUT_OF_TOLERANCE: u8 = 5;
-/// Ctrl-C; what shells make of that signal, as of others that end it.
+/// Ctrl-C: the shells' status for that signal.
 pub const INTERRUPTED: u8 = 130;
 
-/// What each status means, for people.
+/// Meaning of each status, for users.
 pub const STATUSES: &str = "\
 Exit status:
   0  all is well
@@ -38,7 +38,7 @@ Exit status:
 pub(crate) struct Failure {
     pub(crate) status: u8,
     pub(crate) errors: Vec<Diagnostic>,
-    /// Whether a report was printed: as JSON it is all there is to print.
+    /// Whether a report was printed: as JSON it is the whole output.
     pub(crate) reported: bool,
 }
 
@@ -74,8 +74,8 @@ impl Failure {
         self.status == TOOL
     }
 
-    /// All of them, with the gravest status: wrong input comes before a wrong command line, and
-    /// both before a tool that fails.
+    /// All failures, with the most severe status: wrong input comes before a wrong command line,
+    /// and both before a tool that fails.
     pub(crate) fn of(failures: impl IntoIterator<Item = Self>) -> Self {
         let mut all = Self { status: BOUND, errors: Vec::new(), reported: false };
         for failure in failures {
@@ -85,7 +85,7 @@ impl Failure {
         all
     }
 
-    /// Both values, or what is wrong with either.
+    /// Both values, or the errors of both.
     pub(crate) fn both<A, B>(a: Result<A, Self>, b: Result<B, Self>) -> Result<(A, B), Self> {
         match (a, b) {
             (Ok(a), Ok(b)) => Ok((a, b)),
@@ -103,7 +103,7 @@ impl Failure {
         Self::bound(line).after_report()
     }
 
-    /// What failed once a report was printed.
+    /// The failure after a report was printed.
     pub(crate) fn after_report(self) -> Self {
         Self { reported: true, ..self }
     }

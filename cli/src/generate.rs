@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
     if arguments.functions.is_empty() {
         request.options.functions.clone_from(&robot.options.functions);
     }
-    // What is not said is the scene's, if there is one.
+    // Missing options are the scene's, if there is one.
     if !arguments.parameters.is_empty() {
         request.options.parameters = arguments.parameters.iter().cloned().map(Into::into).collect();
     }
@@ -103,7 +103,7 @@ fn target(arguments: &GenerateArguments, options: &mut Options) -> Result<(), Fa
     Ok(())
 }
 
-/// Whether C goes to one header, and not to a header and a source in a folder.
+/// Whether C is written to one header, instead of a header and a source in a folder.
 fn is_header(path: &Path) -> bool {
     path.extension().is_some_and(|e| e == "h" || e == "hpp")
 }

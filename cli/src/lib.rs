@@ -1,4 +1,4 @@
-//! The command `articulated`, as a library: arguments, loading and reports. What it measures is in
+//! The command `articulated`, as a library: arguments, loading and reports. Its measurements are in
 //! the library `articulated_lab`.
 
 mod accuracy;
@@ -70,7 +70,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Err(failure) => {
             console::failed(&failure);
             if arguments.format == Format::Json && !failure.reported {
-                // A reader that has gone away has nothing to be told.
+                // If the reader has closed the pipe, there is no one to report to.
                 let _ = console::print(&json(&failure));
             }
             failure.status
@@ -78,7 +78,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
-/// What a command says, in both formats: from one run, so that they can be compared.
+/// A command's output, in both formats: from one run, so that they can be compared.
 #[derive(Clone, Debug)]
 pub struct Answer {
     /// The exit status: see [`failure`].
@@ -87,17 +87,17 @@ pub struct Answer {
     pub text: String,
     /// The report as JSON, or the errors if there is no report.
     pub json: String,
-    /// A line for each error; none if the status is 0.
+    /// A line for each error; empty if the status is 0.
     pub errors: Vec<String>,
     /// Warnings and notes, a line each.
     pub warnings: Vec<String>,
 }
 
-/// Runs the command with these words, the program's own name first, and returns what it says
+/// Runs the command with these words, starting with the program's name, and returns its output
 /// instead of printing it. `--format` is ignored. Files that the words name are written.
 ///
 /// # Errors
-/// What the command line's parser says of words that it refuses.
+/// The parser's message about refused words.
 pub fn answer(words: impl IntoIterator<Item = OsString>) -> Result<Answer, String> {
     let arguments = Arguments::try_parse_from(words).map_err(|error| error.render().to_string())?;
     let ((ended, reports), warnings) = articulated_lab::console::collect(|| console::capture(|| dispatch(&arguments)));
@@ -114,8 +114,8 @@ pub fn answer(words: impl IntoIterator<Item = OsString>) -> Result<Answer, Strin
     Ok(Answer { status, text, json, errors, warnings })
 }
 
-/// What is wrong with the command line, with words escaped that have what a terminal would obey;
-/// none where no word has.
+/// The error of the command line, with control characters in its words escaped; `None` if the words
+/// have no such characters.
 fn with_plain_words(text: &str, words: &[OsString]) -> Option<String> {
     let words: Vec<_> = words.iter().map(|word| word.to_string_lossy()).filter(|word| word.contains(table::is_obeyed)).collect();
     // The message contains only the value of a word such as `--option=value`.
@@ -123,13 +123,13 @@ fn with_plain_words(text: &str, words: &[OsString]) -> Option<String> {
     (!words.is_empty()).then(|| values.fold(text.to_owned(), |text, word| text.replace(word, &table::plain(word))))
 }
 
-/// Of words that cannot be read, whether they ask for JSON.
+/// Whether unreadable words request JSON.
 fn asks_for_json(words: &[OsString]) -> bool {
     words.iter().any(|word| word == "--format=json") || words.windows(2).any(|w| w[0] == "--format" && w[1] == "json")
 }
 
-/// What is wrong with the command line, on one line and without the advice below it: what is listed
-/// under it belongs to it.
+/// The error of the command line, on one line and without the advice below it; a list under it is
+/// included.
 fn sentence(text: &str) -> String {
     let mut lines = text.lines().take_while(|line| !line.trim().is_empty()).map(str::trim);
     let first = lines.next().unwrap_or_default();

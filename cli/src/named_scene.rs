@@ -12,14 +12,14 @@ use crate::console;
 use crate::failure::Failure;
 use crate::robot_scene;
 
-/// Whether a word names a scene where a robot is accepted too; names of robots take precedence.
+/// Whether a word names a scene if robots are accepted too; names of robots have precedence.
 pub(crate) fn is_scene(path: &Path) -> bool {
     let is_bundled = |name| articulated_models::scene(name).is_some() && articulated_models::robot(name).is_none();
     path.to_str().is_some_and(is_bundled) || ends_with(path, "toml")
 }
 
-/// The scene, and the folder of its file. A bundled one goes before a file of its name, as a
-/// bundled robot does: `./name` is the file.
+/// The scene, and the folder of its file. A bundled one has precedence over a file of its name,
+/// like a bundled robot: `./name` is the file.
 pub(crate) fn open(path: &Path) -> Result<(Prepared, PathBuf), Failure> {
     if let Some(bundled) = path.to_str().and_then(articulated_models::scene) {
         let scene = Scene::read(&bundled.file(), bundled.toml)?;

@@ -14,7 +14,7 @@ pub(crate) fn known(text: &str) -> Result<Names, String> {
     each(text, &known_one)
 }
 
-/// As [`known`], and what the generator reads: `name = first + second(a = 0)`, and `motion` of a
+/// As [`known`], with the generator's syntax: `name = first + second(a = 0)`, and `motion` of a
 /// scene.
 pub(crate) fn wanted(text: &str) -> Result<Names, String> {
     each(text, &|entry| match entry.contains(['=', '+', '(']) {

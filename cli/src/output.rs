@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
 
-/// The folder that an option names, made if it is not there.
+/// The folder of an option, created if it is missing.
 pub(crate) fn folder(option: &str, path: &Path) -> Result<(), Failure> {
     if path.exists() && !path.is_dir() {
         let expected = "a folder, which is made if it is not there";
@@ -16,7 +16,7 @@ pub(crate) fn folder(option: &str, path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(|e| unwritable(path, &e))
 }
 
-/// Whether the file that an option names can be one: it stands in a folder and is none.
+/// Checks that the path is in an existing folder and is not a folder.
 pub(crate) fn file(option: &str, path: &Path) -> Result<(), Failure> {
     let wrong =
         |found: &str, expected: &str| Err(Failure::input([format!("{option} {}: found {found}, expected {expected}", path.display())]));
@@ -44,7 +44,7 @@ pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
     matches!((identity(a), identity(b)), (Ok(a), Ok(b)) if a == b)
 }
 
-/// What no two files have in common: device and number of the file.
+/// Unique identity of a file: its device and number.
 #[cfg(unix)]
 fn identity(path: &Path) -> io::Result<(u64, u64)> {
     use std::os::unix::fs::MetadataExt;
@@ -56,7 +56,7 @@ fn identity(path: &Path) -> io::Result<PathBuf> {
     path.canonicalize()
 }
 
-/// Writes a file; what was there stays as it is if that cannot be done.
+/// Writes a file; an old file stays unchanged after an error.
 pub(crate) fn write(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
     written(path, bytes.as_ref()).map_err(|e| unwritable(path, &e))
 }
@@ -78,7 +78,7 @@ fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let folder = target.parent().filter(|parent| *parent != Path::new("")).unwrap_or(Path::new("."));
     let (beside, mut file) = match beside(folder) {
         Ok(made) => made,
-        // Where no file can be made, one that is there can be written all the same.
+        // If no file can be created, an existing one can still be written.
         Err(error) if error.kind() == io::ErrorKind::PermissionDenied && old.is_some() => return fs::write(target, bytes),
         Err(error) => return Err(error),
     };
@@ -90,7 +90,7 @@ fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
     replaced
 }
 
-/// A new file in a folder, with the permissions that new files have here.
+/// A new file in a folder, with the default permissions.
 fn beside(folder: &Path) -> io::Result<(PathBuf, fs::File)> {
     for number in 0_u32.. {
         let path = folder.join(format!(".articulated{}_{number}", std::process::id()));

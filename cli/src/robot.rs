@@ -1,5 +1,5 @@
-//! The robot that a command is about: a bundled one by its name, a file by its path, or that of a
-//! scene, with its edits and effects.
+//! The robot of a command: a bundled one by its name, a file by its path, or that of a scene, with
+//! its edits and effects.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -74,7 +74,7 @@ impl Robot {
     }
 
     /// The robot of a scene: a file, or a bundled one. Arguments replace the values of the scene;
-    /// edits come after the scene's.
+    /// edits are made after the scene's.
     fn of_scene(name: &Path, arguments: &RobotArguments) -> Result<Self, Failure> {
         let (prepared, _) = named_scene::open(name)?;
         let bundled = matches!(prepared.scene.robot, articulated_scene::Robot::Bundled(_));
@@ -98,14 +98,14 @@ impl Robot {
         }
         options.max_code_size = arguments.max_code_size.unwrap_or(options.max_code_size);
         edit(options, &arguments.edits)?;
-        // The scene's effects on all joints are those of the robot as it is now.
+        // The scene's effects on all joints apply to the edited robot.
         let Request { document, file, options, scene } = request;
         let files = files(prepared.files.into_iter(), &arguments.edits, &options);
         Ok(Self { file, scene: Some(name.display().to_string()), document, options, effects: scene, path: None, bundled, files })
     }
 
-    /// Refuses a scene's level whose results differ from the library's by more than rounding: what
-    /// is held to those would fail as promised.
+    /// Refuses a scene's level if its results differ from the library's by more than rounding: a
+    /// comparison with the library's would always fail.
     pub(crate) fn has_a_level_of_rounding(&self) -> Result<(), Failure> {
         let level = self.options.level;
         if !level.is_single() && !matches!(level.sines, TrigAccuracy::Fast7 | TrigAccuracy::Fast10) {
@@ -134,8 +134,8 @@ impl Robot {
         self
     }
 
-    /// Prints these warnings, a line for each sort; for a bundled robot none, as `check` alone
-    /// lists those.
+    /// Prints these warnings, a line for each kind; none for a bundled robot, whose warnings only
+    /// `check` lists.
     pub(crate) fn warn_of<'a>(&self, warnings: impl Iterator<Item = &'a Diagnostic>) {
         summary(warnings.filter(|_| !self.bundled)).iter().for_each(|line| console::warn(line));
     }
@@ -165,8 +165,8 @@ impl Robot {
         request
     }
 
-    /// As [`Robot::whole_request`], for callers of the functions, which take the arguments of the
-    /// table; parameters are constants, see [`note_of_parameters`].
+    /// As [`Robot::whole_request`], for callers of the functions with the arguments of the table;
+    /// parameters are constants, see [`note_of_parameters`].
     pub(crate) fn request(&self, functions: &[String]) -> Request {
         let mut request = self.whole_request(functions);
         request.options.parameters.clear();
@@ -188,7 +188,7 @@ impl Robot {
         if self.floating() { "floating" } else { "fixed" }
     }
 
-    /// Refuses an option whose path is a file that the robot was read from, and would be replaced.
+    /// Refuses an option whose path is an input file of the robot, which would be replaced.
     pub(crate) fn keeps_its_files(&self, option: &str, path: Option<&Path>) -> Result<(), Failure> {
         match path.filter(|path| self.files.iter().any(|file| output::is_same(file, path))) {
             Some(path) => {
@@ -198,14 +198,14 @@ impl Robot {
         }
     }
 
-    /// The robot as measurements take it.
+    /// The robot for measurements.
     pub(crate) fn loaded(&self) -> articulated_lab::robot::Robot {
         let Self { file, scene, document, options, effects, path, .. } = self.clone();
         articulated_lab::robot::Robot { file, scene, document, options, effects, path }
     }
 }
 
-/// Refuses a robot for whose mass matrix, which every workspace has, there is no room.
+/// Refuses a robot with a mass matrix, which every workspace contains, that is too large.
 pub(crate) fn has_room(file: &str, nv: usize) -> Result<(), Failure> {
     if nv <= MOST_FREEDOMS {
         return Ok(());
@@ -217,7 +217,7 @@ pub(crate) fn has_room(file: &str, nv: usize) -> Result<(), Failure> {
 fn edit(options: &mut Options, edits: &Edits) -> Result<(), Failure> {
     for other in &edits.append {
         let (file, document) = document(&other.file, &[])?;
-        // Arguments are those of the robot.
+        // Only the robot itself has arguments.
         let own = RobotOptions { arguments: BTreeMap::new(), ..options.robot.clone() };
         options.robot.included.extend(included(&file, &document, &own));
         let (file, at) = (file.into(), other.at.clone().into());
@@ -234,7 +234,7 @@ fn edit(options: &mut Options, edits: &Edits) -> Result<(), Failure> {
     Ok(())
 }
 
-/// All files that a robot is read from: these, those of the robots to append, and included ones.
+/// All files of a robot: its own, those of the robots to append, and included ones.
 fn files(own: impl Iterator<Item = PathBuf>, edits: &Edits, options: &Options) -> Vec<PathBuf> {
     let appended = edits.append.iter().map(|other| other.file.clone()).filter(|file| file.is_file());
     own.chain(appended).chain(options.robot.included.files().map(|(path, _)| path.to_owned())).collect()
@@ -254,7 +254,7 @@ fn included(file: &str, document: &[u8], robot: &RobotOptions) -> Included {
 }
 
 /// A file's name for messages, and its bytes: of a bundled robot by its name, the standard input,
-/// or a file. `scenes` are names that would do as well.
+/// or a file. `scenes` are other accepted names.
 fn document(path: &Path, scenes: &[&str]) -> Result<(String, Vec<u8>), Failure> {
     match path.to_str().and_then(articulated_models::robot) {
         Some(bundled) => Ok((format!("{}.urdf", bundled.name), bundled.urdf.as_bytes().to_vec())),
@@ -267,8 +267,8 @@ fn is_standard_input(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// The bytes of a regular file, no more than a robot's file may have; `-` is the standard input,
-/// which one file alone can come by.
+/// The bytes of a regular file, up to the maximum size of a robot's file; `-` is the standard
+/// input, which can be read only once.
 pub(crate) fn read_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     static TAKEN: AtomicBool = AtomicBool::new(false);
     if !is_standard_input(path) {

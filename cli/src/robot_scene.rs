@@ -14,8 +14,8 @@ use crate::table::number;
 /// How long the motion is, s.
 const END: f64 = 5.0;
 
-/// A scene, as TOML, with the forces of the file that are smooth. What else the file has is in its
-/// comments. Errors: those of the file.
+/// A scene, as TOML, with the smooth forces of the file. Its comments list the other forces.
+/// Errors: those of the file.
 pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     let reading = read(path)?;
     let (joints, world) = (&reading.description.joints, &reading.world);
@@ -57,24 +57,26 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     Ok(out)
 }
 
-/// Numbers of contacts on which a robot rests: they sink in by [`SINKS`] and are damped critically.
+/// Parameters of contacts on which a robot rests: they sink in by [`SINKS`] and are damped
+/// critically.
 struct Resting {
     /// N/m.
     stiffness: f64,
     /// s.
     damping_time: f64,
-    /// For which mass on how many points, in words.
+    /// The mass and the number of points, in words.
     on: String,
 }
 
-/// How far contacts sink in under the robot, m.
+/// Depth of contacts under the robot's weight, m.
 const SINKS: f64 = 1e-4;
 
-/// Points on which a robot rests, if it has as many.
+/// Number of points on which a robot rests, at most.
 const POINTS: usize = 4;
 
 impl Resting {
-    /// Of all mass of a robot. Each point carries an equal part m of it: k = m g/x, T = 2 √(m/k).
+    /// For the mass of the whole robot, of which each point carries an equal part m:
+    /// k = m g/x, T = 2 √(m/k).
     fn of(reading: &Reading) -> Self {
         let links = &reading.description.links;
         let mass: f64 = links.iter().filter_map(|link| link.inertial).map(|inertial| inertial.mass).sum();
@@ -104,7 +106,7 @@ fn quoted(text: &str) -> String {
     out + "\""
 }
 
-/// What of the file such a scene leaves out, in words.
+/// Forces of the file that such a scene leaves out, in words.
 pub(crate) fn left_out(joints: &[Joint], has_collision: bool) -> Vec<&'static str> {
     let others = OTHERS.iter().filter(|(.., has)| joints.iter().any(has)).map(|(_, what, _)| *what);
     others.chain(has_collision.then_some("contacts")).collect()
@@ -112,7 +114,7 @@ pub(crate) fn left_out(joints: &[Joint], has_collision: bool) -> Vec<&'static st
 
 type Has = fn(&Joint) -> bool;
 
-/// Effects whose forces are smooth.
+/// Effects with smooth forces.
 const SMOOTH: [(&str, Has); 3] = [
     ("damping", |joint| is_not_zero(joint.dynamics.damping)),
     ("spring", |joint| is_not_zero(joint.dynamics.stiffness)),
@@ -123,7 +125,7 @@ fn is_not_zero(number: Option<f64>) -> bool {
     number.is_some_and(|number| number != 0.0)
 }
 
-/// Others, as a scene turns them on.
+/// Other effects, which a scene can turn on.
 const OTHERS: [(&str, &str, Has); 2] = [
     ("friction = \"file\"", "dry friction", |joint| is_not_zero(joint.dynamics.friction)),
     ("limit = { from = \"file\", stiffness = 1e4, damping = 10 }", "limits", |joint| {
@@ -140,7 +142,7 @@ fn read(path: &Path) -> Result<Reading, Failure> {
     Ok(read_with(&included, &bytes, &options)?)
 }
 
-/// A note on a scene that a robot's file was made into. Nothing is left out without a word.
+/// A note about the scene made from a robot's file: it lists all that is left out.
 pub(crate) fn note(path: &Path) -> Result<Option<String>, Failure> {
     let reading = read(path)?;
     let collides = reading.description.links.iter().any(|link| !link.collision.is_empty());

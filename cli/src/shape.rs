@@ -2,7 +2,7 @@
 
 use articulated_core::algorithm::{Dim, Function};
 
-/// `[frames][6][nv]`; nothing for a single number.
+/// `[frames][6][nv]`; empty for a single number.
 pub(crate) fn dims(dims: &[Dim]) -> String {
     dims.iter().map(|d| format!("[{}]", d.to_string().to_lowercase())).collect()
 }

@@ -1,5 +1,5 @@
-//! Reads URDF files and prints what there is to say about them:
-//! `check [--floating] [--unused] file.urdf …`. The status is 1 if any of them is refused.
+//! Reads URDF files and prints all findings: `check [--floating] [--unused] file.urdf …`. The
+//! status is 1 if any file is refused.
 
 use std::process::ExitCode;
 

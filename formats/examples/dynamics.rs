@@ -1,10 +1,10 @@
 //! Reads a robot, prints its numbers for comparisons, and checks its regressor in some states:
-//! `dynamics FILE GX GY GZ [KIND...]`. What is of a KIND (`flex`, `composite`, `plugin`) is left
+//! `dynamics FILE GX GY GZ [KIND...]`. Elements of a KIND (`flex`, `composite`, `plugin`) are left
 //! out.
 //!
 //! Standard input: states as little-endian doubles, q, v and a one after the other, until the end.
 //! Standard output: one line of JSON, which describes the robot. If the file is refused, its errors
-//! go to standard error, and the status is 1; so it is where inverse dynamics is not its regressor
+//! go to standard error, and the status is 1; also if inverse dynamics differs from the regressor
 //! times the inertial parameters of the links.
 
 use std::collections::BTreeSet;
@@ -104,7 +104,7 @@ fn or_null<T: std::fmt::Debug>(value: Option<&T>) -> String {
     value.map_or("null".to_owned(), |value| format!("{value:?}"))
 }
 
-/// Pairs of a name and numbers, which JSON and Rust write in the same way, but for brackets.
+/// Pairs of a name and numbers, which JSON and Rust write in the same way, except brackets.
 fn by_name(all: &[(String, Vec<f64>)]) -> String {
     list(all, |(name, numbers)| format!("[{name:?}, {numbers:?}]"))
 }

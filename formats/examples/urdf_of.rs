@@ -1,4 +1,4 @@
-//! Writes the robot of a file as a plain URDF: what a file of xacro expands to.
+//! Writes the robot of a file as a plain URDF: the expansion of a xacro file.
 //!
 //! ```text
 //! cargo run -p articulated-formats --example urdf_of -- FILE [--arg NAME=VALUE]

@@ -17,7 +17,7 @@ pub(crate) fn cycles(count: usize, on: impl Fn(usize) -> Option<usize>) -> Vec<u
     cycles
 }
 
-/// All that are in the ring, from this one on.
+/// All members of the ring, from this one on.
 pub(crate) fn around(start: usize, on: impl Fn(usize) -> Option<usize>) -> impl Iterator<Item = usize> {
     iter::successors(Some(start), move |here| on(*here).filter(|next| *next != start))
 }

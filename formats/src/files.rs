@@ -11,8 +11,7 @@ use std::sync::Arc;
 
 use articulated_core::suggest::{Suggester, nearest};
 
-/// Where documents come from. Only the implementations of this trait open files of a robot or a
-/// scene.
+/// Source of documents. Only the implementations of this trait open files of a robot or a scene.
 pub trait Sources {
     /// The bytes of a file, at most [`MOST_BYTES`].
     ///
@@ -22,7 +21,7 @@ pub trait Sources {
     /// not name the file.
     fn read(&self, path: &Path) -> Result<Vec<u8>>;
 
-    /// The name of a file beside `path` that is most like it, if there is no file of this name.
+    /// The most similar name of a file next to `path`, if there is no file of this name.
     fn nearest(&self, _path: &Path) -> Option<String> {
         None
     }
@@ -35,12 +34,12 @@ pub trait Sources {
         Err(Error::new(ErrorKind::Unsupported, "names with wildcards are not read here"))
     }
 
-    /// The folder of a package, where these sources know it.
+    /// The folder of a package, if these sources know it.
     fn package(&self, _name: &str) -> Option<PathBuf> {
         None
     }
 
-    /// A variable of the environment, where these sources have one.
+    /// A variable of the environment, if these sources have one.
     fn variable(&self, _name: &str) -> Option<String> {
         None
     }
@@ -64,7 +63,7 @@ impl Sources for Disk {
     }
 }
 
-/// The names of the regular files of a folder, and of links; at most 10 000 of them.
+/// The names of the regular files and of the links in a folder; at most 10 000.
 fn list_files(folder: &Path) -> Result<Vec<String>> {
     let folder = if folder == Path::new("") { Path::new(".") } else { folder };
     let mut names = Vec::new();
@@ -112,8 +111,8 @@ impl Sources for Environment {
     }
 }
 
-/// The folder of a package below another one: it has a `package.xml` and is called so. The
-/// packages of a folder that is one itself are not searched.
+/// The folder of a package below another one: it has a `package.xml` and this name. The folders
+/// below a package are not searched.
 fn package_below(folder: &Path, name: &str) -> Option<PathBuf> {
     const MOST_LEVELS: usize = 6;
     let mut level = vec![folder.to_owned()];
@@ -147,12 +146,12 @@ impl Sources for NoFiles {
     }
 }
 
-/// The files that a document includes, read before it is: the document can be read again, without
-/// the file system. Cheap to clone.
+/// The files that a document includes, read before the document: it can be read again without the
+/// file system. Cheap to clone.
 #[derive(Clone, Default, PartialEq)]
 pub struct Included(Arc<Known>);
 
-/// What sources answered.
+/// Answers of the sources.
 #[derive(Clone, Default, PartialEq)]
 pub(crate) struct Known {
     files: BTreeMap<PathBuf, Found<Vec<u8>>>,
@@ -161,7 +160,7 @@ pub(crate) struct Known {
     variables: BTreeMap<String, Option<String>>,
 }
 
-/// The bytes of a file, or why there are none.
+/// The bytes of a file, or the reason why they are missing.
 type Found<T> = std::result::Result<T, (ErrorKind, String)>;
 
 impl Included {
@@ -220,7 +219,7 @@ impl Sources for Included {
     }
 }
 
-/// Reads from other sources, and keeps what it reads.
+/// Reads from other sources, and records all that it reads.
 pub(crate) struct Recorder<'a> {
     pub(crate) sources: &'a dyn Sources,
     /// The folder that names start from.
@@ -260,9 +259,9 @@ impl Sources for Recorder<'_> {
     }
 }
 
-/// The name of the file in the folder of `path` that is most like that of `path`, if there is no
-/// such file; none in a folder of very many. Files of the same ending come first; of the others one
-/// whose whole name is misspelt.
+/// The name of the most similar file in the folder of `path`, if `path` does not exist; none in a
+/// folder of very many files. Files with the same ending come first; otherwise a file whose whole
+/// name is misspelt.
 #[must_use]
 pub fn nearest_file(path: &Path) -> Option<String> {
     if path.exists() {
@@ -284,7 +283,7 @@ pub fn nearest_file(path: &Path) -> Option<String> {
     })
 }
 
-/// No robot file is larger, bytes: one of 100 000 links stays well below.
+/// Maximum size of a robot file, bytes: one of 100 000 links is well below.
 pub const MOST_BYTES: u64 = 64 << 20;
 
 /// The bytes of the regular file at `path`, `most` at most. Errors: those of [`open_file`].
@@ -297,10 +296,10 @@ pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>> {
     all(open_file(path, most)?)
 }
 
-/// The regular file at `path`, or the one that a link there leads to, to be read bit by bit.
-/// Errors: those of the system; a pipe, a device, a socket or a folder, none of which is opened;
-/// and a file of more than `most` bytes, at once where its size says so, else from the reader. They
-/// do not name the file.
+/// The regular file at `path`, or the target of a link there, to be read in parts. Errors: those of
+/// the system; a pipe, a device, a socket or a folder, which are not opened; and a file of more
+/// than `most` bytes, at once if its size is known, else from the reader. They do not name the
+/// file.
 ///
 /// ```
 /// let error = articulated_formats::open_file("src".as_ref(), 3).err().unwrap();
@@ -309,13 +308,13 @@ pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>> {
 pub fn open_file(path: &Path, most: u64) -> Result<AtMost<File>> {
     is_regular(std::fs::metadata(path)?.file_type())?;
     let file = File::open(path)?;
-    // Another may stand there by now.
+    // The file may have been replaced meanwhile.
     let data = file.metadata()?;
     is_regular(data.file_type())?;
     if data.len() > most { Err(too_large(&data.len().to_string(), most)) } else { Ok(AtMost::new(file, most)) }
 }
 
-/// As [`read_file`], of what has been opened already, as the standard input.
+/// As [`read_file`], for a source that is already open, such as the standard input.
 pub fn read_at_most(from: impl Read, most: u64) -> Result<Vec<u8>> {
     all(AtMost::new(from, most))
 }
@@ -325,7 +324,7 @@ fn all(mut from: impl Read) -> Result<Vec<u8>> {
     from.read_to_end(&mut bytes).map(|_| bytes)
 }
 
-/// What is read, with an error where there are more bytes than may be.
+/// A reader with an error after too many bytes.
 #[derive(Debug)]
 pub struct AtMost<R> {
     from: R,
@@ -409,7 +408,7 @@ mod tests {
         assert_eq!(error, format!("found {length} bytes, expected at most {} bytes", length - 1));
     }
 
-    /// Whoever opened the pipe would wait for ever: nobody writes to it.
+    /// The pipe has no writer: a program that opens it would wait forever.
     #[cfg(unix)]
     #[test]
     fn what_is_no_regular_file_is_refused_at_once() {
@@ -429,7 +428,7 @@ mod tests {
         std::fs::remove_dir_all(folder).unwrap();
     }
 
-    /// As one that somebody writes to while it is read.
+    /// Like a file that grows while it is read.
     #[test]
     fn a_file_that_grows_is_refused_where_it_gets_too_large() {
         let mut reader = AtMost::new(&b"robots"[..], 5);

@@ -39,7 +39,7 @@ pub struct Input<'a> {
     pub sources: &'a dyn Sources,
 }
 
-/// All formats. A document of which none is recognized is read as the first.
+/// All formats. A document of an unrecognized format is read as the first.
 pub const FORMATS: &[&dyn Format] = &[&urdf::Urdf, &mjcf::Mjcf, &sdf::Sdf];
 
 /// The formats that a reader chooses from.
@@ -63,7 +63,7 @@ impl Formats {
             .copied()
     }
 
-    /// Whether a file's ending is that of a robot.
+    /// Whether a file's ending is that of a robot file.
     #[must_use]
     pub fn has_ending(self, ending: &str) -> bool {
         self.0.iter().any(|format| format.extensions().iter().any(|own| own.eq_ignore_ascii_case(ending)))

@@ -1,4 +1,4 @@
-//! What a file may have that is not read, and which an option leaves out.
+//! Elements of a file that are not read, and which an option leaves out.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,23 +6,23 @@ use std::str::FromStr;
 use articulated_core::suggest::nearest;
 
 /// Elements of an MJCF that change the motion and are not read. They are errors, unless
-/// [`Options::leave_out`](crate::Options::leave_out) has their kind: then they are warnings, and
-/// the motion is that without them.
+/// [`Options::leave_out`](crate::Options::leave_out) contains their kind: then they are warnings,
+/// and the motion is computed without them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LeaveOut {
     /// Flexible bodies: `flex` and `flexcomp`.
     Flex,
     /// Bodies that `composite` makes.
     Composite,
-    /// Plugins that give forces (elastic ones) or shapes (signed distance fields).
+    /// Plugins for forces (elastic ones) or shapes (signed distance fields).
     Plugin,
 }
 
 impl LeaveOut {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 3] = [Self::Flex, Self::Composite, Self::Plugin];
 
-    /// The names and what they are of, as lists of words have them.
+    /// The names and the kinds, for lists of words.
     pub const WORDS: [(&str, Self); 3] = [("flex", Self::Flex), ("composite", Self::Composite), ("plugin", Self::Plugin)];
 
     /// The name in options: `flex`, `composite` or `plugin`.
@@ -47,7 +47,7 @@ impl fmt::Display for LeaveOut {
     }
 }
 
-/// A word that is no kind of element.
+/// A word that does not name a kind of element.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NoKind(String);
 

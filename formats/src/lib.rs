@@ -1,5 +1,5 @@
-//! Readers of robot files: the bytes of a file become a [`Description`], or every mistake of the
-//! file at once.
+//! Readers of robot files: the bytes of a file become a [`Description`], or all errors of the file
+//! at once.
 //!
 //! [`read_file`] reads the bytes of a file, [`read`] returns a [`Reading`] with the description,
 //! and [`urdf::write`] writes a description as a URDF:

@@ -2,11 +2,11 @@
 
 use articulated_core::Plain;
 
-/// The greatest mass of a link that is not reported, kg: a thousand tonnes.
+/// Greatest plausible mass of a link, kg: a thousand tonnes.
 const MOST: f64 = 1e6;
 
-/// What is found and what is expected where a mass, kg, is beyond that of any link; `None` for
-/// another mass.
+/// The found and the expected text for an implausible mass, kg, of a link; `None` for a plausible
+/// one.
 ///
 /// ```
 /// assert!(articulated_formats::beyond_any_mass(1e6).is_none());

@@ -6,7 +6,7 @@ use articulated_core::description::{Origin, Rotation};
 
 pub(crate) type Vector = [f64; 3];
 
-/// A quaternion (w, x, y, z) of any length but zero.
+/// A quaternion (w, x, y, z) of any non-zero length.
 pub(crate) type Quaternion = [f64; 4];
 
 /// A frame in another: a translation, m, and a rotation.
@@ -30,8 +30,8 @@ impl Pose {
         Self { position, ..Self::default() }
     }
 
-    /// `inner`, which is placed in this frame, in the frame that this one is placed in. Exact where
-    /// one of the two is the identity.
+    /// The pose of `inner`, which is given in this frame, in the frame that this one is given in.
+    /// Exact if one of the two is the identity.
     pub(crate) fn then(&self, inner: &Self) -> Self {
         Self { position: add(self.position, rotate(self.rotation, inner.position)), rotation: multiply(self.rotation, inner.rotation) }
     }
@@ -134,8 +134,8 @@ pub(crate) fn rotate(q: Quaternion, v: Vector) -> Vector {
     matrix(q).map(|row| dot(row, v))
 }
 
-/// The unit quaternion of a turn about a unit axis. A quarter turn, of which the double is a
-/// multiple of π/2, has two equal numbers, so that its matrix is exact.
+/// The unit quaternion of a turn about a unit axis. For a double that is a multiple of π/2, a
+/// quarter turn has two equal numbers, so that its matrix is exact.
 pub(crate) fn about(axis: Vector, angle: f64) -> Quaternion {
     let (sine, cosine) = half(angle);
     [cosine, axis[0] * sine, axis[1] * sine, axis[2] * sine]
@@ -166,7 +166,7 @@ pub(crate) fn radians(degrees: f64) -> f64 {
     if quarters == quarters.round() && quarters.abs() < 1e6 { quarters * FRAC_PI_2 } else { degrees / 180.0 * std::f64::consts::PI }
 }
 
-/// The least turn that takes z to a direction, which has to be of unit length.
+/// The smallest turn that takes z to a direction, which must be of unit length.
 pub(crate) fn of_z_axis(z: Vector) -> Quaternion {
     // (0, 0, 1) × z
     let axis = [-z[1], z[0], 0.0];
@@ -212,7 +212,7 @@ pub(crate) fn turned(q: Quaternion, s: Symmetric) -> Symmetric {
     [entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)]
 }
 
-/// The inertia of a point of this mass, kg, so far from the origin.
+/// The inertia of a point of this mass, kg, at this position from the origin.
 pub(crate) fn of_point(mass: f64, [x, y, z]: Vector) -> Symmetric {
     [y * y + z * z, -x * y, -x * z, x * x + z * z, -y * z, x * x + y * y].map(|i| mass * i)
 }

@@ -1,4 +1,4 @@
-//! How to read a document, and what comes of it.
+//! Options for reading a document, and the result.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,16 +17,17 @@ use crate::{Format, Formats, Included, Input, LeaveOut, NoFiles, Sources, snap};
 pub struct Options {
     /// The name of the file in messages. It is not opened.
     pub file: String,
-    /// Whether the root link is the base or moves freely; decides only what is reported as unused.
+    /// Whether the root link is the base or moves freely; it only changes the list of unused
+    /// content.
     pub base: Base,
     /// Makes an inertia that is not positive semi-definite a warning instead of an error. One that
     /// is negative by rounding alone always is a warning.
     pub allow_unphysical_inertia: bool,
-    /// Takes the first of tags of a URDF or SDF that should be there once and contradict each
-    /// other, with a warning, as urdfdom does.
+    /// If a unique tag of a URDF or SDF is repeated with other content, takes the first, with a
+    /// warning, as urdfdom does.
     pub first_of_duplicates: bool,
-    /// Elements of an MJCF that change the motion and are not read, which are left out with a
-    /// warning. Those of another kind are errors.
+    /// Elements of an MJCF that change the motion and are not read, to leave out with a warning.
+    /// Those of other kinds are errors.
     pub leave_out: BTreeSet<LeaveOut>,
     /// Reads a URDF of a version other than 1.0, 1.1 and 1.2 as 1.0, with a warning instead of an
     /// error.
@@ -37,8 +38,8 @@ pub struct Options {
     pub snap_angles: Option<f64>,
     /// The formats to choose from.
     pub formats: Formats,
-    /// Values of arguments of the file, as `<xacro:arg>` declares them. One that the file does not
-    /// have is a warning.
+    /// Values of arguments of the file, as declared by `<xacro:arg>`. An undeclared one is a
+    /// warning.
     pub arguments: BTreeMap<String, String>,
     /// Folders of packages, for files that the file includes from them.
     pub packages: BTreeMap<String, PathBuf>,
@@ -62,7 +63,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Warns of arguments other than those that the document declares.
+    /// Warns of undeclared arguments.
     pub(crate) fn warn_of_arguments(&self, declared: &BTreeSet<String>, log: &mut Diagnostics) {
         for name in self.arguments.keys().filter(|name| !declared.contains(*name)) {
             let near =
@@ -76,29 +77,29 @@ impl Options {
 /// A robot that was read, with the findings about its file.
 #[derive(Clone, Debug)]
 pub struct Reading {
-    /// The robot. A bound that the file leaves open is infinite: `lower` and `upper` of a
-    /// continuous joint, `effort` and `velocity` that are not given. `axis` is (1, 0, 0) and
-    /// `limit` and `dynamics` are `None` for joints that have no use for them.
+    /// The robot. A bound missing in the file is infinite: `lower` and `upper` of a continuous
+    /// joint, `effort` and `velocity`. `axis` is (1, 0, 0) and `limit` and `dynamics` are `None`
+    /// for joints that do not use them.
     pub description: Description,
-    /// What the file says beside it.
+    /// The world of the file.
     pub world: World,
-    /// What looks wrong; the values were used as written.
+    /// Suspicious content; the values were used as written.
     pub warnings: Vec<Diagnostic>,
-    /// What the file says and the description leaves out, or what only some scenes use.
+    /// Content of the file that the description leaves out, or that only some scenes use.
     pub unused: Vec<Unused>,
     /// Every angle that was replaced because of [`Options::snap_angles`].
     pub snapped: Vec<Diagnostic>,
 }
 
 impl Reading {
-    /// Withdraws findings about mass that the fixed base carries, of the links that an edit has let
-    /// `go`.
+    /// Withdraws findings about mass that the fixed base carries, for links that an edit has
+    /// released (`go`).
     pub fn release(&mut self, go: impl Fn(&str) -> bool) {
         self.unused.retain(|u| !(u.why == HELD && matches!(&u.subject, Subject::Link(name) if go(name))));
     }
 }
 
-/// Why mass that the fixed base carries is not used.
+/// Reason why mass that the fixed base carries is not used.
 pub(crate) const HELD: &str = "the base is fixed, and this link with it";
 
 /// The robot in `bytes`; files that it includes are refused. Lengths in m, masses in kg, angles in
@@ -110,12 +111,12 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Reading, Diagnostics> {
     read_with(&NoFiles, bytes, options)
 }
 
-/// The files that a document includes, for reading it again with [`read_with`]. Their names are as
-/// the document and `options.file` make them; `root` is the folder that they start from.
+/// The files that a document includes, for reading it again with [`read_with`]. Their names are
+/// built from the document and `options.file`; `root` is the folder that they are relative to.
 pub fn included(sources: &dyn Sources, root: &Path, bytes: &[u8], options: &Options) -> Included {
     let recorder = Recorder { sources, root, known: RefCell::default() };
     if options.formats.of(&options.file, bytes).is_some_and(Format::includes_files) {
-        // What is wrong with the document is reported when it is read.
+        // Errors of the document are reported when it is read.
         drop(read_with(&recorder, bytes, options));
     }
     recorder.included()

@@ -1,19 +1,19 @@
-//! How near an angle has to be to a multiple of π/2 to be taken as that.
+//! Maximum distance of an angle from a multiple of π/2 to be replaced by it.
 
 use articulated_core::description::Description;
 use articulated_core::diagnostic::{Code, Diagnostics, Place};
 
 use crate::urdf::right_angle;
 
-/// The largest [`Options::snap_angles`](crate::Options::snap_angles), rad: an angle that is farther
-/// from a multiple of π/2 was not meant to be one.
+/// The largest [`Options::snap_angles`](crate::Options::snap_angles), rad: an angle further from a
+/// multiple of π/2 was not meant to be one.
 pub const MOST_SNAPPED: f64 = 0.5;
 
-/// What [`Options::snap_angles`](crate::Options::snap_angles) has to be, for messages.
+/// Allowed range of [`Options::snap_angles`](crate::Options::snap_angles), for messages.
 pub const SNAP_EXPECTED: &str = "a finite number above 0, at most 0.5 rad; leave it out to snap none";
 
-/// Whether [`Options::snap_angles`](crate::Options::snap_angles) may be so much, rad: above 0, at
-/// most [`MOST_SNAPPED`].
+/// Whether [`Options::snap_angles`](crate::Options::snap_angles) may have this value, rad: above 0,
+/// at most [`MOST_SNAPPED`].
 pub fn can_snap(tolerance: f64) -> bool {
     tolerance > 0.0 && tolerance <= MOST_SNAPPED
 }
@@ -26,8 +26,8 @@ pub(crate) fn check(asked: Option<f64>, log: &mut Diagnostics) {
     }
 }
 
-/// An angle this near to a multiple of π/2, and not equal to it, was meant to be one, rad:
-/// exporters print five digits and more.
+/// An angle this close, but not equal, to a multiple of π/2 was meant to be one, rad: exporters
+/// print five digits and more.
 const NEARLY: f64 = 1e-4;
 
 /// Angles of joints that are nearly multiples of π/2 and could be snapped, each with the name of

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The names of a kind of thing, each of which is had once.
+/// The names of a kind of thing; each name is unique.
 #[derive(Debug, Default)]
 pub(crate) struct Taken {
     names: BTreeSet<String>,
@@ -19,12 +19,12 @@ impl Taken {
         taken
     }
 
-    /// Takes a name; false where it is taken already.
+    /// Takes a name; false if it is taken already.
     pub(crate) fn insert(&mut self, name: String) -> bool {
         self.names.insert(name)
     }
 
-    /// `name`, or with the first number from 2 on that is not taken. It is taken then.
+    /// `name`, or `name` with the first free number from 2 on. It is then taken.
     pub(crate) fn free(&mut self, name: String) -> String {
         if self.names.insert(name.clone()) {
             return name;

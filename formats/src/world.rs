@@ -1,15 +1,15 @@
-//! What a file says beside its robot: gravity, settings of a simulation, states, actuators.
+//! Content of a file besides its robot: gravity, settings of a simulation, states, actuators.
 //!
-//! Nothing of it changes the description. A scene uses the parts that it asks for. Numbers are in
-//! SI units and in the conventions of the library: quaternions (x, y, z, w), rates of a floating
-//! joint as the twist [ω; v] in axes of its link.
+//! It does not change the description. A scene uses the parts that it requests. Numbers are in SI
+//! units and in the conventions of the library: quaternions (x, y, z, w), rates of a floating joint
+//! as the twist [ω; v] in axes of its link.
 
 use std::collections::BTreeMap;
 
 use articulated_core::description::{Coupling, Description};
 use articulated_core::diagnostic::At;
 
-/// A robot and its world, as a format reads them.
+/// A robot and its world, as read by a format.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Document {
     /// The robot.
@@ -24,16 +24,16 @@ impl From<Description> for Document {
     }
 }
 
-/// What a file says beside its robot. `None`, or an empty list: the file does not say.
+/// Content of a file besides its robot. `None`, or an empty list: not in the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct World {
     /// Gravity in the world frame, m/s².
     pub gravity: Option<[f64; 3]>,
     /// Time step of a simulation, s.
     pub step: Option<f64>,
-    /// Integrator of a simulation, as the file calls it.
+    /// Integrator of a simulation, by the file's name.
     pub integrator: Option<String>,
-    /// The state in which the file starts, where it is not that of joints at rest.
+    /// The initial state of the file, if it differs from that of joints at rest.
     pub home: Option<Keyframe>,
     /// States, in the order of the file.
     pub keyframes: Vec<Keyframe>,
@@ -47,10 +47,10 @@ pub struct World {
     pub couplings: Vec<(Coupling, At)>,
     /// Planes that do not move, against which links collide.
     pub planes: Vec<Plane>,
-    /// For links with collision geometry, what each piece makes contact with, in the order of their
-    /// lists. A link that is not here makes contact with everything.
+    /// For links with collision geometry, the contact mask of each piece, in the order of their
+    /// lists. A link that is missing here makes contact with everything.
     pub contact_masks: BTreeMap<String, Vec<ContactMask>>,
-    /// Equations of the file that close loops, or are not linear: nothing applies them.
+    /// Equations of the file that close loops, or are not linear: they are not applied.
     pub loops: Vec<Loop>,
 }
 
@@ -65,7 +65,7 @@ pub struct Keyframe {
     pub v: Vec<(String, Vec<f64>)>,
     /// Controls, one for each of [`World::actuators`]. Empty: all 0.
     pub control: Vec<f64>,
-    /// Where the file says so.
+    /// Place in the file.
     pub place: At,
 }
 
@@ -90,7 +90,7 @@ pub struct Actuator {
     pub control_range: Option<[f64; 2]>,
     /// Bounds of the force f.
     pub force_range: Option<[f64; 2]>,
-    /// Where the file says so.
+    /// Place in the file.
     pub place: At,
 }
 
@@ -103,13 +103,13 @@ pub struct Plane {
     pub point: [f64; 3],
     /// Its normal in the world frame, of norm one: the side on which links are.
     pub normal: [f64; 3],
-    /// What makes contact with it; `None`: everything.
+    /// The mask of its contacts; `None`: contact with everything.
     pub mask: Option<ContactMask>,
-    /// Where the file says so.
+    /// Place in the file.
     pub place: At,
 }
 
-/// Bits that say which collision geometry makes contact.
+/// Bits that define which collision geometry makes contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ContactMask {
     /// The kinds that it is of, a bit each.
@@ -119,7 +119,7 @@ pub struct ContactMask {
 }
 
 impl ContactMask {
-    /// Whether two make contact: one of them has an affinity to a kind of the other.
+    /// Whether two make contact: one has an affinity to a kind of the other.
     pub fn meets(self, other: Self) -> bool {
         self.kinds & other.affinity != 0 || other.kinds & self.affinity != 0
     }
@@ -130,10 +130,10 @@ impl ContactMask {
 pub struct Loop {
     /// Its name; may be empty.
     pub name: String,
-    /// Its kind, as the file calls it: `connect`, `weld`, `joint`, `tendon`.
+    /// Its kind, with the file's name for it: `connect`, `weld`, `joint`, `tendon`.
     pub kind: String,
-    /// The links or joints that it is about.
+    /// Its links or joints.
     pub between: Vec<String>,
-    /// Where the file says so.
+    /// Place in the file.
     pub place: At,
 }

@@ -1,4 +1,4 @@
-//! What documents say that are accepted, spelled in whatever way.
+//! Accepted documents in all spellings.
 
 mod corpus;
 
@@ -124,7 +124,7 @@ fn floating_and_planar_joints_are_described() {
     }
 }
 
-/// Programs differ in what they take for its plane.
+/// Other programs use different planes for it.
 #[test]
 fn a_planar_joint_without_an_axis_moves_across_x_and_is_warned_of() {
     let reading = accepted(&slew("planar", ""));
@@ -135,7 +135,7 @@ fn a_planar_joint_without_an_axis_moves_across_x_and_is_warned_of() {
     assert!(accepted(&slew("continuous", "")).warnings.iter().all(|w| w.code != Code::NoAxis));
 }
 
-/// A gripper that was welded: its joints are fixed, and still carry what they had when they moved.
+/// A gripper that was welded: its joints are fixed, and still have the tags of movable ones.
 #[test]
 fn a_fixed_joint_with_a_left_over_mimic_is_a_fixed_joint() {
     for leader in ["slew", "no_such_joint", "mount"] {
@@ -149,7 +149,7 @@ fn a_fixed_joint_with_a_left_over_mimic_is_a_fixed_joint() {
     }
 }
 
-/// An inertia as `ixx ixy ixz iyy iyz izz` of a trolley of `mass`, whose centre is at `xyz`.
+/// An inertia as `ixx ixy ixz iyy iyz izz` of a trolley of `mass` with its centre at `xyz`.
 fn trolley(mass: &str, xyz: &str, moments: [&str; 6]) -> String {
     let [xx, xy, xz, yy, yz, zz] = moments;
     let inertia = format!("<inertia ixx='{xx}' ixy='{xy}' ixz='{xz}' iyy='{yy}' iyz='{yz}' izz='{zz}'/>");
@@ -183,7 +183,7 @@ fn a_moment_that_is_negative_by_rounding_is_a_warning() {
     }
 }
 
-/// In a robot of a millimetre, rounding is a millionth of what it is in one of a metre.
+/// In a robot of a millimetre, rounding is a millionth of that in a robot of a metre.
 #[test]
 fn what_rounding_is_depends_on_the_size_of_the_robot() {
     let tiny = |moment: &str| {
@@ -194,7 +194,7 @@ fn what_rounding_is_depends_on_the_size_of_the_robot() {
     };
     assert!(read(tiny("-0.9e-18").as_bytes(), &options()).is_ok());
     assert_eq!(corpus::only_error(&tiny("-1.1e-18")).code, Code::InertiaNotPositive);
-    // Without any length there is nothing to compare with but a metre.
+    // Without any length, a metre is the reference.
     let point = "<robot name='r'><link name='b'/><link name='c'><inertial><mass value='1'/>\
         <inertia ixx='M' ixy='0' ixz='0' iyy='0' iyz='0' izz='0'/></inertial></link>\
         <joint name='j' type='continuous'><parent link='b'/><child link='c'/></joint></robot>";
@@ -251,7 +251,7 @@ fn a_quaternion_is_the_rotation_that_it_stands_for() {
     }
 }
 
-/// A quarter turn about x is the double π/2 itself, whatever digits of √½ are given; from 1.1 on.
+/// A quarter turn about x is the double π/2 itself, whatever the digits of √½; from 1.1 on.
 #[test]
 fn a_quarter_turn_as_a_quaternion_is_exact() {
     for (version, half, warned) in [("1.1", "0.7071067811865476", 0), ("1.2", "0.70710678", 0), ("1.1", "0.707", 1)] {
@@ -272,7 +272,7 @@ fn expressions_of_xacro_in_names_of_files_play_no_part() {
     let reading = accepted(&crane("<link name=\"hook\"/>", mesh));
     assert!(reading.warnings.is_empty(), "{:?}", reading.warnings);
     let mut description = reading.description;
-    // Meshes are named, and that is all.
+    // Only the names of meshes are kept.
     let named = std::mem::take(&mut description.links[LinkId(3)].collision);
     let shape = CollisionShape::Mesh { file: "$(arg folder)/hook.stl".into(), scale: [1.0; 3] };
     assert_eq!(named, [Collision { origin: Origin::default(), shape }]);
@@ -293,7 +293,7 @@ fn world_is_added_where_joints_hang_on_it_and_no_link_is_called_so() {
         .replace("  <link name=\"world\"/>\n", "")
         .replace("  <link name=\"lamp\"/>\n", "  <link name=\"lamp\"/>\n  <link name=\"world\"/>\n");
     assert_eq!(reading.description, described(&moved));
-    // Another name stays a mistake, and so does a second root beside it.
+    // Another name stays an error, and so does a second root.
     let other = corpus::refused(&text.replace("\"world\"", "\"World\""));
     assert_eq!(other.errors.iter().map(|e| e.code).collect::<Vec<_>>(), [Code::UnknownLink; 2], "{other}");
     let second = text.replace("<link name=\"lamp\"/>", "<link name=\"lamp\"/><link name=\"stray\"/>");
@@ -355,8 +355,7 @@ fn limits_that_are_left_open_are_infinite() {
     assert_eq!((travel.lower, travel.upper, travel.effort), (f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY));
 }
 
-/// As the format has it before version 1.2; from then on, nothing is amiss with a bound that is
-/// left open.
+/// As the format defines it before version 1.2; from then on, a missing bound is valid.
 #[test]
 fn bounds_that_are_left_out_are_zero_before_version_1_2_and_open_from_then_on() {
     let travel = |version: &str, given: &str| {

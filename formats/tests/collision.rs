@@ -1,5 +1,5 @@
-//! Shapes of links: read where they are right. Collision geometry that is wrong is a warning, and
-//! appearance plays no part in the dynamics.
+//! Shapes of links: valid ones are read. Invalid collision geometry is a warning, and appearance
+//! has no effect on the dynamics.
 
 mod corpus;
 
@@ -44,7 +44,7 @@ fn shapes_are_read_with_their_places_in_the_order_of_the_file() {
         (at([0.0; 3]), CollisionShape::Capsule { radius: 0.2, length: 4.0 }),
     ];
     assert_eq!(of_hook(&reading), expected.map(|(origin, shape)| Collision { origin, shape }));
-    // All else is as it was, and the geometry is listed among what is not used.
+    // The rest is unchanged, and the geometry is listed as unused.
     let mut description = reading.description;
     description.links[LinkId(3)].collision.clear();
     assert_eq!(description, described(CRANE));
@@ -52,7 +52,7 @@ fn shapes_are_read_with_their_places_in_the_order_of_the_file() {
     assert_eq!(unused.count(), 6);
 }
 
-/// What stands in `<collision>`, the kind of mistake, its field, and parts of what is said.
+/// Content of `<collision>`, kind and field of the error, and parts of its text.
 const WRONG: &[(&str, Code, &str, &[&str])] = &[
     ("", Code::MissingTag, "geometry", &["none", "<geometry>"]),
     ("<geometry/>", Code::MissingTag, "geometry", &["no shape", "<box>", "<mesh>"]),
@@ -71,8 +71,8 @@ const WRONG: &[(&str, Code, &str, &[&str])] = &[
     ("<origin xyz='0 0'/><geometry><sphere radius='1'/></geometry>", Code::WrongCount, "origin xyz", &["2 numbers"]),
 ];
 
-/// A file that is sound but for its collision geometry is read as before; what is wrong is kept for
-/// who asks for contact.
+/// A file that is valid except its collision geometry is read as before; the error is kept for
+/// scenes that request contact.
 #[test]
 fn geometry_that_cannot_be_read_is_a_warning_and_says_why() {
     for (text, kind, field, parts) in WRONG {
@@ -89,7 +89,7 @@ fn geometry_that_cannot_be_read_is_a_warning_and_says_why() {
     assert!(reading.warnings.len() == 2 && why.ends_with(", and 1 more"), "{why}");
 }
 
-/// One that cannot be read leaves the others.
+/// An unreadable one leaves the others unchanged.
 #[test]
 fn each_piece_is_read_by_itself() {
     let reading = hook(&[geometry("<sphere radius='-1'/>"), geometry("<sphere radius='2'/>")].concat());
@@ -111,7 +111,7 @@ fn what_is_not_known_of_geometry_is_reported_and_what_is_meant_for_others_is_lis
     assert_eq!(of_hook(&reading).len(), 1);
 }
 
-/// An expression of xacro in a size is an error, as everywhere but in names of files.
+/// An expression of xacro in a size is an error, as everywhere except in names of files.
 #[test]
 fn expressions_of_xacro_in_sizes_are_errors() {
     let text = crane("<link name=\"hook\"/>", &format!("<link name=\"hook\">{}</link>", geometry("<sphere radius='${r}'/>")));
@@ -135,6 +135,6 @@ fn appearance_is_read_with_the_colours_of_materials_and_is_never_a_finding() {
     assert_eq!((mesh.material.as_str(), mesh.color), ("", Some([1.0, 0.0, 0.0, 0.5])));
     assert!(matches!(&cone.shape, CollisionShape::Unread { why } if why.contains("cone")), "{cone:?}");
     assert_eq!(cone.color, None);
-    // It is listed among what is not used.
+    // It is listed as unused.
     assert_eq!(reading.unused.iter().filter(|u| u.tag == "visual").count(), 3);
 }

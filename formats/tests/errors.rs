@@ -1,4 +1,4 @@
-//! Each mistake alone: its kind, its line, whom it names; and all mistakes of a file together.
+//! Each error alone: its kind, its line, its subject; and all errors of a file together.
 
 mod corpus;
 
@@ -7,7 +7,8 @@ use articulated_core::diagnostic::{Code, Subject};
 use articulated_formats::{MOST_SNAPPED, Options, read};
 use corpus::{CRANE, as_kept, crane, only_error, options, refused, refused_bytes};
 
-/// One mistake: what is replaced by what; the kind and line of the error; words of the message.
+/// One error: the replaced text and its replacement; the kind and line of the error; words of the
+/// message.
 type Mistake = (&'static str, &'static str, Code, u32, &'static [&'static str]);
 
 const MISTAKES: &[Mistake] = &[
@@ -134,7 +135,7 @@ fn all_mistakes_of_a_file_are_reported_at_once() {
     assert_eq!(problems.to_string().lines().count(), 4);
 }
 
-/// What is missing beside it does not hide that a number cannot be.
+/// A missing tag does not hide an invalid number.
 #[test]
 fn half_an_inertial_is_looked_at_too() {
     let kinds = |from: &str, to: &str, and: (&str, &str)| {
@@ -167,8 +168,8 @@ fn of_very_many_roots_the_first_are_named_and_the_rest_counted() {
     assert!(error.found.starts_with("14 roots") && error.found.ends_with("link \"stray10\" and 2 more"), "{error}");
 }
 
-/// The example of other programs' joints: without the one that was passed over, nothing in the file
-/// has two roots.
+/// The example of other programs' joints: without the ignored joint, the file would not have two
+/// roots.
 #[test]
 fn joints_of_other_programs_are_named_where_links_hang_on_nothing() {
     let text = crane("<link name=\"lamp\"/>", "<link name=\"lamp\"/><link name=\"ball\"/>")
@@ -223,7 +224,7 @@ fn a_ring_beside_the_tree_is_named() {
     assert!(error.found.contains("\"ab\"") && error.found.contains("\"ba\""), "{error}");
 }
 
-/// How many roots there are shows once the ring is gone.
+/// The number of roots is found once the ring is removed.
 #[test]
 fn a_ring_beside_two_roots_is_the_one_error() {
     let links: String = ["one", "two", "a", "b"].map(|name| format!("<link name='{name}'/>")).concat();
@@ -250,7 +251,7 @@ fn a_link_with_two_parents_is_named_with_both_joints() {
     assert!(["\"hook\"", "\"swing\"", "\"again\""].iter().all(|name| message.contains(name)), "{message}");
 }
 
-/// A follower with a law that is not read would be another mechanism.
+/// A follower with an unread law would be another mechanism.
 #[test]
 fn what_may_change_the_law_of_a_follower_is_an_error_that_names_joint_and_attribute() {
     let with = |mimic: &str| crane("<axis xyz=\"0 1 0\"/>", &format!("<axis xyz=\"0 1 0\"/>\n{mimic}"));
@@ -272,10 +273,10 @@ fn what_may_change_the_law_of_a_follower_is_an_error_that_names_joint_and_attrib
         assert!(error.to_string().contains("joint \"swing\": ") && error.to_string().contains(words), "{error}");
         assert!(error.to_string().contains("q = multiplier · q of the joint + offset is the one law that is read"), "{error}");
     }
-    // All of them at once, and a mistake of the format's own.
+    // All of them at once, and an error in an attribute of the format.
     let all = refused(&with("<mimic joint='slew' quadratic='3' cubic='4' offset='x'/>"));
     assert_eq!(all.errors.iter().map(|e| e.code).collect::<Vec<_>>(), [Code::Unknown, Code::Unknown, Code::NotANumber]);
-    // What says nothing of the law is a warning.
+    // Content that does not concern the law is a warning.
     for mimic in [
         "<mimic joint='slew' name='m' quadratic='0' smooth='false' unit=''/>",
         "<mimic joint='slew' a:comment='' xmlns:a='b'><note/></mimic>",
@@ -302,7 +303,7 @@ fn two_laws_for_one_leader_are_an_error() {
     assert!(
         only_error(&twice("<drake:mimic joint='slew' multiplier='3'/>")).to_string().contains("a second <drake:mimic> of joint \"slew\"")
     );
-    // The first, where that is asked for; and one that says the same.
+    // The first one, if requested; and one with the same content.
     let first = Options { first_of_duplicates: true, ..options() };
     for (again, options) in [("<mimic joint='slew' multiplier='3'/>", first), ("<mimic multiplier='2' joint='slew'/>", options())] {
         let reading = read(twice(again).as_bytes(), &options).unwrap();
@@ -331,8 +332,8 @@ fn leaders_with_several_coordinates_are_refused() {
     }
 }
 
-/// The crane with a universal or helical slew: what stands in place of its axis; the kind and line
-/// of the error; words of the message.
+/// The crane with a universal or helical slew: the replacement of its axis; the kind and line of
+/// the error; words of the message.
 type Special = (&'static str, &'static str, Code, u32, &'static [&'static str]);
 
 const SPECIALS: &[Special] = &[
@@ -409,7 +410,7 @@ fn an_inertia_may_be_unphysical_where_that_is_asked_for() {
     assert_eq!(reading.description.links[LinkId(1)].inertial.unwrap().inertia[5], -31.0);
 }
 
-/// What a later version changes is not known.
+/// Changes of a later version are unknown.
 #[test]
 fn another_version_is_an_error_unless_it_is_allowed() {
     for version in ["7", "1.3", "1.0.0", "0.9", ""] {

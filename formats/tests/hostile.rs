@@ -1,4 +1,4 @@
-//! Whatever the bytes: an answer, and soon.
+//! An answer for any bytes, in a short time.
 
 mod corpus;
 
@@ -25,7 +25,7 @@ impl Random {
     }
 }
 
-/// Pieces that turn a document into an interesting one.
+/// Pieces that make a document interesting.
 const PIECES: [&[u8]; 24] = [
     b"<",
     b">",
@@ -84,7 +84,7 @@ fn the_extended_crane_is_sound() {
     assert!(answer(extended().as_bytes(), 0));
 }
 
-/// Every error says where and what; nothing is blamed on the reader itself.
+/// Every error has a place and a cause; none is an internal error.
 fn answer(bytes: &[u8], seed: u64) -> bool {
     let options = Options { snap_angles: Some(1e-3), ..Options::default() };
     match std::panic::catch_unwind(|| read(bytes, &options)) {
@@ -178,7 +178,7 @@ fn a_long_chain_is_read() {
     assert_eq!(reading.description.joints[JointId(4_998)].child, LinkId(4_999));
 }
 
-/// The second reader is left out by an error at the end; all of this crate is walked.
+/// An error at the end skips the second reader; all of this crate's code runs.
 #[test]
 fn a_chain_of_100_000_links_is_walked_without_recursion() {
     let text = chain(100_000, false, "continuous").replace("</robot>", "<link name='99999'/></robot>");

@@ -1,4 +1,4 @@
-//! MJCF: what files become, and what is said about them.
+//! MJCF: results of files, and messages about them.
 
 use std::collections::BTreeMap;
 use std::io::{Error, ErrorKind, Result};
@@ -102,7 +102,7 @@ fn a_joint_beside_the_origin_turns_the_body_about_its_anchor() {
     assert_eq!(robot.links.iter().filter(|link| link.intermediate).count(), 1);
     let found = placement(&robot, "a", &[std::f64::consts::FRAC_PI_2]);
     assert!(near(&found, &[0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, -1.0, 5.0]), "{found:?}");
-    // At its reference the body is where its place says.
+    // At its reference the body has its `pos`.
     let text = text.replace("axis=", "ref=\"90\" axis=");
     let found = placement(&described(&text), "a", &[std::f64::consts::FRAC_PI_2]);
     assert!(near(&found[9..], &[0.0, 0.0, 5.0]) && near(&found[..3], &[1.0, 0.0, 0.0]), "{found:?}");
@@ -274,7 +274,7 @@ fn included_files_are_in_the_place_of_their_tags() {
     let reading = read_with(&files, MAIN.as_bytes(), &options()).unwrap();
     let mass = reading.description.links[LinkId(1)].inertial.unwrap().mass;
     assert!((mass - 1000.0 * (32.0 * std::f64::consts::PI / 3.0 + 1.0 / 6.0)).abs() < 1e-9, "{mass}");
-    // Kept files are as good as those that they were.
+    // Recorded files give the same result as the original ones.
     let kept = included(&files, Path::new(""), MAIN.as_bytes(), &options());
     let names: Vec<_> = kept.files().map(|(path, _)| path.to_str().unwrap()).collect();
     assert_eq!(names, ["robots/m.obj", "robots/parts/common.xml", "robots/parts/more.xml"]);
@@ -337,13 +337,13 @@ fn copies_are_bounded_in_number_and_in_the_length_of_their_names() {
         let errors = refused(text).errors;
         assert!(errors.iter().any(|error| error.code == Code::TooLarge && error.found.contains(found)), "{errors:?}");
     };
-    // A frame that attaches itself twice: 2¹⁶ copies, of bodies whose names are taken.
+    // A frame that attaches itself twice: 2¹⁶ copies, with duplicate names of bodies.
     let twice = "<frame name=\"f\"><attach frame=\"f\"/><attach frame=\"f\"/><body name=\"b\"/></frame>";
     has(&document(twice), "models in models");
     let long = "s".repeat(100_000);
     has(&document(&format!("<replicate count=\"90000\" sep=\"{long}\"><body name=\"b\"/></replicate>")), "very long names");
     has(&document(&format!("<replicate count=\"40000\"><body name=\"{long}\"/></replicate>")), "very long names");
-    // A name of an actuator has no room either, where there are very many copies of it.
+    // The name of an actuator is also too long, if there are very many copies of it.
     let copies =
         "<replicate count=\"20000\"><body><joint name=\"j\"/><inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/></body></replicate>";
     let actuator = format!("<actuator><motor name=\"{long}\" joint=\"j\"/></actuator></mujoco>");

@@ -1,4 +1,4 @@
-//! MJCF: masses and frames of bodies. The right numbers are MuJoCo's (4.0.0).
+//! MJCF: masses and frames of bodies. The expected numbers are MuJoCo's (4.0.0).
 
 use std::collections::BTreeMap;
 use std::io::{Error, ErrorKind, Result};
@@ -105,7 +105,7 @@ fn the_frame_of_an_aligned_free_body_is_that_of_its_inertia() {
         assert!(near(&corner, &[0.20256223855694475, 0.30698556687817047, 1.9987021701416117]), "{corner:?}");
         assert!(reading.unused.iter().all(|unused| !unused.tag.contains("align")), "{:?}", reading.unused);
     }
-    // As written: the file says no, or another body is on it.
+    // As written: the file turns it off, or another body is on it.
     let plain = accepted(&brick("alignfree=\"true\"", "<freejoint align=\"false\"/>"));
     let (energy, corner) = state_of_keyframe(&plain);
     assert!(near(&[energy], &[448.0194917929864]) && near(&corner, &[0.3, 0.1, 2.2]), "{energy} {corner:?}");
@@ -115,7 +115,7 @@ fn the_frame_of_an_aligned_free_body_is_that_of_its_inertia() {
 
 #[test]
 fn axes_of_a_diagonal_inertia_are_those_of_the_file() {
-    // MuJoCo sorts moments that it computes, and no others.
+    // MuJoCo sorts only moments that it computes.
     let text = "<mujoco><worldbody><body name=\"b\" pos=\"1 2 3\"><freejoint align=\"true\"/>
         <inertial pos=\"0.5 0 0\" mass=\"2\" diaginertia=\"0.3 0.5 0.4\"/></body></worldbody></mujoco>";
     let reading = accepted(text);
@@ -169,7 +169,7 @@ fn a_mesh_of_several_objects_is_the_first() {
     for (one, two) in [("o left", "o right"), ("g left", "  g\tright"), ("o left\ng left", "o right")] {
         let reading = accepted_with(&[("two.obj", &obj(one, two))], text);
         assert!((inertial(&reading, "a").mass - 1.0000000546375918).abs() < 1e-9, "{one}");
-        // A hull is around all vertices, those of the others too.
+        // A hull surrounds all vertices, including those of other objects.
         assert!((inertial(&reading, "b").mass - 24.499999115864462).abs() < 1e-8, "{one}");
         let found: Vec<String> = reading.warnings.iter().map(ToString::to_string).collect();
         assert_eq!(found.len(), 2, "{found:?}");
@@ -232,10 +232,10 @@ fn a_mass_without_inertia_does_not_move() {
     let found = refused(&body("<joint name=\"j\"/>", ""));
     assert_eq!((found.errors.len(), found.errors[0].code, found.errors[0].line()), (1, Code::MissingAttribute, Some(2)), "{found}");
     assert!(found.to_string().contains("a mass without inertia, expected diaginertia or fullinertia"), "{found}");
-    // Of a body that carries it as well
+    // For a body that carries it as well
     let carried = body("", "").replace("<worldbody>", "<worldbody><body><joint/>").replace("</worldbody>", "</body></worldbody>");
     assert_eq!(refused(&carried).errors[0].code, Code::MissingAttribute);
-    // As in MuJoCo: of a body that does not move, beside another that has inertia, or not used.
+    // As in MuJoCo: on a body that does not move, with another body that has inertia, or unused.
     let accepts = [
         body("", ""),
         body("<joint/>", "<body><geom size=\"0.1\"/></body>"),
@@ -243,7 +243,7 @@ fn a_mass_without_inertia_does_not_move() {
         body("<joint/>", "").replace("<worldbody>", "<compiler inertiafromgeom=\"true\"/><worldbody>"),
     ];
     accepts.iter().for_each(|text| drop(accepted(text)));
-    // What the joint of a child moves is another body.
+    // The joint of a child moves another body.
     let other = body("<joint/>", "<body><joint/><geom size=\"0.1\"/></body>");
     assert_eq!(refused(&other).errors.len(), 1);
 }

@@ -1,5 +1,5 @@
-//! MJCF: what options turn off or leave out, and what is refused as in MuJoCo. The right numbers
-//! are MuJoCo's (4.0.0).
+//! MJCF: elements that options turn off or leave out, and those refused as in MuJoCo. The expected
+//! numbers are MuJoCo's (4.0.0).
 
 use std::collections::BTreeMap;
 use std::io::{Error, ErrorKind, Result};
@@ -93,7 +93,7 @@ fn flags_turn_off_what_they_name() {
     for flags in ["limit=\"disable\"", "constraint=\"disable\""] {
         let reading = arm(flags);
         let own = limit(&reading, "h").unwrap();
-        // The bound of actuators is no limit of the motion.
+        // The bound of actuators does not limit the motion.
         assert_eq!((own.lower, own.upper, own.effort, limit(&reading, "b")), (f64::NEG_INFINITY, f64::INFINITY, 2.0, None));
         assert_eq!(reading.description.joints[reading.description.joint("h").unwrap()].kind, JointKind::Continuous);
         assert!(warnings(&reading).iter().all(|warning| !warning.contains("limits of a tendon")), "{flags}");
@@ -104,7 +104,7 @@ fn flags_turn_off_what_they_name() {
         assert!(reading.world.planes.is_empty() && reading.description.links.iter().all(|link| link.collision.is_empty()), "{flags}");
     }
     assert_eq!(all.world.planes.len(), 1);
-    // What a flag turns off is listed with the line of the flag.
+    // Elements that a flag turns off are listed with the line of the flag.
     for flag in ["spring", "damper", "limit", "frictionloss", "contact", "constraint"] {
         let reading = arm(&format!("{flag}=\"disable\""));
         let found = reading.unused.iter().find(|unused| unused.tag == format!("flag {flag}")).expect(flag);
@@ -133,7 +133,7 @@ fn options_of_an_attached_model_are_merged_where_the_file_says_so() {
     assert_eq!(merged.description.joints[JointId(0)].dynamics.stiffness, None);
     assert!(warnings(&merged).iter().any(|warning| warning.contains("a medium")), "{:?}", warnings(&merged));
     assert_eq!(attaching("conflict=\"merge\"", "timestep=\"0.0001\"").unwrap().world.step, Some(0.0001));
-    // Two values of what has no order
+    // Two values without an order
     for option in ["gravity=\"0 0 -2\"", "integrator=\"Euler\"", "density=\"4\""] {
         let found = attaching("conflict=\"merge\"", option).map(|_| ()).unwrap_err();
         assert_eq!((found.errors.len(), found.errors[0].code, found.errors[0].line()), (1, Code::Together, Some(2)), "{found}");
@@ -142,7 +142,7 @@ fn options_of_an_attached_model_are_merged_where_the_file_says_so() {
         let found = attaching("conflict=\"error\"", option).map(|_| ()).unwrap_err();
         assert_eq!((found.errors.len(), found.errors[0].code), (1, Code::Together), "{found}");
     }
-    // Else the file that attaches counts, and what the model says is a warning.
+    // Otherwise the attaching file counts, and the options of the model are warnings.
     for conflict in ["", "conflict=\"warning\"", "conflict=\"error\""] {
         let kept = attaching(conflict, "").unwrap();
         assert_eq!((kept.world.gravity, kept.world.step, kept.world.integrator.as_deref()), (None, None, None));
@@ -201,7 +201,7 @@ fn what_changes_the_motion_and_is_not_read_is_an_error_unless_it_is_left_out() {
     // Copies of one tag are one finding.
     let copies = "<mujoco><worldbody><replicate count=\"3\"><body><joint/><geom size=\"1\"/><plugin plugin=\"p\"/></body></replicate></worldbody></mujoco>";
     assert_eq!(refused(copies).errors.len(), 1);
-    // What is not attached is not in the model.
+    // Elements that are not attached are not in the model.
     let kid = "<mujoco><worldbody><body name=\"b\"><joint/><geom size=\"1\"/></body><flexcomp name=\"cloth\"/></worldbody></mujoco>";
     let main = |how: &str| {
         format!(
@@ -273,7 +273,8 @@ fn a_mass_that_is_not_known_has_its_reason() {
     assert!(warnings(&accepted(light))[0].contains("a springdamper in a robot whose mass matrix is singular"));
 }
 
-/// So that nobody has to count lines, and the comparison with MuJoCo can tell what has a warning.
+/// So that users need not count lines, and the comparison with MuJoCo identifies elements with a
+/// warning.
 #[test]
 fn a_warning_names_what_is_not_read() {
     let rest = "<equality><connect name=\"knee\" body1=\"arm\" body2=\"hub\" anchor=\"0 0 0\"/></equality>

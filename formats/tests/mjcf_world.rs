@@ -1,4 +1,4 @@
-//! MJCF: what a file says beside its robot.
+//! MJCF: content of a file besides its robot.
 
 use articulated_core::description::JointId;
 use std::collections::BTreeMap;
@@ -114,11 +114,11 @@ fn the_law_comes_from_a_default_of_the_same_kind_or_of_general() {
         "<position kp=\"5\"/><default class=\"a\"><velocity kv=\"3\"/><default class=\"c\"><motor gear=\"2\"/></default></default>";
     assert_eq!(law(nested, "<position joint=\"h\" class=\"c\"/>"), ([5.0, 0.0, 0.0], [0.0, -5.0, 0.0]));
     assert_eq!(law(nested, "<velocity joint=\"h\" class=\"c\"/>"), ([3.0, 0.0, 0.0], [0.0, 0.0, -3.0]));
-    // Numbers of a kind that is not read are not taken.
+    // Numbers of an unsupported kind are not used.
     let text =
         with("<default><cylinder area=\"5\"/><general biastype=\"none\"/></default>", "<actuator><velocity joint=\"h\"/></actuator>");
     assert_eq!(accepted(&text).world.actuators, []);
-    // Gear and bounds are those of any kind.
+    // Gear and bounds apply to any kind.
     let text = with("<default><motor gear=\"4\" ctrlrange=\"-1 1\"/></default>", "<actuator><velocity joint=\"h\"/></actuator>");
     let found = &accepted(&text).world.actuators[0];
     assert_eq!((&found.drives, found.control_range), (&vec![drive("h", &[4.0])], Some([-1.0, 1.0])));
@@ -134,7 +134,7 @@ fn a_range_is_inherited_from_the_joint() {
     let defaults = "<default><motor ctrlrange=\"0 9\"/><default class=\"a\"><position inheritrange=\"1\"/></default></default>";
     let found = accepted(&with(defaults, "<actuator><motor joint=\"x\" class=\"a\"/><velocity joint=\"x\"/></actuator>")).world.actuators;
     assert_eq!((found[0].control_range, found[1].control_range), (None, Some([0.0, 9.0])));
-    // What is nearer counts.
+    // The nearer one counts.
     let ranges = [
         ("<position inheritrange=\"1\"/>", "ctrlrange=\"0 9\"", [0.0, 9.0]),
         ("<motor ctrlrange=\"0 9\"/>", "inheritrange=\"1\"", [-1.0, 3.0]),
@@ -184,7 +184,7 @@ fn springs_of_tendons_are_actuators_without_gain() {
     let laws: Vec<_> = found.iter().map(|law| (law.bias, law.force_range)).collect();
     let (push, pull) = (Some([0.0, f64::INFINITY]), Some([f64::NEG_INFINITY, 0.0]));
     assert_eq!(laws, [([0.0, 0.0, -0.5], None), ([1.2, -4.0, 0.0], push), ([2.8, -4.0, 0.0], pull)]);
-    // The damping of an actuator is on what it acts on.
+    // The damping of an actuator acts on its target.
     let found = world("<actuator><motor name=\"m\" joint=\"x\" gear=\"3\" damping=\"0.2\"/></actuator>").passive;
     assert_eq!((&found[0].drives, found[0].bias), (&vec![drive("x", &[3.0])], [0.0, 0.0, -0.2]));
 }
@@ -201,7 +201,7 @@ fn a_springdamper_is_a_spring_and_a_damper() {
     let found = joints(&rod(hinge, ""))[JointId(0)].dynamics;
     assert!((found.stiffness.unwrap() - 400.0).abs() < 1e-12 && (found.damping.unwrap() - 20.0).abs() < 1e-13, "{found:?}");
     assert_eq!((found.rest, found.armature), (Some(FRAC_PI_2), Some(0.2)));
-    // Of a ball the mean of the diagonal of M⁻¹, over all three axes.
+    // For a ball, the mean of the diagonal of M⁻¹, over all three axes.
     let found = joints(&rod("type=\"ball\" springdamper=\"0.1 0.5\"", ""))[JointId(0)].dynamics;
     let mass = 3.0 / (2.0 / 0.8 + 1.0 / 0.1);
     assert!((found.stiffness.unwrap() - 400.0 * mass).abs() < 1e-11 && (found.damping.unwrap() - 20.0 * mass).abs() < 1e-12, "{found:?}");
@@ -391,7 +391,7 @@ fn states_are_in_the_conventions_of_the_library() {
     assert!(near(&key.v[0].1, &[4.0, 5.0, 6.0, 2.0, -1.0, 3.0]), "{key:?}");
     assert_eq!((&key.v[1].1, &key.v[2].1), (&vec![7.0, 8.0, 9.0], &vec![10.0]));
     assert_eq!((key.control.as_slice(), key.place.line()), (&[1.0, 3.0][..], Some(3)));
-    // Fewer numbers are completed with those at the start, none are all of those.
+    // Missing numbers are completed by those at the start; an empty list means all of those.
     let key = &found.keyframes[1];
     assert!(near(&key.q[0].1, &[9.0, 2.0, 3.0, 0.0, 0.0, r, r]) && key.v.is_empty() && key.control.is_empty(), "{key:?}");
     assert_eq!(found.keyframes[2].q, home.q);

@@ -1,4 +1,4 @@
-//! What the reader reports of documents that it accepts: warnings, and what is not used.
+//! Reports about accepted documents: warnings, and unused content.
 
 mod corpus;
 
@@ -7,7 +7,7 @@ use articulated_core::diagnostic::{Code, Subject};
 use articulated_formats::{Options, Reading, read};
 use corpus::{CRANE, accepted, crane, described, joint, options};
 
-/// A boom of these principal moments, in turn: what is said of its inertia.
+/// A boom with these principal moments, in turn: the report about its inertia.
 fn said_of(moments: [&str; 3]) -> Option<Code> {
     let [xx, yy, zz] = moments.map(|moment| format!("=\"{moment}\""));
     let text = crane("ixx=\"2\" ixy=\"0.1\"", &format!("ixx{xx} ixy=\"0\"")).replace("iyy=\"30\"", &format!("iyy{yy}"));
@@ -30,7 +30,8 @@ fn moments_are_forgiven_what_rounding_makes_of_them_and_no_more() {
     assert_eq!(said_of(["-1", "-1", "-1"]), Some(Code::InertiaNotPositive));
 }
 
-/// A published quadruped has a second `<axis>` like the first. Nothing is lost by reading it once.
+/// A published quadruped has a second `<axis>` equal to the first. It can be read once without
+/// loss.
 #[test]
 fn a_second_tag_that_says_the_same_is_a_warning() {
     for (first, second) in [
@@ -87,7 +88,7 @@ fn what_looks_wrong_is_a_warning_and_used_as_written() {
         messages.push(warnings[0].to_string());
     }
     corpus::as_kept("warnings.txt", &messages);
-    // Rounded digits of a unit vector; a follower that stays within its limits but for digits.
+    // Rounded digits of a unit vector; a follower that stays within its limits except for rounding.
     for axis in ["0.577 0.577 0.577", "0 0.7071 -0.7071", "0 -1 0"] {
         assert!(accepted(&crane("0 1 0", axis)).warnings.is_empty(), "{axis}");
     }
@@ -101,8 +102,8 @@ fn what_looks_wrong_is_a_warning_and_used_as_written() {
     assert_eq!((travel.lower, travel.upper), (4.0, 3.0));
 }
 
-/// Just above a turn, and from three turns in rad to three turns in degrees; bounds beyond stand
-/// for none.
+/// Just above a turn, and from three turns in rad to three turns in degrees; larger bounds mean no
+/// bound.
 #[test]
 fn angles_are_taken_for_degrees_where_they_look_like_it() {
     let told = |text: &str| accepted(text).warnings.iter().map(|w| w.code).collect::<Vec<_>>();
@@ -150,8 +151,8 @@ fn a_mass_or_an_inertia_alone_on_a_fixed_base_is_told_and_zeros_are_not() {
     assert!(told("1", "0") && told("0", "1") && !told("0", "0"));
 }
 
-/// A number with a unit, an angle in degrees, a loop that is to be closed: another robot is meant
-/// than is read. Extensions of others are not.
+/// A number with a unit, an angle in degrees, a loop to be closed: the intended robot differs from
+/// the one read. Extensions of others do not count.
 #[test]
 fn what_nobody_knows_is_warned_of() {
     let told = |from: &str, to: &str| {
@@ -180,7 +181,7 @@ fn what_nobody_knows_is_warned_of() {
     assert!(end.len() == 1 && end[0].contains("<odd_joint>: found what is not known"), "{end:?}");
 }
 
-/// Tags inside the robot, what the warning says of each, and how many there are.
+/// Tags inside the robot, the texts of each warning, and their number.
 const LOST: &[(&str, &[&str])] = &[
     (
         "<loop_joint name='d' type='continuous'><link1 link='boom'/><link2 link='hook'/></loop_joint>",
@@ -236,7 +237,7 @@ const LOST: &[(&str, &[&str])] = &[
     ("<drake:ball_constraint/>", &["<drake:ball_constraint>: found a closed loop"]),
     ("<odd:joint name='d' type='ball'><parent link='hook'/><child link='boom'/></odd:joint>", &["<odd:joint>: found a joint \"d\""]),
     ("<group><link name='ghost'/><joint name='g'/></group>", &["<group>: found 1 links and 1 joints inside <group>"]),
-    // Not lost, or nothing.
+    // Not lost, or without effect.
     ("<gazebo reference='swing'><springStiffness>0</springStiffness><implicitSpringDamper>1</implicitSpringDamper></gazebo>", &[]),
     ("<gazebo><plugin name='p'><joint>swing</joint><joint name='swing'/></plugin><gravity>true</gravity></gazebo>", &[]),
     ("<gazebo reference='hook'><kp>1e6</kp><turnGravityOff>false</turnGravityOff></gazebo>", &[]),
@@ -255,7 +256,7 @@ fn dynamics_that_are_stated_where_they_are_not_read_are_warned_of() {
             assert!(told.starts_with("crane.urdf:42: ") && told.contains(expected), "{told}");
         }
     }
-    // A plugin that says what <mimic> says is no news; one that says something else is.
+    // A plugin that repeats <mimic> is not reported; one that contradicts it is.
     for (multiplier, expected) in [("0.5", None), ("-0.5", Some("the law of <mimic> inside joint \"swing\": that one is used"))] {
         let plugin = "<plugin filename='libgazebo_mimic_joint_plugin.so'><joint>swing</joint><mimicJoint>travel</mimicJoint><multiplier>0.5</multiplier>";
         let text =
@@ -301,7 +302,7 @@ fn extensions_are_no_part_of_the_tree_and_are_reported() {
     assert_eq!(tags, names.into_iter().zip(lines).collect::<Vec<_>>());
 }
 
-/// Text is no tag, and a tag that is text is none either.
+/// Text is not a tag, and a tag inside text is not one either.
 #[test]
 fn text_between_tags_is_reported() {
     let reading = accepted(&crane("<link name=\"hook\"/>", "<![CDATA[<link name='ghost'/>]]><link name=\"hook\"> steel\n </link>"));
@@ -341,7 +342,7 @@ fn content_of_links_and_joints_that_is_not_used_is_reported() {
     }
 }
 
-/// A thousand tonnes are no link's: most often the mass is in grams, or a placeholder.
+/// No link has a thousand tonnes: most often the mass is in grams, or a placeholder.
 #[test]
 fn a_mass_beyond_any_link_is_a_warning_in_every_format() {
     let moments = "ixx='1e7' ixy='0' ixz='0' iyy='1e7' iyz='0' izz='1e7'";
@@ -371,7 +372,7 @@ fn a_mass_beyond_any_link_is_a_warning_in_every_format() {
         let expected = (Subject::Link("tip".into()), "a mass of 1000001 kg, more than any link has");
         assert!(found.len() == 1 && found[0].0 == Some(2) && (found[0].1.clone(), found[0].2.as_str()) == expected, "{found:?}");
     }
-    // The masses that `settotalmass` makes are those of the robot.
+    // The masses due to `settotalmass` are those of the robot.
     let total = mjcf("1").replace("<worldbody>", "<compiler settotalmass='2e6'/><worldbody>");
     assert_eq!(told(total).len(), 1);
 }

@@ -1,4 +1,4 @@
-//! SDF: what files become, and what is said about them.
+//! SDF: results of files, and messages about them.
 
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -235,7 +235,7 @@ fn poses_are_relative_to_what_they_say() {
     let b = placement(&robot, "b", &[0.5]);
     assert!(near(&b, &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.5, 2.0, 10.0]), "{b:?}");
     at(&robot, "f", &[0.5], [1.5, 1.0, 10.0]);
-    // g says no link: it is attached to the model, whose link is the first one.
+    // g names no link: it is attached to the model, whose first link counts.
     at(&robot, "g", &[0.5], [1.5, 1.0, 10.0]);
     // Before 1.7 the attribute is called frame.
     let old = model(
@@ -267,7 +267,7 @@ fn nested_models_have_names_and_frames_of_their_own() {
     );
     let robot = described(&text);
     assert_eq!(robot.links.iter().map(|link| link.name.as_str()).collect::<Vec<_>>(), ["world", "arm::a", "base"]);
-    // The tip is where the pose says: 0.25 above the frame of the inner model.
+    // The tip is at its pose: 0.25 above the frame of the inner model.
     at(&robot, "arm::a", &[0.0], [1.0, 3.0, 0.75]);
     at(&robot, "arm::tip", &[0.0], [0.0, 3.0, 1.0]);
     // A joint on the model moves its canonical link.
@@ -297,13 +297,13 @@ fn joints_of_all_types_are_read() {
     for other in [&split, &series] {
         assert!(near(&placement(&cardan, "a", &q), &placement(other, "a", &q)));
     }
-    // A right-handed thread of 2 m per revolution, and what older versions say of it.
+    // A right-handed thread of 2 m per revolution, and its form in older versions.
     let screw = robot("screw", &("<screw_thread_pitch>2</screw_thread_pitch>".to_owned() + &axis("0 0 1")));
     assert_eq!(kinds(&screw), [("j", Helical)]);
     at(&screw, "a", &[TAU], [0.0, 0.0, 2.0]);
     let old = robot("screw", &("<thread_pitch>4</thread_pitch>".to_owned() + &axis("0 0 1")));
     at(&old, "a", &[4.0], [0.0, 0.0, -1.0]);
-    // What a file cuts is not needed.
+    // A joint that a file cuts is not needed.
     let cut = "<physics><simbody><must_be_loop_joint>1</must_be_loop_joint></simbody></physics>";
     let text = link("a", "") + &joint("j", "fixed", ["world", "a"], "") + &link("b", "") + &joint("k", "fixed", ["a", "b"], "");
     let robot = described(&model("1.9", &(text + &joint("g", "gearbox", ["world", "b"], cut))));
@@ -478,7 +478,7 @@ fn the_models_of_a_world_are_one_robot() {
         Some(vec![("box::l_free".to_owned(), vec![3.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0])])
     );
     assert!(reading.unused.iter().any(|unused| unused.why.contains("no model")));
-    // A name is had once, and a joint may be between models.
+    // Names are unique, and a joint may be between models.
     let twice = read_with(&files, world("<model name=\"box\"/>").as_bytes(), &options()).expect_err("the name is taken");
     assert!(twice.errors.iter().any(|error| error.code == Code::DuplicateName), "{twice}");
     let held = world(&joint("hold", "fixed", ["arm::l", "box::l"], ""));
@@ -506,7 +506,7 @@ fn planes_of_still_models_are_planes_of_the_world() {
     assert_eq!(planes(&ground(""))[0].normal, found[0].normal);
     let wrong = accepted(&model("1.9", &ground("<normal>0 0 0</normal>")));
     assert!(wrong.world.planes.is_empty() && wrong.warnings[0].to_string().contains("makes no contact"), "{:?}", wrong.warnings);
-    // One that moves is a shape that is not read.
+    // A moving one is a shape that is not read.
     let moves = accepted(&model("1.9", &ground("").replace("true", "false")));
     assert!(moves.world.planes.is_empty() && moves.warnings.iter().any(|warning| warning.to_string().contains("<plane>")));
 }
@@ -540,7 +540,7 @@ fn files_are_included_by_their_paths() {
     assert_eq!(&read_with(&kept, main.as_bytes(), &options()).unwrap().description, robot);
     let missing = read_with(&NoFiles, main.as_bytes(), &options()).unwrap_err();
     assert!(missing.errors.iter().any(|error| error.code == Code::File && error.line() == Some(4)), "{missing}");
-    // A mistake in an included file has that file's name.
+    // An error in an included file has that file's name.
     let bad =
         Files::of(&[("robots/arm.sdf", "<sdf version=\"1.9\">\n<model name='x'><include><uri>arm.sdf</uri></include></model></sdf>")]);
     let ring =
@@ -599,12 +599,12 @@ fn a_urdf_in_an_include_is_read() {
         let turn = |link: &articulated_core::description::Link| link.inertial.map_or([0.0; 3], |i| i.origin.rotation.rpy());
         assert!(near(&turn(own), &turn(link)), "{}", link.name);
     }
-    // It floats, and starts where the tag says. The name that a link and a joint share is no news
+    // It floats, and starts at the pose of its tag. A link and a joint of the same name are valid
     // in a URDF.
     let home = reading.world.home.unwrap();
     assert_eq!((home.q[0].0.as_str(), &home.q[0].1[..3]), ("c::foot_free", &[1.0, 2.0, 3.0][..]));
     assert!(reading.warnings.iter().all(|w| w.code != Code::DuplicateName && w.code != Code::MissingTag), "{:?}", reading.warnings);
-    // A URDF whose root is the world hangs on the world; mistakes have its name and line.
+    // A URDF whose root is the world hangs on the world; its errors have its name and line.
     let held = of(
         include,
         "<robot name='r'><link name='world'/><link name='a'/><joint name='j' type='continuous'><parent link='world'/><child link='a'/></joint></robot>",
@@ -680,7 +680,7 @@ fn inertias_are_computed_of_shapes_where_the_file_says_so() {
     let reading = accepted(&of(auto, &shape("", "", "<box><size>1 1 1</size></box>")));
     assert_eq!(reading.description.links[LinkId(1)].inertial.unwrap().mass, 1000.0);
     assert!(reading.warnings.len() == 1 && reading.warnings[0].to_string().contains("1000 kg/m³"), "{:?}", reading.warnings);
-    // What cannot be computed.
+    // Shapes without a computable inertia.
     let mesh = shape("", "<density>1</density>", "<mesh><uri>a.stl</uri></mesh>");
     let plane = shape("", "<density>1</density>", "<plane/>");
     for (shapes, words) in [
@@ -693,7 +693,7 @@ fn inertias_are_computed_of_shapes_where_the_file_says_so() {
         let (.., told) = error(&of(auto, shapes));
         assert!(told.contains(words), "{told}");
     }
-    // Nothing depends on the mass of what does not move.
+    // The mass of a link that does not move has no effect.
     let still = "<sdf version='1.11'><model name='m'><static>true</static><link name='a'><inertial auto='true'/><collision name='c'><geometry><plane/></geometry></collision></link></model></sdf>";
     assert!(accepted(still).description.links[LinkId(1)].inertial.is_none());
 }

@@ -1,5 +1,5 @@
-//! What other programs add to a URDF, and what its later versions add: rotors, springs, joints of
-//! Drake, settings of MuJoCo, limits of acceleration.
+//! Additions to a URDF by other programs and by later versions: rotors, springs, joints of Drake,
+//! settings of MuJoCo, limits of acceleration.
 
 mod corpus;
 
@@ -57,7 +57,7 @@ fn a_rotor_behind_its_gear_is_kept() {
     }
     // Without a gear ratio it is one.
     assert_eq!(armature(&transmission("", INERTIA)), Some(5.5e-6));
-    // Without an inertia nothing is kept.
+    // Without an inertia no number is kept.
     let reading = with(&transmission("", RATIO));
     assert_eq!(joint(&reading, "swing").dynamics, joint(&accepted(CRANE), "swing").dynamics);
     assert!(reading.unused.iter().any(|unused| unused.tag == "transmission" && unused.line == Some(42)));
@@ -225,8 +225,8 @@ fn a_capsule_is_collision_geometry_and_appearance() {
     assert_eq!((&link.collision[0].shape, &link.visual[0].shape), (&shape, &shape));
 }
 
-/// MuJoCo's compiler changes inertias; where it would leave those of this robot as they are,
-/// nothing is reported.
+/// MuJoCo's compiler changes inertias; settings that keep those of this robot unchanged are not
+/// reported.
 #[test]
 fn settings_of_mujoco_that_change_inertias_are_warned_of() {
     let count = |setting: &str| {

@@ -1,4 +1,4 @@
-//! Files of xacro: what they expand to, and where their mistakes are.
+//! Files of xacro: their expansions, and the places of their errors.
 
 use std::collections::BTreeMap;
 use std::io::{Error, ErrorKind, Result};
@@ -53,7 +53,7 @@ fn result(files: &Files, body: &str, arguments: &[(&str, &str)]) -> std::result:
     let text = format!("<robot name='arm' xmlns:xacro='http://www.ros.org/wiki/xacro'>\n{body}\n</robot>");
     let options = options(arguments);
     let reading = read_with(files, text.as_bytes(), &options);
-    // What was read once is read again without the files.
+    // A recorded reading is repeated without the files.
     let kept = included(files, Path::new(""), text.as_bytes(), &options);
     let again = read_with(&kept, text.as_bytes(), &options);
     match (&reading, &again) {
@@ -301,7 +301,7 @@ fn the_working_folder_and_classes_in_patterns_are_read() {
     );
 }
 
-/// The texts are those of Python 3.
+/// The expected texts are those of Python 3.
 #[test]
 fn texts_have_the_prefixes_and_escapes_of_python() {
     let body = |expression: &str| format!("<xacro:property name='größe' value='ü'/><link name=\"${{{expression}}}\"/>");
@@ -344,7 +344,7 @@ fn a_redefined_name_of_every_file_is_a_warning() {
     );
     assert_eq!(told("<xacro:macro name='m' params='e len:=3 a'/>\n<xacro:m e='1' a='2'/>"), ["3 e", "3 len"]);
     assert_eq!(told("<xacro:property name='tau' remove='true'/>"), ["2 tau"]);
-    // A default of a name that every file has is left out; other names, and blocks, are nobody's.
+    // A default of a built-in name is left out; other names, and blocks, are not built in.
     assert_eq!(
         told("<xacro:property name='pi' default='3'/><xacro:property name='abs' value='1'/><xacro:property name='mass' value='1'/>"),
         [""; 0]

@@ -1,4 +1,4 @@
-//! What a step of a simulation costs beside a loop written by hand over the same generated
+//! Cost of a simulation step compared with a loop written by hand over the same generated
 //! functions.
 //!
 //! ```text
@@ -46,7 +46,7 @@ const STEP: f64 = 2e-5;
 const STEPS: usize = 1000;
 const ROUNDS: usize = 41;
 
-/// A light damper on every joint: a control that costs next to nothing.
+/// A light damper on every joint: a control of negligible cost.
 struct Damper;
 
 impl Control for Damper {
@@ -98,7 +98,7 @@ macro_rules! by_hand {
     };
 }
 
-/// ns a step of what `work` takes for all steps.
+/// Time of `work` divided by the number of steps, ns.
 fn time(mut work: impl FnMut()) -> f64 {
     let clock = Instant::now();
     work();

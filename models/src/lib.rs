@@ -23,7 +23,7 @@ pub struct Bundled {
     pub urdf: &'static str,
     /// The base it is meant to be used with.
     pub base: Base,
-    /// What it is, in a line.
+    /// Summary, one line.
     pub summary: &'static str,
 }
 
@@ -38,7 +38,7 @@ macro_rules! robots {
     };
 }
 
-/// All of them, from small to large.
+/// All robots, from small to large.
 pub const ROBOTS: &[Bundled] = robots! {
     "simple_pendulum", Fixed, "one revolute joint; closed form";
     "double_pendulum", Fixed, "two parallel axes; closed form";
@@ -69,12 +69,12 @@ pub struct BundledScene {
 }
 
 impl BundledScene {
-    /// What errors call its file.
+    /// Name of its file in errors.
     pub fn file(&self) -> String {
         format!("{}.toml", self.name)
     }
 
-    /// What it is, in a line: the scene's own first line.
+    /// Summary, one line: the scene's first line.
     pub fn summary(&self) -> &'static str {
         let line = self.toml.lines().next().unwrap_or_default();
         line.trim_start_matches("summary = \"").trim_end_matches('"')
@@ -189,7 +189,7 @@ mod tests {
                 prepared.scene.controller(&model, &mut |file| Err(format!("{file} is not bundled"))).unwrap_or_else(|e| panic!("{e}"));
             assert_eq!(controller == Controller::None, prepared.scene.control == Default::default(), "{}", bundled.name);
             assert!(prepared.scene.simulation.is_some(), "{}", bundled.name);
-            // Every function that the scene asks for is there; a wrong name would be told.
+            // Every function that the scene requests exists; a wrong name would be reported.
             for function in prepared.scene.code.functions.iter().flatten() {
                 assert!(articulated_core::algorithm::function::<f64>(function).is_some(), "{}: {function}", bundled.name);
             }

@@ -571,7 +571,7 @@ def joint_faults(joint):
     kind, limit = joint.get("type"), joint.find("limit")
     if kind in ("revolute", "prismatic") and not (limit is not None and float(limit.get("lower")) < float(limit.get("upper"))):
         yield f"joint {joint.get('name')}: no range"
-    # A ball has no bounds to give.
+    # A ball has no bounds.
     if kind not in ("fixed", "spherical") and not (limit is not None and float(limit.get("effort")) > 0 and float(limit.get("velocity")) > 0):
         yield f"joint {joint.get('name')}: no effort or velocity"
 

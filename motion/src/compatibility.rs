@@ -9,8 +9,8 @@ use crate::error::Fault;
 use crate::initial_state::InitialState;
 use crate::session::Session;
 
-/// Tolerated difference of torques, relative to the largest of them: more than any precision
-/// leaves. Smaller effects are not detected.
+/// Tolerated difference of torques, relative to the largest one: above the error of every level of
+/// accuracy. Smaller effects are not detected.
 const ALIKE: f64 = 1e-3;
 
 /// Largest distances from the start, rad and m, at which accelerations are compared: the start and

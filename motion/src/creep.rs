@@ -25,7 +25,7 @@ impl Creep {
         Self { effect, on, distance: 0.0, time: 0.0 }
     }
 
-    /// One more interval, s, with this distance, if that is no sliding.
+    /// Adds an interval, s, with this distance, if its speed is not sliding.
     fn add(&mut self, distance: f64, time: f64, speed: f64) {
         if time > 0.0 && distance <= SLIDING * speed * time {
             (self.distance, self.time) = (self.distance + distance, self.time + time);
@@ -78,7 +78,7 @@ impl<'s> Creeping<'s> {
     }
 }
 
-/// The one with the longest path; `None` if nothing crept.
+/// The creep with the longest path; `None` if nothing crept.
 fn furthest(all: impl Iterator<Item = Creep>) -> Option<Creep> {
     all.filter(|creep| creep.time > 0.0).max_by(|a, b| a.distance.total_cmp(&b.distance))
 }

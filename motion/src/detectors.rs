@@ -13,7 +13,7 @@ use crate::occurrence::{EventKind, Occurrence, SceneEvent};
 use crate::projectile::Projectile;
 use crate::session::{Session, field};
 
-/// Events of a scene on a robot, and the meaning of each.
+/// Events of a scene on a robot, with the meaning of each.
 pub struct Detectors<'a> {
     /// The events, for a simulation. A program may append others.
     pub events: Vec<Event<'a>>,
@@ -32,8 +32,8 @@ pub struct UnavailableEvent {
     pub file: String,
     /// The requested class.
     pub what: EventClass,
-    /// The joint without usable bounds: the file's lower bound is not below the upper one, as where
-    /// `<limit>` has none. `None`: no joint or link has such an event.
+    /// The joint without usable bounds: the file's lower bound is not below the upper one, as in a
+    /// `<limit>` without bounds. `None`: no joint or link has such an event.
     pub joint: Option<String>,
 }
 
@@ -72,8 +72,8 @@ impl<'a> Detectors<'a> {
         Occurrence::of(hit.t, SceneEvent { kind: *kind, on: on.clone(), begins }, hit.value)
     }
 
-    /// Returns a closure that says whether an impact ended the motion; call it after each step. It
-    /// does not borrow the detectors, whose events the simulation holds meanwhile.
+    /// Returns a closure: whether an impact ended the motion; call it after each step. It does not
+    /// borrow the detectors, whose events the simulation borrows during the run.
     pub fn over(&self) -> impl Fn() -> bool + use<> {
         let ball = self.ball.clone();
         move || ball.ends.get()
@@ -156,7 +156,7 @@ impl<'a> Detectors<'a> {
     }
 }
 
-/// The contacts, each with its number among those of its link.
+/// The contacts, each with its index among those of its link.
 fn contacts(session: &Session) -> impl Iterator<Item = (EventKind, &Applied)> {
     let all = move || session.effects_of(EffectId::contact);
     all().enumerate().map(move |(k, a)| {
@@ -165,7 +165,7 @@ fn contacts(session: &Session) -> impl Iterator<Item = (EventKind, &Applied)> {
     })
 }
 
-/// The number of a link's frame.
+/// The index of a link's frame.
 fn frame_of<S: AsRef<str>>(link: &str, frames: &[S]) -> Option<usize> {
     frames.iter().position(|name| name.as_ref() == link)
 }

@@ -10,7 +10,7 @@ use articulated_core::listed;
 /// All errors that keep a scene from moving.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionErrors {
-    /// In the order in which they were found, each once; never empty.
+    /// In the order of detection, without duplicates; never empty.
     pub errors: Vec<MotionError>,
 }
 
@@ -28,9 +28,9 @@ pub struct MotionError {
 #[non_exhaustive]
 pub enum Fault {
     /// The start or the control does not fit the robot, a table cannot be read, or the ball is hit
-    /// at a time at which nothing moves.
+    /// at a time outside the motion.
     Scene(Diagnostic),
-    /// The scene has no `[simulation]`: it does not say when its motion ends.
+    /// The scene has no `[simulation]`, and so no end time.
     NoSimulation,
     /// A setting that cannot be used.
     Setting(SettingError),
@@ -66,7 +66,7 @@ pub enum Fault {
     FrameName {
         /// Number of the frame, from 0.
         index: usize,
-        /// The name that was given for it.
+        /// The given name.
         found: String,
         /// The robot's name.
         expected: String,
@@ -82,14 +82,14 @@ pub enum Fault {
     },
     /// The robot's accelerations differ from those of the scene's robot.
     Dynamics {
-        /// Largest difference of the torques that the accelerations take, N·m or N.
+        /// Largest difference of the required torques, N·m or N.
         apart: f64,
         /// The largest of these torques, N·m or N.
         largest: f64,
     },
     /// The robot lacks a function that the motion needs.
     Function(FunctionError),
-    /// What is wrong with the state at the start, with control or with an event.
+    /// Errors of the initial state, of the control or of an event.
     State(StateError),
     /// Another error that kept the simulation from starting.
     Simulation(SimulateError),
@@ -107,7 +107,7 @@ impl MotionErrors {
         Self { errors }
     }
 
-    /// `Ok` if there are no faults, else all of them.
+    /// `Ok` without faults, else all faults.
     pub(crate) fn none(file: &str, faults: impl IntoIterator<Item = Fault>) -> Result<(), Self> {
         let all = Self::of(faults.into_iter().map(|fault| MotionError::new(file, fault)));
         if all.errors.is_empty() { Ok(()) } else { Err(all) }
@@ -118,12 +118,12 @@ impl MotionErrors {
         Self { errors: vec![MotionError::new(file, fault)] }
     }
 
-    /// What a simulation was refused for.
+    /// Errors that made a simulation refuse.
     pub(crate) fn refused(file: &str, error: SimulateError) -> Self {
         Self::of(Fault::of(error).into_iter().map(|fault| MotionError::new(file, fault)))
     }
 
-    /// Both values, or what is wrong with either.
+    /// Both values, or the errors of both.
     pub(crate) fn both<A, B>(a: Result<A, Self>, b: Result<B, Self>) -> Result<(A, B), Self> {
         match (a, b) {
             (Ok(a), Ok(b)) => Ok((a, b)),

@@ -12,7 +12,7 @@ pub(crate) struct Freedom<'s> {
     /// The body that the joint carries; it has the joint's name.
     pub(crate) body: &'s Body<f64>,
     freedom: usize,
-    /// One, or several of a joint that follows several others.
+    /// One term, or several for a joint that follows several others.
     pub(crate) terms: Vec<Term>,
     pub(crate) offset: f64,
 }
@@ -47,14 +47,13 @@ impl Session {
         })
     }
 
-    /// Name for events of a degree of freedom: its joint, with an index where that has several.
+    /// Name for events of a degree of freedom: its joint, with an index if the joint has several.
     pub(crate) fn name_of(&self, at: &Freedom<'_>) -> String {
         let several = self.model.joints().iter().find(|joint| joint.name == at.joint() && joint.v.1 > 1);
         several.map_or_else(|| at.joint().to_owned(), |joint| format!("{}[{}]", joint.name, at.terms[0].v - joint.v.0))
     }
 
-    /// Bounds of its own coordinate: those of the effect if its joint has it, else those of the
-    /// file; rad or m.
+    /// Bounds of its own coordinate: the effect's if its joint has it, else the file's; rad or m.
     pub(crate) fn bounds(&self, at: &Freedom<'_>) -> Option<(f64, f64)> {
         let limit = at.effect(EffectId::limit).filter(|limit| !limit.effect.row().is_of_rotation(at.body.joint));
         let own = match limit.map(|limit| limit.parameters.as_slice()) {
@@ -64,8 +63,8 @@ impl Session {
         own.or_else(|| self.of_the_file(at.body))
     }
 
-    /// Ball joints with a bound of the angle of their rotation: name, place in q, and the bound of
-    /// the effect if the joint has it, else that of the file; rad.
+    /// Ball joints with a bound on their rotation angle: name, index in q, and the bound of the
+    /// effect if the joint has it, else that of the file; rad.
     pub(crate) fn cones(&self) -> impl Iterator<Item = (&str, usize, f64)> {
         let balls = self.model.bodies().iter().skip(1).filter(|body| body.joint.is_rotation_about_point());
         balls.filter_map(|body| {
@@ -76,14 +75,13 @@ impl Session {
         })
     }
 
-    /// The bound that the file gives the angle of a ball joint, rad. A bound of 0 is none.
+    /// The file's bound on the angle of a ball joint, rad. 0 means no bound.
     pub(crate) fn cone_of_the_file(&self, body: &Body<f64>) -> Option<f64> {
         let joint = self.description.joints.iter().find(|joint| joint.name == body.name && body.joint.is_rotation_about_point())?;
         joint.limit.map(|limit| limit.upper).filter(|upper| *upper > 0.0 && upper.is_finite())
     }
 
-    /// The bounds that the file gives a joint of one degree of freedom, those of one that follows
-    /// another too.
+    /// The file's bounds of a joint of one degree of freedom, mimic joints included.
     pub(crate) fn of_the_file(&self, body: &Body<f64>) -> Option<(f64, f64)> {
         let joint = self.description.joints.iter().find(|joint| joint.name == body.name && body.joint.nv() == 1)?;
         joint.limit.filter(|_| joint.kind.has_bounds()).map(|l| (l.lower, l.upper))
@@ -101,7 +99,7 @@ impl<'s> Freedom<'s> {
         self.body.effects.joint.iter().find(|e| e.effect == effect && e.freedom == self.freedom)
     }
 
-    /// Its own coordinate at `q` `[nq]`; `None` where a coordinate is missing.
+    /// Its own coordinate at `q` `[nq]`; `None` if `q` is too short.
     pub(crate) fn own_coordinate(&self, q: &[f64]) -> Option<f64> {
         self.terms.iter().try_fold(self.offset, |sum, term| Some(sum + term.multiplier * q.get(term.q)?))
     }

@@ -50,7 +50,7 @@ impl Session {
     }
 
     /// The joints of one coordinate, mimic joints included, and the ball joints that are beyond the
-    /// file's limits at the initial q `[nq]`. The limit of a ball is that of its angle.
+    /// file's limits at the initial q `[nq]`. The limit of a ball joint is on its angle.
     pub fn beyond(&self, q: &[f64]) -> Vec<Beyond> {
         let beyond = |at: Freedom<'_>| {
             let ((lower, upper), found) = (self.of_the_file(at.body)?, at.own_coordinate(q)?);
@@ -67,9 +67,9 @@ impl Session {
     }
 }
 
-/// A contact whose sphere starts with its centre under the plane: a warning, since the stored
-/// energy throws the robot up. A point (radius 0) rests below its plane, so it counts only where it
-/// pushes with more than the robot's weight.
+/// A contact sphere that starts with its centre under the plane: a warning, since the stored energy
+/// throws the robot up. A point (radius 0) rests below its plane, so it counts only if it pushes
+/// with more than the robot's weight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sunk {
     /// The scene's file.
@@ -81,7 +81,7 @@ pub struct Sunk {
 }
 
 impl Session {
-    /// Spheres whose centres are under their planes at the coordinates q `[nq]`.
+    /// Spheres with centres under their planes at the coordinates q `[nq]`.
     pub fn sunk(&self, q: &[f64]) -> Vec<Sunk> {
         if self.effects_of(EffectId::contact).next().is_none() {
             return Vec::new();

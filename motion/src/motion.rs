@@ -34,12 +34,12 @@ pub struct Outcome {
     /// Occurrences in the order of time, one for each of [`Recording::events`].
     pub occurrences: Vec<Occurrence>,
     /// The contact and the joint with dry friction that crept furthest where smoothed friction
-    /// should hold them, of each kind at most one. As those below, it is a statistic over the
-    /// steps, whatever is recorded.
+    /// should hold them, at most one of each kind. Like the fields below, it is a statistic over
+    /// the steps and does not depend on the outputs.
     pub creep: Vec<Creep>,
     /// Links that went below a plane of contact where no contact holds them, the deepest first.
     pub penetrations: Vec<Penetration>,
-    /// Links whose contacts move although friction would hold them.
+    /// Links with contacts that move although friction would hold them.
     pub slides: Vec<Slide>,
     /// Spheres that roll faster than the tolerance resolves.
     pub rolling: Vec<Rolling>,
@@ -88,7 +88,7 @@ impl Session {
         faults.extend(self.missing_functions(robot, settings.integrator));
         let detectors = Detectors::new(self, robot, frames);
         let simulation = Simulation::new(robot, settings);
-        // A motion of a scene is judged by its balance of energy.
+        // A scene's motion is checked by its energy balance.
         let simulation = simulation.map(Simulation::with_energy_balance).map_err(|e| MotionErrors::refused(file, e));
         let (_, (detectors, simulation)) = MotionErrors::both(MotionErrors::none(file, faults), MotionErrors::both(detectors, simulation))?;
         Ok(Motion { session: self, robot, detectors, simulation })
@@ -96,8 +96,8 @@ impl Session {
 
     /// Runs the scene on a robot from its start to its end, with the scene's settings and control.
     /// Errors: those of [`Session::settings`], [`Session::motion`] and [`Session::initial_state`],
-    /// all at once; then a robot whose accelerations differ from the scene's, as those of a robot
-    /// generated from the robot's file alone, without the scene's gravity and effects (use
+    /// all at once; then a robot with accelerations that differ from the scene's, for example a
+    /// robot generated from the robot's file alone, without the scene's gravity and effects (use
     /// [`Session::motion`] to run such a robot). An error during the run is in [`Outcome::error`].
     pub fn run<R: Dynamics<f64>, S: AsRef<str>>(&self, robot: &R, frames: &[S]) -> Result<Outcome, MotionErrors> {
         let (mut motion, initial) = self.ready(robot, frames)?;
@@ -185,7 +185,7 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
         let wall = clock.elapsed();
         let error = match result {
             Ok(()) => None,
-            // Nothing was done yet.
+            // The run has not started.
             Err(e @ (SimulateError::Settings(_) | SimulateError::State(_) | SimulateError::Function(_))) => return Err(refused(e)),
             Err(e) => Some(e),
         };

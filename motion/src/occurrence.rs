@@ -25,7 +25,7 @@ pub struct SceneEvent {
     /// Whether the condition begins (a limit is reached, the ground is touched, the joint stops
     /// sliding, the ball is hit) or ends (the joint comes back, the link leaves the ground, the
     /// joint starts to slide, [`SLIDING`](articulated::simulate::SLIDING)). The ball's event occurs
-    /// once; false means that nothing moved towards the ball.
+    /// once; false means that the link did not move towards the ball.
     pub begins: bool,
 }
 

@@ -10,7 +10,7 @@ use articulated_core::index::{BodyId, ById, FrameId};
 
 use crate::session::{Session, field};
 
-/// A link whose collision geometry is deeper in a plane of contact than the contacts of its body.
+/// A link with collision geometry deeper in a plane of contact than the contacts of its body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Penetration {
     /// The link.
@@ -39,7 +39,7 @@ struct Part<'s> {
     /// The link's frame.
     frame: FrameId,
     spheres: Vec<ContactSphere>,
-    /// How much deeper than contact it may be, m.
+    /// Tolerated depth beyond that of the contacts, m.
     beside: f64,
 }
 
@@ -60,7 +60,7 @@ pub(crate) struct Depths<'s> {
     planes: Vec<Plane>,
     parts: Vec<Part<'s>>,
     found: Vec<Option<Penetration>>,
-    /// Depth of each part in the first state, m; 0 where it was not too deep.
+    /// Depth of each part in the first state, m; 0 if it was not too deep.
     at_start: Option<Vec<f64>>,
 }
 
@@ -93,7 +93,7 @@ impl<'s> Depths<'s> {
         self.at_start.get_or_insert_with(depths);
     }
 
-    /// The links that went too deep, the deepest first. Those that were there from the start on are
+    /// The links that went too deep, the deepest first. Those that were too deep from the start are
     /// left out unless they sank much deeper.
     pub(crate) fn found(self) -> Vec<Penetration> {
         let at_start = self.at_start.unwrap_or_default();
@@ -108,8 +108,8 @@ fn deepest_first(mut found: Vec<Penetration>) -> Vec<Penetration> {
 }
 
 impl Session {
-    /// Links that are below a plane of contact at the coordinates q `[nq]` where nothing holds
-    /// them, the deepest first; none where the scene has no contact.
+    /// Links that are below a plane of contact, without a contact that holds them, at the
+    /// coordinates q `[nq]`; the deepest first. Empty if the scene has no contact.
     pub fn penetrations_at(&self, q: &[f64]) -> Vec<Penetration> {
         let (mut depths, mut places) = (Depths::of(self), vec![0.0; 12 * self.model.frames().len()]);
         if depths.parts.is_empty() || self.model.placements(&mut self.model.workspace(), q, &mut places).is_err() {
@@ -168,7 +168,7 @@ impl Session {
         moving.map(|(link, frame)| Part::of(link, frame)).filter(|part| !part.spheres.is_empty()).collect()
     }
 
-    /// How deep the deepest contact of each body is in a plane, m; 0 where none is.
+    /// Depth of the deepest contact of each body in a plane, m; 0 without contact.
     fn held(&self, touches: &[Touch], plane: &Plane, places: &[f64]) -> ById<BodyId, f64> {
         let mut held: ById<BodyId, f64> = vec![0.0; self.model.bodies().len()].into();
         for touch in touches.iter().filter(|touch| touch.plane == *plane) {
@@ -197,7 +197,7 @@ fn diagonal(spheres: &[ContactSphere]) -> f64 {
     (0..3).map(|k| extent(k) * extent(k)).sum::<f64>().sqrt()
 }
 
-/// How deep a sphere of a frame with this placement is in a plane, m.
+/// Depth in a plane of a sphere of a frame with this placement, m.
 fn depth(sphere: &ContactSphere, x: &[f64], (normal, height): &Plane) -> f64 {
     let center = |k: usize| x[9 + k] + (0..3).map(|c| x[3 * k + c] * sphere.center[c]).sum::<f64>();
     height + sphere.radius - (0..3).map(|k| normal[k] * center(k)).sum::<f64>()

@@ -15,7 +15,7 @@ pub(crate) struct Projectile {
     spent: Cell<bool>,
     /// The motion ends with its event.
     pub(crate) ends: Cell<bool>,
-    /// Nothing moved towards it at its event.
+    /// The link did not move towards the ball at its event.
     pub(crate) missed: Cell<bool>,
     /// Kinetic energy gained, J, once it is hit.
     pub(crate) energy: Cell<Option<f64>>,

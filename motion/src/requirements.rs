@@ -9,8 +9,8 @@ use crate::error::Fault;
 use crate::session::Session;
 
 impl Session {
-    /// The links whose frames the scene's events need, each once. A robot generated for this motion
-    /// must have these frames.
+    /// The links whose frames the scene's events need, without duplicates. A robot generated for
+    /// this motion must have these frames.
     pub fn frames(&self) -> Vec<String> {
         let mut all: Vec<String> = self.frame_users().map(|(_, link)| link.to_owned()).collect();
         all.sort_unstable();

@@ -7,32 +7,32 @@ use articulated_core::Plain;
 
 use crate::touch::{Contact, Touch};
 
-/// A sphere that rolls so fast that the tolerance of its rates is larger than the sliding speed
-/// below which its friction is smooth: steps are rejected, or pass over the layer.
+/// A sphere that rolls so fast that the tolerance of its rates exceeds the sliding speed below
+/// which its friction is smooth: steps are rejected, or pass over the layer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rolling {
     /// The scene's file.
     pub file: String,
     /// The link.
     pub on: String,
-    /// Largest sum of the two speeds whose difference is the sliding speed, m/s: that of the
-    /// centre, and that of the lowest point about it.
+    /// Largest sum of the two speeds whose difference is the sliding speed, m/s: the centre's
+    /// speed, and that of the lowest point about the centre.
     pub rates: f64,
     /// The smoothing speed of its friction, m/s.
     pub speed: f64,
-    /// What the tolerance makes of the sliding speed, m/s.
+    /// Error of the sliding speed by the tolerance, m/s.
     pub tolerance: f64,
     /// The relative tolerance.
     pub rtol: f64,
 }
 
-/// Part of the motion from which on it is reported.
+/// Minimum part of the motion for a report.
 const PART: f64 = 0.01;
 
 /// The rolling contacts of a motion, step by step.
 pub(crate) struct Rollers {
-    /// What is unknown of a difference of rates, in parts of them: the norm of the error is a mean
-    /// over all numbers of a step, so one of them may be off by more.
+    /// Relative error of a difference of rates: the norm of the error is a mean over all numbers of
+    /// a step, so one number may have a larger error.
     unknown: f64,
     rtol: f64,
     /// Of each contact the time that it rolls unresolved, s, and the largest rates, m/s.
@@ -60,7 +60,7 @@ impl Rollers {
         }
     }
 
-    /// Those that roll like that for a part of the motion; of each link the fastest.
+    /// Those that roll unresolved for this part of the motion; the fastest one of each link.
     pub(crate) fn found(self, contacts: &[Contact], file: &str) -> Vec<Rolling> {
         let mut found: Vec<Rolling> = Vec::new();
         for (contact, (rolls, rates)) in contacts.iter().zip(self.each) {

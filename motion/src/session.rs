@@ -26,7 +26,7 @@ pub struct Session {
     pub report: Report,
     /// Warnings about the robot.
     pub warnings: Vec<Diagnostic>,
-    /// What the robot's file says beside the robot: actuators, keyframes.
+    /// The world of the robot's file: actuators, keyframes.
     pub world: World,
     folder: PathBuf,
 }
@@ -41,7 +41,7 @@ impl Session {
         Ok(Self::of(articulated_scene::open(path, &[])?)?.in_folder(folder))
     }
 
-    /// From a scene whose documents are read, or are supplied by a program ([`Opened::new`]).
+    /// From a scene with documents that are read, or supplied by a program ([`Opened::new`]).
     /// Errors: as [`Session::open`].
     pub fn of(opened: Opened) -> Result<Self, Diagnostics> {
         let BuiltRobot { reading, model, resolved, .. } = opened.build()?;
@@ -67,13 +67,13 @@ impl Session {
         }
     }
 
-    /// With what the robot's file says beside the robot: states, actuators, the time step.
+    /// With the world of the robot's file: states, actuators, the time step.
     #[must_use]
     pub fn in_world(self, world: World) -> Self {
         Self { scene: self.scene.with_step_of(&world), world, ..self }
     }
 
-    /// Resolves paths in the scene relative to this folder, that of the scene's file.
+    /// Resolves paths in the scene relative to this folder, usually that of the scene's file.
     #[must_use]
     pub fn in_folder(mut self, folder: impl Into<PathBuf>) -> Self {
         self.folder = folder.into();
@@ -99,8 +99,8 @@ impl Session {
     }
 }
 
-/// The numbers of a field of an effect, by the field's name; none where the effect has no such
-/// field, or not as many numbers as it should.
+/// The numbers of a field of an effect, by the field's name; empty if the effect has no such field,
+/// or has too few numbers.
 pub fn field<'a>(applied: &'a Applied, name: &str) -> &'a [f64] {
     let mut start = 0;
     for f in applied.effect.row().fields_of(applied.parameters.len()) {

@@ -18,8 +18,8 @@ impl Session {
         Ok(simulation.settings.clone())
     }
 
-    /// Checks settings for this scene. Errors: settings that do not suit its robot, or else a ball
-    /// that is hit while nothing moves and smoothing speeds that the tolerances do not resolve.
+    /// Checks settings for this scene. Errors: settings that do not suit its robot; otherwise a
+    /// ball hit outside the motion and smoothing speeds that the tolerances do not resolve.
     pub fn check(&self, settings: &Settings) -> Result<(), MotionErrors> {
         MotionErrors::none(&self.scene.file, self.faults_of(settings))
     }
@@ -27,7 +27,7 @@ impl Session {
     pub(crate) fn faults_of(&self, settings: &Settings) -> Vec<Fault> {
         let problems: Vec<Fault> = settings.problems(self.model.shape()).into_iter().map(Fault::Setting).collect();
         if !problems.is_empty() {
-            // Of times that are none nothing is to be said.
+            // Invalid times are not checked further.
             return problems;
         }
         self.in_time(settings).into_iter().chain(self.unresolved_speeds(settings)).collect()

@@ -1,7 +1,7 @@
 //! Contacts that move although friction would hold them.
 //!
-//! A contact that is not damped vibrates at rest, and slides a little whenever it presses less.
-//! Over a while it needs less than the friction it has, and moves all the same.
+//! An undamped contact vibrates at rest, and slides a little whenever it presses less. Over a while
+//! it needs less than the available friction, and moves all the same.
 
 use std::fmt;
 
@@ -11,21 +11,21 @@ use articulated_core::spatial::Vector3;
 
 use crate::touch::{Contact, Touch};
 
-/// A link whose contacts move although friction would hold them.
+/// A link with contacts that move although friction would hold them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slide {
     /// The scene's file.
     pub file: String,
     /// The link.
     pub on: String,
-    /// How far it moved in that way, m.
+    /// Its path while sliding, m.
     pub distance: f64,
     /// For how long, s.
     pub time: f64,
-    /// The mean force across the normal, in parts of the largest that friction has.
+    /// The mean force across the normal, relative to the maximum friction force.
     pub part: f64,
-    /// A damping time that damps the contacts under their load critically, s: 2 √(m/k), where m is
-    /// the mass that rests on each.
+    /// A damping time that damps the contacts under their load critically, s: 2 √(m/k), with the
+    /// mass m that rests on each.
     pub damping_time: f64,
 }
 
@@ -35,23 +35,24 @@ const WINDOW: f64 = 0.2;
 /// A link that is off the plane for longer, s, lifts its contacts: it does not rest.
 const LIFTED: f64 = 0.1;
 
-/// Parts of friction up to which it would hold.
+/// Part of friction up to which it would hold.
 const HOLDS: f64 = 0.9;
 
-/// Windows from which on it is reported: a landing is in one or two.
+/// Minimum number of windows for a report: a landing is in one or two.
 const SEVERAL: u32 = 3;
 
 /// The contacts of one link, step by step.
 pub(crate) struct Sliding {
     on: String,
-    /// Which of the scene's contacts.
+    /// Indices among the scene's contacts.
     members: Vec<usize>,
     window: Window,
-    /// Windows in which it moved like that, and how far, m, and how long, s.
+    /// Windows with sliding, and their path, m, and time, s.
     windows: u32,
     distance: f64,
     time: f64,
-    /// Impulse across the normal and the most that friction has, N·s, of the windows that count.
+    /// Impulse across the normal and the maximum impulse of friction, N·s, over the windows that
+    /// count.
     impulses: [f64; 2],
     /// Mean mass on a contact over its stiffness, kg·m/N, times time.
     loaded: f64,
@@ -68,7 +69,7 @@ struct Window {
     friction: f64,
     /// ∫F_n/k dt, m·s, the mean of the contacts that press.
     depth: f64,
-    /// Time since one of them pressed, s, and the longest so far.
+    /// Time since the last contact that pressed, s, and the longest so far.
     off: f64,
     longest_off: f64,
 }
@@ -134,7 +135,7 @@ impl Sliding {
         }
     }
 
-    /// The link, if it moved like that for several windows. `gravity`: m/s².
+    /// The link, if it slid for several windows. `gravity`: m/s².
     pub(crate) fn found(self, file: &str, gravity: f64) -> Option<Slide> {
         (self.windows >= SEVERAL).then(|| Slide {
             file: file.to_owned(),

@@ -1,4 +1,4 @@
-//! Statistics over the steps of a motion, whatever is recorded.
+//! Statistics over the steps of a motion, independent of the outputs.
 
 use articulated::Dynamics;
 use articulated::simulate::Settings;
@@ -11,7 +11,7 @@ use crate::session::Session;
 use crate::slide::{Slide, Sliding};
 use crate::touch::{Contact, Frames, Touch};
 
-/// What the steps of a motion say of its contacts and of joints with dry friction.
+/// Statistics of contacts and of joints with dry friction over the steps of a motion.
 pub(crate) struct Statistics<'s> {
     session: &'s Session,
     workspace: Workspace<f64>,
@@ -30,7 +30,7 @@ pub(crate) struct Statistics<'s> {
     twists: Vec<f64>,
 }
 
-/// What the steps of a motion say.
+/// Results of the statistics.
 pub(crate) struct Found {
     pub(crate) creep: Vec<Creep>,
     pub(crate) penetrations: Vec<Penetration>,
@@ -39,7 +39,7 @@ pub(crate) struct Found {
 }
 
 impl<'s> Statistics<'s> {
-    /// Of a motion from this state on.
+    /// For a motion from this state on.
     pub(crate) fn from(session: &'s Session, settings: &Settings, q: &[f64], v: &[f64]) -> Self {
         let contacts = session.contacts();
         let (frames, t) = (session.model.frames().len(), settings.start);
@@ -63,7 +63,7 @@ impl<'s> Statistics<'s> {
         statistics
     }
 
-    /// Contacts and depths of a state, into `next`. None where the model does not take it.
+    /// Contacts and depths of a state, into `next`. Empty if the model refuses the state.
     fn look(&mut self, t: f64, q: &[f64], v: &[f64]) {
         self.next.clear();
         let (model, ws) = (&self.session.model, &mut self.workspace);
@@ -96,7 +96,7 @@ impl<'s> Statistics<'s> {
         self.v.copy_from_slice(v);
     }
 
-    /// What was found.
+    /// The results.
     pub(crate) fn found(self) -> Found {
         let (file, gravity) = (&self.session.scene.file, self.session.model.gravity().norm());
         let slides = self.sliding.into_iter().filter_map(|link| link.found(file, gravity)).collect();

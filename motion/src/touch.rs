@@ -1,4 +1,4 @@
-//! The contacts of a scene in a state: where they are, whether they press, and with what force.
+//! The contacts of a scene in a state: position, whether they press, and force.
 
 use articulated_core::effect::{Applied, EffectId, Station, unit, wrench};
 use articulated_core::index::FrameId;
@@ -49,8 +49,8 @@ pub(crate) struct Touch {
     pub(crate) press: f64,
     /// Force across the normal, N.
     pub(crate) drag: Vector3<f64>,
-    /// Sliding speed of the lowest point, m/s, and the sum of the speeds of which it is the
-    /// difference: that of the centre, and that of the lowest point about it.
+    /// Sliding speed of the lowest point, m/s, and the sum of the two speeds whose difference it
+    /// is: the centre's speed, and that of the lowest point about the centre.
     pub(crate) sliding: f64,
     pub(crate) rates: f64,
 }
@@ -84,7 +84,7 @@ impl Contact {
         })
     }
 
-    /// It in a state; at rest at the origin where the state has no such frame.
+    /// The contact in a state; at rest at the origin if the state has no such frame.
     pub(crate) fn at(&self, frames: &Frames<'_>) -> Touch {
         let number = |x: &[f64], each: usize, k: usize| x.get(each * self.frame.0 + k).copied().unwrap_or(0.0);
         let place = |k: usize| number(frames.places, 12, k);
@@ -109,13 +109,13 @@ impl Contact {
         Touch { centre, rotation, presses, press, drag: force - self.normal * press, sliding, rates: carried + turned }
     }
 
-    /// The part of a vector along the plane.
+    /// The component of a vector along the plane.
     pub(crate) fn along_plane(&self, x: Vector3<f64>) -> Vector3<f64> {
         x - self.normal * self.normal.dot(&x)
     }
 
-    /// How far the lowest point of the sphere slides along the plane from one state to a close one,
-    /// m: less than its centre moves where it rolls.
+    /// Path of the sphere's lowest point along the plane from one state to a close one, m: less
+    /// than that of its centre if it rolls.
     pub(crate) fn slip(&self, from: &Touch, to: &Touch) -> Vector3<f64> {
         let turn = to.rotation * from.rotation.transpose();
         let angle = Vector3::new(turn[(2, 1)] - turn[(1, 2)], turn[(0, 2)] - turn[(2, 0)], turn[(1, 0)] - turn[(0, 1)]) * 0.5;

@@ -41,7 +41,7 @@ def _shared(name, value):
         kind = int(value.__dlpack_device__()[0])
     except Exception:
         return None
-    # 1: the CPU. 3, 11, 13: memory of a graphics processor that the CPU reads too.
+    # 1: the CPU. 3, 11, 13: GPU memory that the CPU can read.
     if kind not in (1, 3, 11, 13):
         found = getattr(value, "device", f"kind {kind} of DLPack")
         raise TypeError(f"{name}: found {type(value).__name__} on device {found}, expected one on the CPU")

@@ -118,7 +118,7 @@ def _inertia(value):
     return tuple(array.tolist())
 
 
-# Nothing that looks wrong is allowed, nothing is left out, and no angle is snapped.
+# No exception for suspicious content, nothing left out, and no snapped angle.
 _AS_WRITTEN = ((False, False, False), (), None)
 
 
@@ -139,7 +139,7 @@ class _Source(NamedTuple):
     packages: tuple = ()
     # See `_reading`.
     reading: tuple = _AS_WRITTEN
-    # Whether joints follow others as the file says, and as calls say.
+    # Whether joints follow others according to the file, and according to calls.
     coupling: tuple = (False, ())
 
 
@@ -431,7 +431,8 @@ def _text(function):
 def _reader(function):
     given = "".join(f"{name}, " for name, _, _ in function.takes)
     scope = {}
-    # The names are the table's; Python itself reads the keywords of a call, and refuses wrong ones.
+    # The names are the table's; Python itself parses the keywords of a call, and refuses wrong
+    # ones.
     exec(f"def {function.name}(self, {given}*, threads=None):\n    return ({given}), threads\n", scope)
     return scope[function.name]
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from ._compiled import PREFIX, build, compiler, lengths, sources
 
-# What a wheel has where nothing else is said.
+# Default functions of a wheel.
 FUNCTIONS = (
     "placements",
     "jacobians_body",

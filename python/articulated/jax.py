@@ -65,7 +65,7 @@ def _wrapper(name):
         arrays = [_array(argument, value) for (argument, _), value in zip(takes, arguments)]
         dtype = np.float64 if jax.config.jax_enable_x64 else np.float32
         batch = _gradients.batch_shape(arrays, takes)
-        # Gradients of what is broadcast are summed by JAX.
+        # JAX sums the gradients of broadcast arguments.
         whole = [jnp.broadcast_to(array, batch + shape).astype(dtype) for array, (_, shape) in zip(arrays, takes)]
         return _function(robot, name, threads)(*whole)
 

@@ -50,7 +50,7 @@ def _wrapper(name):
         arguments = _gradients.in_order(name, arguments, named)
         tensors = [_tensor(argument, value) for (argument, _), value in zip(takes, arguments)]
         batch = _gradients.batch_shape(tensors, takes)
-        # Gradients of what is broadcast are summed by PyTorch.
+        # PyTorch sums the gradients of broadcast arguments.
         return _Function.apply(robot, name, threads, *(tensor.expand(batch + shape) for tensor, (_, shape) in zip(tensors, takes)))
 
     return _gradients.document(function, name, "Tensors of float64 on the CPU")

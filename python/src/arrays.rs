@@ -10,7 +10,7 @@ use crate::method::is_finite;
 /// An argument with its states.
 pub(crate) struct Argument<'py> {
     array: PyReadonlyArrayDyn<'py, f64>,
-    /// How many states; `None` for one state without a dimension of its own.
+    /// Number of states; `None` for one state without a dimension of its own.
     pub(crate) states: Option<usize>,
     /// Numbers of one state.
     pub(crate) len: usize,

@@ -1,6 +1,6 @@
 //! The loop over states, in one thread or in several.
 
-// For calls of compiled functions, which check nothing.
+// For calls of compiled functions, which do no checks.
 #![allow(unsafe_code)]
 
 use std::collections::HashMap;
@@ -18,7 +18,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use crate::compiled::Loop;
 use crate::signature::MOST_ARGUMENTS;
 
-/// The most threads of a call.
+/// Maximum number of threads of a call.
 const MOST_THREADS: usize = 1024;
 
 /// States between two looks at signals, so that a user can interrupt a long call.
@@ -42,12 +42,12 @@ impl Workspaces {
     }
 }
 
-/// What computes a function.
+/// Implementation of a function.
 #[derive(Clone, Copy)]
 pub(crate) enum Kernel<'a> {
     /// The library.
     Generic { function: &'static Function<f64>, model: &'a Model<f64>, workspaces: &'a Workspaces },
-    /// Compiled code for the robot whose signature arguments and results are checked with.
+    /// Compiled code for the robot whose signature checks arguments and results.
     Compiled(Loop),
 }
 
@@ -62,8 +62,8 @@ impl Kernel<'_> {
             Self::Compiled(function) => {
                 let mut places = [std::ptr::null(); MOST_ARGUMENTS];
                 places.iter_mut().zip(arguments).for_each(|(place, argument)| *place = argument.as_ptr());
-                // SAFETY: it reads as many numbers of each argument, and writes as many, as the
-                // signature says.
+                // SAFETY: it reads and writes as many numbers, of each argument and of the result,
+                // as the signature has.
                 unsafe { function(1, places.as_ptr(), [0; MOST_ARGUMENTS].as_ptr(), out.as_mut_ptr()) };
                 Ok(())
             }
@@ -99,15 +99,16 @@ impl Call<'_> {
                 let place = |&(all, stride, len): &(&[f64], usize, usize)| all[first * stride..last * stride + len].as_ptr();
                 let places: Vec<*const f64> = self.arguments.iter().map(place).collect();
                 let steps: Vec<usize> = self.arguments.iter().map(|(_, stride, _)| *stride).collect();
-                // SAFETY: for each of so many states it reads as many numbers of each argument,
-                // and writes as many, as the signature says; the slices above have all of them.
+                // SAFETY: for each of `states` states it reads and writes as many numbers, of each
+                // argument and of the result, as the signature has; the slices above contain all of
+                // them.
                 unsafe { function(states, places.as_ptr(), steps.as_ptr(), out.as_mut_ptr()) };
                 Ok(())
             }
         }
     }
 
-    /// Computes all states of `out`, in so many threads.
+    /// Computes all states of `out`, in this number of threads.
     pub(crate) fn run(&self, py: Python<'_>, out: &mut [f64], threads: usize) -> PyResult<()> {
         if out.is_empty() {
             return Ok(());
@@ -158,7 +159,7 @@ pub(crate) fn threads(given: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
     }
     let index = given.call_method0("__index__").map_err(|_| wrong(given.get_type().to_string()))?;
     match index.extract::<usize>() {
-        // Asked once: the system takes as long to answer as some ten states take.
+        // Requested once: the system takes as long to answer as some ten states take.
         Ok(0) => Ok(*ALL.get_or_init(|| std::thread::available_parallelism().map_or(1, usize::from).min(MOST_THREADS))),
         Ok(count @ ..=MOST_THREADS) => Ok(count),
         _ => Err(PyValueError::new_err(format!("threads: found {index}, {expected}"))),
@@ -169,7 +170,7 @@ pub(crate) fn threads(given: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
 /// threads.
 type Pools = HashMap<(u32, usize), Arc<ThreadPool>>;
 
-/// The pool of so many threads; none for one.
+/// The pool of this number of threads; `None` for one.
 fn pool(threads: usize) -> PyResult<Option<Arc<ThreadPool>>> {
     static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
     if threads == 1 {

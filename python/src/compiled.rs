@@ -44,7 +44,7 @@ pub(crate) fn load_compiled<'py>(
     rows: Vec<(usize, String, String, String)>,
 ) -> PyResult<Vec<Bound<'py, PyAny>>> {
     let wrong = |error: libloading::Error| PyRuntimeError::new_err(format!("compile: found no library in {}: {error}", path.display()));
-    // SAFETY: what `_compiled.py` had compiled from generated code, which does nothing when loaded.
+    // SAFETY: `_compiled.py` compiled it from generated code, which runs nothing when loaded.
     let library = Arc::new(unsafe { Library::new(&path) }.map_err(wrong)?);
     let one = |(index, symbol, name, text): (usize, String, String, String)| {
         // SAFETY: `_compiled.py` writes a function of this type under this name, for a robot of

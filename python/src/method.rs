@@ -80,7 +80,7 @@ impl Numpy {
     /// A new array of zeros of this size, and its numbers.
     ///
     /// # Safety
-    /// The lock is held. The slice is used before the array is given away.
+    /// The lock is held. The slice is used before the array is passed on.
     unsafe fn zeros<'a>(&self, py: Python<'_>, size: &Size) -> PyResult<(*mut ffi::PyObject, &'a mut [f64])> {
         let mut dims: [npy_intp; 3] = size.dims;
         // SAFETY: NumPy's function, called as it documents: it takes over a reference to the
@@ -133,8 +133,8 @@ unsafe fn of_one_state(
     let numpy = Numpy::get(py);
     let mut arguments: [&[f64]; MOST_ARGUMENTS] = [&[]; MOST_ARGUMENTS];
     for ((argument, object), size) in arguments.iter_mut().zip(given).zip(&signature.arguments) {
-        // SAFETY: nothing below runs Python code before the last use of the slices: creating an
-        // array of numbers does not.
+        // SAFETY: no Python code runs below before the last use of the slices: creating an array of
+        // numbers does not run any.
         *argument = unsafe { numpy.plain(*object, size) }?;
     }
     let arguments = &arguments[..given.len()];
@@ -157,8 +157,8 @@ unsafe fn of_one_state(
     })
 }
 
-/// The arguments in order, of a call with `positional` ones and one for each name behind them.
-/// `None`: names are wrong or missing, or there are `threads`, with which another way is taken.
+/// The arguments in order, of a call with `positional` ones and one for each name after them.
+/// `None`: names are wrong or missing, or `threads` is given, which needs the other path.
 ///
 /// # Safety
 /// As [`respond`].
@@ -214,12 +214,12 @@ fn read<'py>(
     Ok((given, Some(threads)))
 }
 
-/// Calls a function with what the interpreter passes. Null, with an error set, where there is no
+/// Calls a function with the interpreter's arguments. Null, with an error set, if there is no
 /// result.
 ///
 /// # Safety
-/// `given` are `count` live objects and those of the keywords that `names`, a tuple or null, has;
-/// the lock is held. So the interpreter calls functions of this sort.
+/// `given` are `count` live objects and those of the keywords in `names`, a tuple or null; the lock
+/// is held. The interpreter calls functions of this kind like this.
 unsafe fn respond(
     robot: &Robot,
     index: usize,

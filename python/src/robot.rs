@@ -42,17 +42,16 @@ pub(crate) struct Robot {
 type Ends = (usize, usize);
 
 /// A robot to append: its file's name, its document, whether it may include files, the link that
-/// carries it, what stands before its names, and the position and roll, pitch and yaw of its root
-/// there.
+/// carries it, the prefix of its names, and the position and roll, pitch and yaw of its root there.
 type AppendedRow = (String, Vec<u8>, bool, String, String, [f64; 3], [f64; 3]);
 
-/// What names stand for.
+/// Values by name.
 type Names<T> = BTreeMap<String, T>;
 
 /// A load: the link, its mass, its centre of mass, and xx, xy, xz, yy, yz, zz of its inertia.
 type PayloadRow = (String, f64, [f64; 3], [f64; 6]);
 
-/// What the robot does not have and some functions need.
+/// Missing properties of the robot that some functions need.
 struct Lacks {
     massless: Vec<String>,
     mass: bool,
@@ -83,8 +82,8 @@ fn links(model: &Model<f64>) -> Vec<String> {
     model.links().filter_map(|i| model.bodies()[i].link.as_ref()).map(|link| link.name.clone()).collect()
 }
 
-/// The files that a document of a file includes, read with these arguments and packages; none, with
-/// which they are refused, of a text.
+/// The files that the document of a file includes, read with these arguments and packages; for a
+/// text none, and includes are refused.
 fn included(file: &str, document: &[u8], is_file: bool, arguments: &Names<String>, packages: &Names<PathBuf>) -> Included {
     let (arguments, packages) = (arguments.clone(), packages.clone());
     let options = articulated::formats::Options { file: file.to_owned(), arguments, packages, ..articulated::formats::Options::default() };
@@ -109,7 +108,7 @@ impl Robot {
         Self { model, request, signatures, links, warnings, unused, workspaces: Workspaces::default(), lacks: OnceLock::new() }
     }
 
-    /// What computes a row of the table.
+    /// Implementation of a row of the table.
     pub(crate) fn kernel(&self, index: usize) -> Kernel<'_> {
         Kernel::Generic { function: self.signatures[index].function, model: &self.model, workspaces: &self.workspaces }
     }
@@ -279,7 +278,7 @@ impl Robot {
         (options.base, options.gravity, options.wrench_reference) = (base_of(base)?, gravity, reference);
         (options.arguments, options.packages) = (args.into_iter().collect(), packages.into_iter().collect());
         options.included = included(file, document, includes, &options.arguments, &options.packages);
-        // Arguments are those of the robot.
+        // Only the robot itself has arguments.
         for (file, document, includes, ..) in &append {
             options.included.extend(included(file, document, *includes, &Names::default(), &options.packages));
         }

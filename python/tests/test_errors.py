@@ -131,7 +131,7 @@ def test_more_than_memory_holds():
         ROBOT.gravity_torque(q)
     with pytest.raises(MemoryError):
         ROBOT.with_frames([]).random_configuration(0, 10**15)
-    # No memory for the results, but for the arguments.
+    # Memory for the arguments, but not for the results.
     empty = articulated.loads('<robot name="r"><link name="a"/></robot>', frames=["a"] * 1000)
     with pytest.raises((MemoryError, ValueError)):
         empty.placements(np.zeros((10**15, 0)))

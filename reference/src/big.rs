@@ -1,7 +1,7 @@
 //! Reference values: a scalar of 320 bits, some 96 decimal digits.
 //!
-//! Operations are calls, not inlined: algorithms would become several times as large, and as long
-//! to compile, for nothing.
+//! Operations are calls, not inlined: algorithms would become several times as large, and take as
+//! much longer to compile, without benefit.
 
 use std::cell::RefCell;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -49,8 +49,7 @@ fn keep(arena: &mut Arena, number: BigFloat) -> Big {
 }
 
 impl Big {
-    /// Runs `work` and then gives back the room of all numbers that it made: none of them may be
-    /// used afterwards.
+    /// Runs `work` and then frees all numbers that it made: they must not be used afterwards.
     pub fn scope<T>(work: impl FnOnce() -> T) -> T {
         let before = with(|arena| arena.numbers.len());
         let result = work();

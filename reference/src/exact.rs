@@ -8,7 +8,7 @@ use articulated_core::model::{Model, ModelError};
 
 use crate::big::Big;
 
-/// A robot whose functions are computed with [`Big`]; to be made and asked in a [`Big::scope`].
+/// A robot whose functions are computed with [`Big`]; create and use it in a [`Big::scope`].
 pub struct Exact(Form);
 
 enum Form {
@@ -18,7 +18,7 @@ enum Form {
 
 impl Exact {
     /// The textbook's form on the numbers of the description, with a frame for each link; gravity
-    /// in the world frame, m/s². It knows no effects. Errors: those of [`Model::new`].
+    /// in the world frame, m/s². Effects are not included. Errors: those of [`Model::new`].
     pub fn textbook(description: &Description, base: Base, gravity: [f64; 3]) -> Result<Self, ModelError> {
         Ok(Self(Form::Textbook(Box::new(Textbook::new(description, base, gravity)?))))
     }
@@ -28,8 +28,8 @@ impl Exact {
         Self(Form::Library(Box::new(model.cast())))
     }
 
-    /// With the frames of the model, in its order, and its reference of wrenches; `None` where it
-    /// has not all of these links.
+    /// With the frames of the model, in its order, and its reference of wrenches; `None` if a link
+    /// is missing.
     #[must_use]
     pub fn with_frames_of(self, model: &Model<f64>) -> Option<Self> {
         let names: Vec<&str> = model.frames().iter().map(|f| f.name.as_str()).collect();
@@ -40,8 +40,8 @@ impl Exact {
         Some(Self(form))
     }
 
-    /// What a function gives, its arguments in the table's order; `None` where it is not to be had,
-    /// or arguments are of other lengths.
+    /// The result of a function, its arguments in the table's order; `None` if it is not available,
+    /// or the arguments have wrong lengths.
     pub fn call(&self, function: FunctionId, arguments: &[&[Big]]) -> Option<Vec<Big>> {
         let model = match &self.0 {
             Form::Textbook(textbook) => return textbook.call(function.name(), arguments)?.ok(),

@@ -1,8 +1,8 @@
-//! What results are held to: [`Big`], a scalar of 96 digits, and robots in it, [`Exact`];
+//! References for results: [`Big`], a scalar of 96 digits, and robots in it, [`Exact`];
 //! [`Magnitude`], a scalar that has the scale of rounding errors, and these [`scales`].
 //!
-//! A separate crate, since every algorithm is compiled here once more for each of these scalars:
-//! users of [`Exact`] and [`scales`] compile none of them again.
+//! A separate crate, since every algorithm is compiled once more for each of these scalars: users
+//! of [`Exact`] and [`scales`] do not compile them again.
 
 mod big;
 mod exact;

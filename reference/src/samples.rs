@@ -10,8 +10,8 @@ pub(crate) fn bundled(name: &str) -> Model<f64> {
     Model::new(&reading.description, robot.base).expect("a model")
 }
 
-/// Arguments of a function, other ones for each number: configurations as the table draws them, all
-/// else in ±2.
+/// Arguments of a function, different for each number: configurations as the table draws them, all
+/// others in ±2.
 pub(crate) fn arguments(model: &Model<f64>, row: &Function<f64>, number: u64) -> Vec<Vec<f64>> {
     let mut state = number;
     // Knuth's constants, as musl and newlib have them.

@@ -7,14 +7,14 @@ use crate::control::Drive;
 use crate::scene::Scene;
 use crate::simulation::EventClass;
 
-/// The functions that a motion calls, whatever the robot.
+/// The functions that a motion calls, for any robot.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Calls {
     /// Required functions: [`integrate`](FunctionId::integrate) for robots with a quaternion,
     /// `placements` if events need frames, all others for every robot.
     pub required: Vec<FunctionId>,
-    /// Functions by which the recording reports energies and momentum, and losses where effects are
-    /// on; `centroidal_momentum` only for robots with moving mass.
+    /// Functions for the recording's energies and momentum, and for losses if effects are on;
+    /// `centroidal_momentum` only for robots with moving mass.
     pub reported: Vec<FunctionId>,
 }
 
@@ -26,7 +26,7 @@ impl Calls {
 }
 
 impl Scene {
-    /// The functions that the scene's motion calls, with the scene's integrator; none without
+    /// The functions that the scene's motion calls, with the scene's integrator; empty without
     /// `[simulation]`.
     pub fn calls(&self) -> Calls {
         self.simulation.as_ref().map(|simulation| self.calls_with(simulation.settings.integrator)).unwrap_or_default()

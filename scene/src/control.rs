@@ -25,9 +25,9 @@ pub struct Control {
     /// Actuators, springs and dampers of tendons of the robot's file that are left out, each with
     /// its place in the scene.
     pub without: Vec<(String, At)>,
-    /// Where the scene says so.
+    /// Place of the control in the scene.
     pub place: At,
-    /// The file of its table and where the scene names it, also where other keys are wrong.
+    /// The file of its table and its place in the scene, even if other keys are wrong.
     pub table: Option<(String, At)>,
 }
 
@@ -59,7 +59,7 @@ pub enum Drive {
 /// Controls of the actuators of the robot's file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Controls {
-    /// The same all the time: those of a state of the file, or else 0, and these instead.
+    /// Constant: the controls of a keyframe, or 0, then these values.
     Still {
         /// The state of the file, and where the scene names it.
         keyframe: Option<(String, At)>,
@@ -129,7 +129,7 @@ enum Sort {
 const SORTS: &[(&str, Sort)] =
     &[("none", Sort::None), ("torque", Sort::Torque), ("table", Sort::Table), ("pd", Sort::Pd), ("actuators", Sort::Actuators)];
 
-/// Keys of each kind beside `kind`.
+/// Keys of each kind, besides `kind`.
 const OF_SORT: &[(Sort, &[&str])] = &[
     (Sort::None, &[]),
     (Sort::Torque, &["torque"]),
@@ -415,9 +415,8 @@ impl Scene {
         log.result(())
     }
 
-    /// Reports what is wrong with the table of the control, which is in a file: without the robot
-    /// only that it cannot be opened. For a scene that has other mistakes; [`Scene::controller`]
-    /// reports the same.
+    /// Reports errors of the control's table file; without the robot only that it cannot be opened.
+    /// For a scene with other errors; [`Scene::controller`] reports the same.
     pub fn check_table(&self, robot: Option<RobotInWorld<'_>>, read: &mut Reader<'_>, log: &mut Diagnostics) {
         let Some((file, place)) = &self.control.table else { return };
         let mut own = Diagnostics::new(&self.file);
@@ -465,8 +464,8 @@ impl Scene {
         robot.actuators(signal, place, log)
     }
 
-    /// `[nv]`. A gain, one number, of a joint of several degrees of freedom is for all of them;
-    /// torques are required one by one.
+    /// `[nv]`. One gain applies to all degrees of freedom of a joint; torques are required one by
+    /// one.
     fn vector(&self, from: &PerJoint, key: &str, model: &Model<f64>, log: &mut Diagnostics) -> Vec<f64> {
         let mut all = vec![0.0; model.nv()];
         match from {
@@ -481,7 +480,7 @@ impl Scene {
         all
     }
 
-    /// The number for all joints that can be driven: not those of a shaft, nor a floating base.
+    /// The number for all actuated joints: not those of a shaft, nor a floating base.
     fn spread(&self, x: f64, model: &Model<f64>, all: &mut [f64]) {
         let of_shaft = |name: &str| self.shafts.iter().any(|asked| (1..=asked.shaft.segments).any(|k| name == asked.shaft.bending(k)));
         for joint in model.joints().iter().filter(|j| j.name != FLOATING_BASE && !of_shaft(&j.name)) {
@@ -490,7 +489,7 @@ impl Scene {
     }
 }
 
-/// The key of torques; others have gains, of which one may be for all degrees of freedom of a
+/// The key of torques. Other keys are gains: one gain may apply to all degrees of freedom of a
 /// joint.
 const TORQUE: &str = "control.torque";
 

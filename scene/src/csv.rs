@@ -1,5 +1,4 @@
-//! A table over time in a CSV, read line by line: in memory are the numbers that are used, whatever
-//! else the file holds.
+//! A table over time in a CSV, read line by line: only the used numbers are kept in memory.
 
 use crate::table::bare;
 use articulated_core::diagnostic::{At, Code, Diagnostics, quote_number};
@@ -12,26 +11,25 @@ use crate::initial::counted;
 use crate::series::{Places, ROW, Source};
 use crate::slots::Slots;
 
-/// What bounds a table.
+/// Upper bounds of a table.
 #[derive(Clone, Copy)]
 struct Most {
     /// Lines with numbers.
     rows: usize,
-    /// Numbers of all rows together, as the robot has them: 2 GiB.
+    /// Numbers of all rows together, with the robot's row length: 2 GiB.
     numbers: usize,
     /// Bytes of a line, without its end.
     line: u64,
     /// Lines, empty ones too.
     lines: u32,
-    /// Mistakes that are told before the rest is left alone.
+    /// Reported errors; after these, reading stops.
     wrong: usize,
 }
 
 const MOST: Most = Most { rows: 10_000_000, numbers: 1 << 28, line: 1 << 20, lines: 20_000_000, wrong: 100 };
 
-/// The table of a CSV for a robot; columns that are not there are neutral. What is wrong with it is
-/// told of its lines, and no more of them than the number or the name that is wrong; then the table
-/// is empty.
+/// The table of a CSV for a robot; missing columns are neutral. Errors are reported at their lines
+/// and quote only the wrong number or name; the table is then empty.
 pub(crate) fn read(from: Box<dyn BufRead>, hold: bool, slots: &Slots<'_>, log: &mut Diagnostics) -> Series {
     read_at_most(MOST, from, hold, slots, log)
 }
@@ -56,7 +54,7 @@ fn read_at_most(most: Most, from: Box<dyn BufRead>, hold: bool, slots: &Slots<'_
     if log.count() == 0 { table.series } else { Series::default() }
 }
 
-/// The names of the columns after the time; none of what is no table.
+/// The names of the columns after the time; `None` if the line is not a table's header.
 fn columns(text: &str, at: At, slots: &Slots<'_>, log: &mut Diagnostics) -> Option<Vec<String>> {
     let mut names = fields(text).into_iter();
     let first = names.next().unwrap_or_default();
@@ -84,8 +82,7 @@ struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// Takes the lines up to the end, to what bounds a table, or to so many mistakes that the rest
-    /// is left alone.
+    /// Reads lines up to the end, to a bound of the table, or to the maximum number of errors.
     fn fill(&mut self, lines: &mut Lines, most: Most, log: &mut Diagnostics) {
         let neutral = &self.slots.neutral;
         let rows = most.rows.min(most.numbers / neutral.len().max(1));
@@ -106,7 +103,7 @@ impl Table<'_> {
             if self.places.are_all() {
                 self.slots.normalise(&mut row, ("", &|_| at), log);
             }
-            // Of a table that is wrong nothing is used.
+            // A table with errors is not used.
             if log.count() == 0 {
                 self.series.times.push(numbers[0]);
                 self.series.rows.push(row);
@@ -121,7 +118,7 @@ impl Table<'_> {
         self.last = Some(time);
     }
 
-    /// The numbers of a line; none where one of them is wrong.
+    /// The numbers of a line; `None` if one of them is invalid.
     fn row(&self, text: &str, at: At, log: &mut Diagnostics) -> Option<Vec<f64>> {
         let words = fields(text);
         let width = self.columns.len() + 1;
@@ -142,7 +139,7 @@ impl Table<'_> {
     }
 }
 
-/// The lines of a text that are not empty.
+/// The non-empty lines of a text.
 struct Lines {
     from: Box<dyn BufRead>,
     count: u32,
@@ -150,8 +147,8 @@ struct Lines {
 }
 
 impl Lines {
-    /// The next of them; none at the end, and none after one that is no text or too long, which is
-    /// told.
+    /// The next line; `None` at the end and after a line that is not text or too long, which is
+    /// reported.
     fn next(&mut self, log: &mut Diagnostics) -> Option<(At, String)> {
         loop {
             self.count += 1;
@@ -188,8 +185,8 @@ impl Lines {
     }
 }
 
-/// What stands between the commas of a line, without the blanks around it; in quotation marks there
-/// may be commas too, and two marks are one (RFC 4180).
+/// The fields between the commas of a line, trimmed. Quoted fields may contain commas, and two
+/// quotation marks are one (RFC 4180).
 fn fields(line: &str) -> Vec<String> {
     let (mut fields, mut rest) = (Vec::new(), Some(line));
     while let Some(text) = rest {
@@ -200,7 +197,7 @@ fn fields(line: &str) -> Vec<String> {
     fields
 }
 
-/// A field, and what is behind its comma, if there is one.
+/// A field and the text after its comma, if there is one.
 type Field<'a> = (String, Option<&'a str>);
 
 fn up_to_comma(text: &str) -> Field<'_> {
@@ -241,7 +238,7 @@ mod tests {
         Model::new(&description, Base::Fixed).unwrap()
     }
 
-    /// Read within bounds: the table, or all that is told.
+    /// Reads within bounds: the table, or all reported errors.
     fn read_within(most: Most, from: impl BufRead + 'static) -> Result<Series, String> {
         let mut log = Diagnostics::new("t.csv");
         let series = read_at_most(most, Box::new(from), false, &Slots::of_joints(&arm(), Side::V), &mut log);
@@ -259,7 +256,7 @@ mod tests {
         assert_eq!(of_text(few, &table(2)).unwrap().times, [0.0, 1.0]);
         let told = Err("t.csv:4: found row 3, expected at most 2 rows".to_owned());
         assert_eq!((of_text(few, &table(3)), of_text(few, &table(4))), (told.clone(), told));
-        // This robot has one number a row.
+        // This robot has one number per row.
         let told = Err("t.csv:3: found row 2, expected at most 1 rows".to_owned());
         assert_eq!(of_text(Most { numbers: 1, ..MOST }, &table(3)), told);
         let told = Err("t.csv:4: found one line more, expected at most 3 lines".to_owned());
@@ -279,7 +276,7 @@ mod tests {
         }
     }
 
-    /// Garbage that goes on and on is not read to its end.
+    /// Endless garbage is not read to its end.
     #[test]
     fn after_many_mistakes_the_rest_is_left_alone() {
         struct Endless(u64);

@@ -6,10 +6,10 @@ use toml::de::{DeTable, DeValue};
 
 use crate::tree::{Entry, Node, Value};
 
-/// No scene is larger, bytes: tables of torques included.
+/// Maximum size of a scene, bytes: tables of torques included.
 const LARGEST: usize = 16 << 20;
 
-/// The file's table; nothing if it is not TOML.
+/// The file's table; `None` if it is not TOML.
 pub(crate) fn parse(text: &str, log: &mut Diagnostics) -> Option<Node> {
     if text.len() > LARGEST {
         log.error((At::Nowhere, ""), Code::Syntax, format!("{} bytes", text.len()), format!("a scene, of {LARGEST} bytes at most"));
@@ -53,7 +53,7 @@ fn node(value: &Spanned<DeValue<'_>>, at: At, lines: &Lines<'_>) -> Node {
         DeValue::Array(list) => {
             return Node { at: own, value: Value::List(list.iter().map(|one| node(one, item(one, own, lines), lines)).collect()) };
         }
-        // A table under a header begins where its header does, or at its first key.
+        // A table under a header has its header's place, or that of its first key.
         DeValue::Table(table) => return Node { at, value: Value::Table(entries(table, lines)) },
     };
     Node { at: own, value }
@@ -73,7 +73,7 @@ fn integer(digits: &str, radix: u32) -> f64 {
     }
 }
 
-/// Where the lines of a text begin.
+/// Starts of the lines of a text.
 struct Lines<'a> {
     text: &'a str,
     starts: Vec<usize>,
@@ -125,7 +125,7 @@ mod tests {
                 assert!(matches!(node.value, Value::Number(y) if y.to_bits() == x.to_bits()), "{x:e}: {:?}", node.value);
             }
         }
-        // Integers beyond 2⁵³ too, to the nearest double.
+        // Integers beyond 2⁵³ too, rounded to the nearest double.
         let Some(Node { value: Value::Table(entries), .. }) = parse("a = 9007199254740993", &mut log) else { panic!("no table") };
         assert_eq!(entries[0].node.value, Value::Number(9_007_199_254_740_992.0));
     }

@@ -1,5 +1,5 @@
-//! What may follow from a mistake of a scene: a scene with mistakes is looked at further without
-//! the keys that are wrong, and findings that may come from their absence are left out.
+//! Consequences of errors in a scene: a scene with errors is checked further without the wrong
+//! keys, and findings that may come from their absence are left out.
 
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::model::FLOATING_BASE;
@@ -9,7 +9,7 @@ use crate::scene::{KEYS, Scene};
 use crate::shaft;
 use crate::table::MEANT;
 
-/// Keys at the top that change neither how the robot is read nor its links, joints and base.
+/// Keys at the top that change neither the reading of the robot nor its links, joints and base.
 const HARMLESS: [&str; 17] = [
     "summary",
     "gravity",
@@ -30,7 +30,7 @@ const HARMLESS: [&str; 17] = [
     "max_code_size",
 ];
 
-/// Keys at the top that bring no names and take none.
+/// Keys at the top that neither add nor remove names.
 const OF_KNOWN_NAMES: [&str; 3] = ["base", "lock", "coupling"];
 
 impl Scene {
@@ -48,8 +48,8 @@ impl Scene {
         }
     }
 
-    /// The keys at the top that were left out, in whole or in part: of a misspelt one that which
-    /// was meant. Shafts, which bring joints, are a key of their own.
+    /// The keys at the top that were left out, in whole or in part; for a misspelt key, the
+    /// intended one. Shafts, which add joints, are a key of their own.
     fn doubted(&self) -> impl Iterator<Item = &str> {
         self.left_out.iter().filter_map(|path| {
             let mut parts = path.split(['.', '[']);
@@ -66,19 +66,19 @@ impl Scene {
         })
     }
 
-    /// Whether a finding about the robot is one without the keys that were left out, too.
+    /// Whether a finding about the robot does not depend on the keys that were left out.
     fn is_certain(&self, error: &Diagnostic) -> bool {
         let only = |keys: &[&str]| self.doubted().all(|key| HARMLESS.contains(&key) || keys.contains(&key));
         match error.code {
             Code::UnknownFunction | Code::File => true,
-            // A table that cannot be opened is a mistake of its own.
+            // A table that cannot be opened is an error of its own.
             _ if error.field == "control.file" => true,
             Code::UnknownName | Code::UnknownLink | Code::UnknownJoint | Code::DuplicateName | Code::Rename | Code::NameClash => {
                 only(&OF_KNOWN_NAMES) && !(error.field.contains(FLOATING_BASE) && self.doubts("base"))
             }
             // Entries of the list of parameters name effects.
             Code::Parameter => only(&[]) && !self.doubts("effects"),
-            // A joint takes what it lacks from the entry of all joints.
+            // A joint takes its missing numbers from the entry of all joints.
             Code::MissingKey => only(&[]) && !self.doubts("effects"),
             // The word `motion` needs a simulation.
             Code::FunctionSpec => only(&[]) && !self.doubts("simulation"),

@@ -1,5 +1,5 @@
-//! What a scene does to the robot before a model is made of it: joints locked, loads attached,
-//! robots appended, links renamed.
+//! Edits of the robot before its model is made: joints locked, loads attached, robots appended,
+//! links renamed.
 
 use articulated_core::description::{Coupling, Origin, Payload, Rotation};
 use articulated_core::diagnostic::{At, Code, Diagnostics};
@@ -7,7 +7,7 @@ use articulated_core::diagnostic::{At, Code, Diagnostics};
 use crate::table::{Row, Spot};
 use crate::tree::Value;
 
-/// A joint and where it is locked.
+/// A joint and the coordinates at which it is locked.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lock {
     /// The joint.
@@ -67,7 +67,7 @@ pub(crate) fn locks(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Lock> {
 
 /// `{ joint = { joint = […], coefficients = […], offset = 0 }, … }`.
 /// The same, or the word `file`: the couplings of the scene, and whether those of the robot's file
-/// count.
+/// apply.
 pub(crate) fn couplings(spot: &Spot<'_>, log: &mut Diagnostics) -> (Vec<Follower>, bool) {
     match &spot.node.value {
         Value::Text(word) if word == "file" => (Vec::new(), true),
@@ -150,7 +150,7 @@ pub(crate) fn packages(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<(String, S
     entries.iter().filter_map(|e| Some((e.name.clone(), spot.of(e).text(log, "the path of a folder")?.to_owned()))).collect()
 }
 
-/// Where the items of a list, or the entries of a table, stand.
+/// Places of the items of a list, or of the entries of a table.
 pub(crate) fn places(spot: &Spot<'_>) -> Vec<At> {
     match &spot.node.value {
         Value::List(list) => list.iter().map(|item| item.at).collect(),

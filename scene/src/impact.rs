@@ -37,8 +37,8 @@ pub struct Impact {
 /// When the ball is hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum When {
-    /// When the point passes the plane through this place, in the world frame, m, whose normal is
-    /// the impact's: n·(p − ball) rises through zero.
+    /// When the point passes the plane through this place, in the world frame, m, with the impact's
+    /// normal: n·(p − ball) rises through zero.
     Ball([f64; 3]),
     /// At this time, s.
     Time(f64),

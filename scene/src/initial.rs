@@ -36,7 +36,7 @@ pub enum Coordinates {
     All {
         /// The numbers.
         values: Vec<f64>,
-        /// Where the scene says so.
+        /// Place of the list in the scene.
         place: At,
     },
     /// Those of some joints; the others are neutral.
@@ -44,7 +44,7 @@ pub enum Coordinates {
 }
 
 impl Coordinates {
-    /// Where the scene says those of a joint.
+    /// The place of a joint's coordinates in the scene.
     pub(crate) fn place(&self, joint: &str) -> At {
         match self {
             Self::All { place, .. } => *place,
@@ -61,11 +61,11 @@ pub struct Named {
     pub joint: String,
     /// As many as it has.
     pub values: Vec<f64>,
-    /// Where the scene says so.
+    /// Place in the scene.
     pub place: At,
 }
 
-/// Where a floating base is, and how it moves.
+/// Place and velocity of a floating base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaseState {
     /// Its origin in the world frame, m.
@@ -76,7 +76,7 @@ pub struct BaseState {
     pub angular: [f64; 3],
     /// Velocity of its origin in its own axes, m/s.
     pub linear: [f64; 3],
-    /// Where the scene says so.
+    /// Place in the scene.
     pub place: At,
 }
 
@@ -179,7 +179,7 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Initial {
     initial
 }
 
-/// A list has the numbers of a floating base too, which `base` may not give beside it.
+/// A list contains the numbers of a floating base, so `base` must not give them again.
 fn base_once(coordinates: &Coordinates, key: &str, of_base: &[&str], initial: &Spot<'_>, log: &mut Diagnostics) {
     let has_base = match coordinates {
         Coordinates::Neutral => false,
@@ -276,7 +276,7 @@ pub(crate) fn neutral(model: &Model<f64>) -> Vec<f64> {
     q
 }
 
-/// Writes what the scene says into `into`, `[nq]` or `[nv]`.
+/// Writes the scene's numbers into `into`, `[nq]` or `[nv]`.
 pub(crate) fn fill(from: &Coordinates, key: &str, model: &Model<f64>, side: Side, into: &mut [f64], log: &mut Diagnostics) {
     match from {
         Coordinates::Neutral => {}
@@ -316,7 +316,7 @@ pub(crate) fn no_joint(log: &mut Diagnostics, at: At, key: &str, name: &str, mod
     log.unknown(((at, key), Code::UnknownName), ("a joint that is not there, or is locked".into(), name), "a joint that moves", names);
 }
 
-/// Quaternions to norm one; `place`: where those of a joint are given.
+/// Normalises quaternions; `place`: where those of a joint are given.
 pub(crate) fn normalise(model: &Model<f64>, q: &mut [f64], (key, place): (&str, &dyn Fn(&str) -> At), log: &mut Diagnostics) {
     for (joint, quaternion) in model.joints().iter().filter_map(|j| Some((j, j.quaternion()?))) {
         if let Err(norm) = normalise_input(&mut q[quaternion]) {

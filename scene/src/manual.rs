@@ -1,5 +1,4 @@
-//! The tables of `docs/scenes.md` and `docs/effects.md`, made from the tables that scenes are read
-//! by.
+//! The tables of `docs/scenes.md` and `docs/effects.md`, generated from the tables of the reader.
 
 use std::fmt::Write;
 
@@ -45,7 +44,7 @@ fn list() -> String {
     out
 }
 
-/// What may stand in the place of a table.
+/// The short forms that replace a table.
 fn ways(effect: &Effect) -> String {
     let mut ways = Vec::new();
     if crate::effects::shorthand(effect) {

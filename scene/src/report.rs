@@ -9,7 +9,7 @@ use articulated_core::effect::{EffectId, On};
 /// The source of numbers that come from collision geometry.
 pub(crate) const COLLISION: &str = "collision";
 
-/// What of a scene is on, what is off, and what of the robot's file is not used.
+/// Active effects, inactive effects and unused content of the robot's file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
     /// Effects that are on, in the order in which they are applied.
@@ -24,8 +24,8 @@ pub struct Report {
     pub links: usize,
 }
 
-/// On how many joints or links an effect is, and where its numbers come from. An effect that takes
-/// any of its numbers from the robot's file counts as one of the file.
+/// Number of joints or links of an effect, and the source of its numbers. An effect with any number
+/// from the robot's file counts as one from the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EffectCount {
     /// Which.
@@ -34,11 +34,11 @@ pub struct EffectCount {
     pub on: usize,
     /// Number of joints or links that move.
     pub of: usize,
-    /// Number of those whose numbers come from the robot's file.
+    /// Number of those with numbers from the robot's file.
     pub from_file: usize,
-    /// Number of those whose points come from collision geometry.
+    /// Number of those with points from collision geometry.
     pub from_collision: usize,
-    /// Number of those whose numbers the scene gives.
+    /// Number of those with numbers from the scene.
     pub from_scene: usize,
 }
 
@@ -66,7 +66,7 @@ impl Report {
     }
 }
 
-/// Where the numbers of an effect come from.
+/// Source of an effect's numbers.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Source {
     File,
@@ -108,7 +108,7 @@ pub struct EffectOn {
     pub on: String,
     /// Its numbers.
     pub numbers: Vec<Number>,
-    /// Where the scene says so.
+    /// Place in the scene.
     pub place: At,
 }
 
@@ -139,11 +139,11 @@ pub struct EffectOff {
 pub enum Why {
     /// The scene does not mention it.
     NotAsked,
-    /// The scene says that it is off, or gives it zeros.
+    /// The scene turns it off or sets it to zero.
     SaidSo,
-    /// Its numbers should come from the file, which has none.
+    /// Its numbers are requested from the file, which does not contain them.
     NotInUrdf,
-    /// It is requested for all joints or links, and there are none that it can act on.
+    /// It is requested for all joints or links, and it applies to none of them.
     Nowhere,
 }
 

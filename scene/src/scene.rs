@@ -23,43 +23,43 @@ use crate::simulation::{self, Simulation};
 use crate::table::{Row, Spot};
 use crate::tree::{Node, Value};
 
-/// A scene as its file has it: names are not looked up yet, files not opened.
+/// A scene in the form of its file: names are not looked up yet, files not opened.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
-    /// The file, as it was called when it was read.
+    /// The file's name when it was read.
     pub file: String,
-    /// What it is, in a line.
+    /// Summary, one line.
     pub summary: String,
     /// The robot.
     pub robot: Robot,
-    /// The base; `None`: that which a bundled robot is meant for, fixed for others.
+    /// The base; `None`: the intended one of a bundled robot, fixed for others.
     pub base: Option<Base>,
     /// Gravity in the world frame, m/s²; `None`: that of the robot's file, or else
     /// standard gravity.
     pub gravity: Option<[f64; 3]>,
-    /// Edits of the robot, and what code to make of it.
+    /// Edits of the robot, and options of its generated code.
     pub code: CodeOptions,
-    /// Effects, as they are asked for.
+    /// Requested effects.
     pub effects: Vec<EffectRequest>,
     /// Shafts that bend.
     pub shafts: Vec<ShaftRequest>,
-    /// How to simulate it; `None`: the scene does not say.
+    /// Settings of the simulation; `None`: the scene has none.
     pub simulation: Option<Simulation>,
     /// The state that a simulation starts from.
     pub initial: Initial,
-    /// What drives the joints.
+    /// Actuation of the joints.
     pub control: Control,
     /// A ball to be hit.
     pub impact: Option<Impact>,
-    /// Paths of the keys that are wrong in its text and were left out: see
-    /// [`Scene::keep_certain`]. Empty for a scene without mistakes.
+    /// Paths of the keys that are invalid in its text and were left out: see
+    /// [`Scene::keep_certain`]. Empty for a scene without errors.
     pub left_out: Vec<String>,
 }
 
-/// Where the robot is to be had.
+/// Source of the robot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Robot {
-    /// Whoever uses the scene has it.
+    /// Supplied by the program that uses the scene.
     #[default]
     Given,
     /// A bundled robot, by its name.
@@ -68,17 +68,17 @@ pub enum Robot {
     File(String),
 }
 
-/// Edits of the robot, and choices of the code that is generated for it. `None`: the default of the
-/// one who generates.
+/// Edits of the robot, and choices of the code that is generated for it. `None`: the generating
+/// program's default.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CodeOptions {
     /// The functions wanted.
     pub functions: Option<Vec<String>>,
     /// Constants of the model that stay inputs.
     pub parameters: Option<Vec<String>>,
-    /// Links whose frames the functions of frames give.
+    /// Links whose frames the functions of frames return.
     pub frames: Option<Vec<String>>,
-    /// What the wrenches that functions take refer to.
+    /// Reference of the wrenches that functions take.
     pub wrenches_in: Option<Reference>,
     /// Joints that follow others.
     pub coupling: Vec<Follower>,
@@ -98,30 +98,29 @@ pub struct CodeOptions {
     pub packages: Vec<(String, String)>,
     /// Accept inertias with a principal moment below zero.
     pub allow_unphysical_inertia: Option<bool>,
-    /// Take the first of tags of a URDF that should be there once.
+    /// If a unique tag of a URDF is repeated, take the first.
     pub first_of_duplicates: Option<bool>,
     /// Elements of an MJCF that are not read, to leave out.
     pub leave_out: Option<BTreeSet<LeaveOut>>,
     /// Read a URDF of an unknown version.
     pub allow_unknown_version: Option<bool>,
-    /// Take angles this near to a multiple of π/2 as that, rad.
+    /// Rounds angles that are this near to a multiple of π/2, rad.
     pub snap_angles: Option<f64>,
     /// Limbs that are alike at once.
     pub limbs: Option<bool>,
-    /// Types of numbers for which there are functions of many states.
+    /// Types of numbers for functions of many states.
     pub batch: Option<Vec<Real>>,
     /// How accurate the functions are.
     pub level: Option<Precision>,
     /// No `unsafe` in the generated code.
     pub forbid_unsafe: Option<bool>,
-    /// How much code the functions may become, MB.
+    /// Maximum size of the functions' code, MB.
     pub max_code_size: Option<u64>,
-    /// Where the scene says so.
+    /// Places of these in the scene.
     pub places: Places,
 }
 
-/// Where a scene names what only the robot, or who uses the scene, shows to be wrong: of a list,
-/// each of its items.
+/// Places of names that only the robot, or the scene's user, can check; for a list, of each item.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Places {
     /// A bundled robot, or a robot's file.
@@ -147,8 +146,8 @@ impl Scene {
         log.result(scene)
     }
 
-    /// As [`Scene::read`], and reports to a collector. What is wrong is left out: the rest of the
-    /// scene can be looked at further. `None`: the text is not TOML.
+    /// As [`Scene::read`], and reports to a collector. Invalid content is left out, so that the
+    /// rest of the scene can be checked further. `None`: the text is not TOML.
     pub fn read_into(file: &str, text: &str, log: &mut Diagnostics) -> Option<Self> {
         let mut own = Diagnostics::new(file);
         let root = document::parse(text, &mut own);
@@ -157,8 +156,8 @@ impl Scene {
         scene
     }
 
-    /// The scene in a text that no file has, for the robot in `file`: findings name that file and
-    /// no place in it.
+    /// The scene in a text without a file, for the robot in `file`: findings name that file and no
+    /// place in it.
     ///
     /// # Errors
     /// As [`Scene::read`].
@@ -197,8 +196,8 @@ impl Scene {
         }
     }
 
-    /// The scene with what a table says in the place of what it says itself, as far as nothing is
-    /// wrong with it; and what is wrong. For the macro, which reads the keys `own` itself.
+    /// The scene with the valid settings of a table in place of its own, and the table's errors.
+    /// For the macro, which reads the keys `own` itself.
     pub fn overlaid(mut self, said: &Node, own: &[&str]) -> (Self, Vec<Diagnostic>) {
         let mut log = Diagnostics::new(&self.file);
         let rows: Vec<&Row<Self>> = KEYS.iter().filter(|row| !OF_MOTION.contains(&row.name)).collect();
@@ -218,13 +217,13 @@ impl Scene {
         (self, wrong)
     }
 
-    /// Whether it asks for any effect that is not off.
+    /// Whether it requests any effect that is not off.
     pub fn has_effects(&self) -> bool {
         self.effects.iter().any(|asked| asked.says.is_some()) || !self.shafts.is_empty()
     }
 
-    /// The integrator of a motion that names none: `rodas4` where smoothed friction or contact
-    /// makes it stiff, else `dopri5`.
+    /// The integrator of a motion that names none: `rodas4` if smoothed friction or contact makes
+    /// it stiff, else `dopri5`.
     pub fn default_integrator(&self) -> IntegratorId {
         let stiff = |asked: &EffectRequest| matches!(asked.effect, EffectId::friction | EffectId::contact) && asked.says.is_some();
         if self.effects.iter().any(stiff) { IntegratorId::rodas4 } else { IntegratorId::dopri5 }
@@ -260,11 +259,11 @@ const REALS: &[(&str, Real)] = &[("f64", Real::F64), ("f32", Real::F32)];
 const REFERENCES: &[(&str, Reference)] =
     &[("body", Reference::Body), ("world", Reference::World), ("world_aligned", Reference::WorldAligned)];
 
-/// Keys that say nothing of the code that is generated, and a robot that is known by its name,
-/// which only files have.
+/// Keys without influence on the generated code, and a robot known by its name, which only files
+/// have.
 const OF_MOTION: [&str; 6] = ["summary", "robot", "simulation", "initial", "control", "impact"];
 
-/// All keys at the top of a scene, in the order in which they are listed to people.
+/// All keys at the top of a scene, in the order of their documentation.
 pub(crate) const KEYS: &[Row<Scene>] = &[
     Row {
         name: "summary",
@@ -548,7 +547,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
     },
 ];
 
-/// The bound is that of the readers.
+/// The bound is the readers' bound.
 fn snap_angles(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<f64> {
     match spot.node.value {
         Value::Number(x) if can_snap(x) => return Some(x),

@@ -12,7 +12,7 @@ use crate::csv;
 use crate::initial::counted;
 use crate::slots::Slots;
 
-/// Where a table over time is to be had.
+/// Source of a table over time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Source {
     /// A CSV, relative to the scene's folder; otherwise the rows are here.
@@ -23,31 +23,30 @@ pub struct Source {
     pub rows: Vec<Vec<f64>>,
     /// Each row holds until the next; otherwise linear between them.
     pub hold: bool,
-    /// Where the scene names the file, or the columns.
+    /// Place of the file, or of the columns, in the scene.
     pub place: At,
     /// Where each column is named.
     pub column_places: Vec<At>,
-    /// Where each row stands.
+    /// Place of each row.
     pub row_places: Vec<At>,
 }
 
-/// Gives what a file holds by its name in the scene, to be read line by line, or says why not.
+/// Opens a file by its name in the scene, to be read line by line, or returns the reason why not.
 pub type Reader<'a> = dyn FnMut(&str) -> Result<Box<dyn BufRead>, String> + 'a;
 
 /// The way to a column or a row, by its number.
 type Key = dyn Fn(usize) -> String;
 
-/// The place of one of them.
+/// The i-th place.
 fn at(places: &[At], i: usize) -> At {
     places.get(i).copied().unwrap_or_default()
 }
 
-/// What a row has to have.
+/// Content of a row.
 pub(crate) const ROW: &str = "the time and one for each of the columns";
 
 impl Source {
-    /// What can be told of rows in the scene without the robot, of the keys that are `right` by
-    /// themselves.
+    /// Checks the rows in the scene without the robot, for the keys that are `right` by themselves.
     pub(crate) fn check(&self, key: &str, right: &[&str], log: &mut Diagnostics) {
         let [columns, rows] = ["columns", "rows"].map(|name| right.contains(&name));
         let missing = match (columns && self.columns.is_empty(), rows && self.rows.is_empty()) {
@@ -71,8 +70,8 @@ impl Source {
         }
     }
 
-    /// Each column is there once, by its name; other names of one place only the robot shows, see
-    /// [`Source::places`].
+    /// Each column occurs once, by its name; different names of one place are only found with the
+    /// robot, see [`Source::places`].
     pub(crate) fn check_columns(&self, key: &dyn Fn(usize) -> String, log: &mut Diagnostics) {
         let mut seen = HashSet::new();
         for (i, name) in self.columns.iter().enumerate().filter(|(_, name)| !seen.insert(name.as_str())) {
@@ -105,8 +104,8 @@ impl Source {
         }
     }
 
-    /// The table with rows of these numbers; those without a column are neutral. Without `read` a
-    /// file is left alone.
+    /// The table with rows of these numbers; those without a column are neutral. Without `read` no
+    /// file is opened.
     pub(crate) fn series(&self, slots: &Slots<'_>, read: Option<&mut Reader<'_>>, log: &mut Diagnostics) -> Series {
         let Some(file) = &self.file else {
             let keys: [&Key; 2] = [&|i| format!("control.columns[{i}]"), &|i| format!("control.rows[{i}]")];
@@ -122,7 +121,7 @@ impl Source {
         }
     }
 
-    /// The table of a CSV. What is wrong with it is told of its own lines.
+    /// The table of a CSV. Its errors are reported at their lines in the file.
     fn parsed(&self, file: &str, from: Box<dyn BufRead>, slots: &Slots<'_>, log: &mut Diagnostics) -> Series {
         let folder = Path::new(log.file()).parent().unwrap_or(Path::new(""));
         let mut own = Diagnostics::new(&folder.join(file).display().to_string());
@@ -143,7 +142,7 @@ impl Source {
     fn check_places(&self, places: &Places, key: &Key, log: &mut Diagnostics) {
         let (mut names, mut taken) = (HashSet::new(), HashMap::new());
         for (i, (name, place)) in self.columns.iter().zip(&places.0).enumerate() {
-            // A name that is there twice is told by `check_columns`.
+            // `check_columns` reports duplicate names.
             let (Some(place), true) = (place, names.insert(name)) else { continue };
             if let Some(before) = taken.insert(place, name) {
                 let found = format!("the column {}, which is {} again", quote(name), quote(before));
@@ -170,7 +169,7 @@ impl Source {
     }
 }
 
-/// Reports a file of a table that cannot be read.
+/// Reports an unreadable file of a table.
 pub(crate) fn unreadable(file: &str, place: At, reason: &str, log: &mut Diagnostics) {
     let found = format!("{}, which cannot be read ({reason})", quote(file));
     log.error((place, "control.file"), Code::UnknownName, found, "a CSV with a first line that names its columns");
@@ -179,8 +178,8 @@ pub(crate) fn unreadable(file: &str, place: At, reason: &str, log: &mut Diagnost
 /// Opens the file of a table, seen from `folder`, to be read line by line.
 ///
 /// # Errors
-/// A file that is unreadable, not regular, or larger than any table (4 GiB); of one that is not
-/// there the name that was meant.
+/// A file that is unreadable, not regular, or larger than any table (4 GiB); for a missing file,
+/// the intended name.
 pub fn open_table(folder: &Path, name: &str) -> Result<Box<dyn BufRead>, String> {
     let path = folder.join(name);
     let file = open_file(&path, MOST_OF_TABLE).map_err(|error| {
@@ -190,10 +189,10 @@ pub fn open_table(folder: &Path, name: &str) -> Result<Box<dyn BufRead>, String>
     Ok(Box::new(BufReader::new(file)))
 }
 
-/// No table of control is larger, bytes: ten million rows, of which none has more, of 400 each.
+/// Maximum size of a control table, bytes: ten million rows, the maximum, of 400 bytes each.
 const MOST_OF_TABLE: u64 = 4 << 30;
 
-/// Where in a row the number of each column goes; nowhere if no number has such a name.
+/// Index in a row for the number of each column; `None` if no number has such a name.
 pub(crate) struct Places(Vec<Option<usize>>);
 
 impl Places {

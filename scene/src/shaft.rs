@@ -14,7 +14,7 @@ pub(crate) const NAME: &str = "shaft";
 pub struct ShaftRequest {
     /// The shaft.
     pub shaft: Shaft,
-    /// Where the scene says so.
+    /// Place in the scene.
     pub place: At,
 }
 

@@ -1,4 +1,4 @@
-//! `[simulation]`: from when to when, by which integrator, how exactly, and what is recorded.
+//! `[simulation]`: start and end time, integrator, accuracy and outputs.
 
 use articulated_core::diagnostic::{At, Code, Diagnostics};
 use std::iter;
@@ -13,18 +13,18 @@ use crate::tree::Value;
 /// How to simulate.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Simulation {
-    /// By what, from when to when, how exactly, and what is recorded.
+    /// Integrator, start and end time, accuracy and outputs.
     pub settings: Settings,
-    /// What is looked for on the way.
+    /// Events to detect.
     pub events: Vec<EventClass>,
     /// Whether the scene names its integrator.
     /// [`Scene::default_integrator`](crate::Scene::default_integrator) is taken otherwise.
     pub names_integrator: bool,
-    /// Whether the fixed step is that of the robot's file, and where the scene says so.
+    /// Whether the fixed step is that of the robot's file, and the place of this setting.
     pub file_step: Option<At>,
 }
 
-/// What is looked for on the way.
+/// Kinds of events to detect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EventClass {
     /// Joints that reach a bound.
@@ -187,8 +187,8 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Simulation>
     (log.count() == before).then_some(simulation)
 }
 
-/// What the settings cannot be, each where all that it is about is `right`: at its key, or else at
-/// one with which it does not go.
+/// Reports invalid settings, each if all keys that it concerns are `right`: at its key, or else at
+/// a key that conflicts with it.
 fn check(settings: &Settings, spot: &Spot<'_>, right: &[&str], log: &mut Diagnostics) {
     for SettingError { key, with, found, right: expected } in settings.problems(ANY_ROBOT) {
         let mut about = iter::once(&key).chain(with);
@@ -208,14 +208,14 @@ fn check(settings: &Settings, spot: &Spot<'_>, right: &[&str], log: &mut Diagnos
 /// A step that no check refuses, in parts of the motion: only the robot's file has the right one.
 const A_STEP: f64 = 1e-3;
 
-/// What is recorded of the smallest robot is recorded of every one.
+/// Outputs of the smallest robot fit every robot.
 const ANY_ROBOT: Shape = Shape { nq: 0, nv: 0, frames: 0, links: 0 };
 
 fn integrator(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<IntegratorId> {
     spot.word_like(log, &words(), |found| meant(found).map_or(found, |row| row.name))
 }
 
-/// What scenes call the integrators.
+/// Names of the integrators in scenes.
 fn words() -> Vec<(&'static str, IntegratorId)> {
     integrators().iter().map(|row| (row.name, row.id)).collect()
 }

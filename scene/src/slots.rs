@@ -1,4 +1,4 @@
-//! The numbers that a row of a table over time has: those of a robot's joints, or of its actuators.
+//! The numbers in a row of a table over time: those of a robot's joints, or of its actuators.
 
 use std::collections::HashMap;
 
@@ -24,7 +24,7 @@ pub(crate) struct Slots<'a> {
     pub(crate) neutral: Vec<f64>,
     /// The robot, where some numbers may be quaternions.
     quaternions: Option<&'a Model<f64>>,
-    /// What the names are of, for messages.
+    /// Kind of the names, for messages.
     kind: &'static str,
     expected: &'static str,
 }
@@ -56,7 +56,7 @@ impl<'a> Slots<'a> {
         self
     }
 
-    /// What the names are of.
+    /// Kind of the names.
     pub(crate) fn kind(&self) -> &'static str {
         self.kind
     }
@@ -78,7 +78,7 @@ impl<'a> Slots<'a> {
         None
     }
 
-    /// Quaternions of a row to norm one; `place`: where the numbers of a joint are given.
+    /// Normalises the quaternions of a row; `place`: where the numbers of a joint are given.
     pub(crate) fn normalise(&self, row: &mut [f64], key: (&str, &dyn Fn(&str) -> At), log: &mut Diagnostics) {
         if let Some(model) = self.quaternions {
             normalise(model, row, key, log);

@@ -14,9 +14,9 @@ pub(crate) struct Row<T> {
     pub(crate) required: bool,
     /// The type of its value, and the unit.
     pub(crate) value: &'static str,
-    /// What is taken where it is left out.
+    /// Value if it is left out.
     pub(crate) default: &'static str,
-    /// What it means.
+    /// Meaning.
     pub(crate) what: &'static str,
     /// Reads the value.
     pub(crate) read: fn(&mut T, &Spot<'_>, &mut Diagnostics),
@@ -45,14 +45,14 @@ impl<'a> Spot<'a> {
         Self { node, key: String::new(), at: node.at }
     }
 
-    /// That of an entry.
+    /// The spot of an entry.
     pub(crate) fn of(&self, entry: &'a Entry) -> Self {
         let name = bare(&entry.name);
         let key = if self.key.is_empty() { name } else { format!("{}.{name}", self.key) };
         Self { node: &entry.node, key, at: entry.at }
     }
 
-    /// That of an item of a list.
+    /// The spot of an item of a list.
     pub(crate) fn item(&self, node: &'a Node, index: usize) -> Self {
         Self { node, key: format!("{}[{index}]", self.key), at: node.at }
     }
@@ -62,12 +62,12 @@ impl<'a> Spot<'a> {
         log.error((self.node.at, &self.key), Code::Type, self.node.value.describe(), expected);
     }
 
-    /// It is a number that may not stand here.
+    /// Reports a number that is invalid here.
     pub(crate) fn bad(&self, log: &mut Diagnostics, found: impl Into<String>, expected: impl Into<String>) {
         log.error((self.node.at, &self.key), Code::Number, found, expected);
     }
 
-    /// It does not go with what else is there.
+    /// Reports a conflict with another key.
     pub(crate) fn clash(&self, log: &mut Diagnostics, found: impl Into<String>, expected: impl Into<String>) {
         log.error((self.at, &self.key), Code::Together, found, expected);
     }
@@ -156,7 +156,7 @@ impl<'a> Spot<'a> {
         }
     }
 
-    /// So many finite numbers.
+    /// A list of N finite numbers.
     pub(crate) fn numbers<const N: usize>(&self, log: &mut Diagnostics) -> Option<[f64; N]> {
         match self.some_numbers(log, &format!("a list of {N} finite numbers"))?.try_into() {
             Ok(numbers) => Some(numbers),
@@ -216,8 +216,7 @@ impl<'a> Spot<'a> {
         self.word_like(log, words, |found| found)
     }
 
-    /// One of some words; the one to suggest for another is that nearest to what `meant` makes of
-    /// it.
+    /// One of some words. For an unknown word, the suggestion is the word nearest to `meant` of it.
     pub(crate) fn word_like<W: Copy>(&self, log: &mut Diagnostics, words: &[(&'static str, W)], meant: impl Fn(&str) -> &str) -> Option<W> {
         let listed = words.iter().map(|(word, _)| format!("{word:?}")).collect::<Vec<_>>().join(", ");
         let found = self.text(log, &format!("one of {listed}"))?;
@@ -243,7 +242,7 @@ impl<'a> Spot<'a> {
                 None => spot.unknown_key(log, rows.iter().map(|row| row.name)),
             }
         }
-        // The file of a robot has two keys.
+        // The file of a robot has two possible keys.
         let is_given = |name: &str| entries.iter().any(|e| e.name == name || (name == "urdf" && e.name == "file"));
         for row in rows.iter().filter(|row| row.required && !is_given(row.name)) {
             log.error(
@@ -255,7 +254,7 @@ impl<'a> Spot<'a> {
         }
     }
 
-    /// There is no such key.
+    /// Reports an unknown key.
     pub(crate) fn unknown_key<'n>(&self, log: &mut Diagnostics, names: impl IntoIterator<Item = &'n str>) {
         const FOUND: &str = "a key that is not known";
         if let Some((_, meant)) = MEANT.iter().find(|(key, _)| *key == self.key) {

@@ -8,11 +8,11 @@ use articulated_core::diagnostic::{At, quote};
 pub struct Node {
     /// Its place.
     pub at: At,
-    /// What it is.
+    /// The value itself.
     pub value: Value,
 }
 
-/// What a value is.
+/// Kinds of values.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// `true` or `false`.
@@ -56,7 +56,7 @@ impl Node {
 }
 
 impl Value {
-    /// What it is, for a message.
+    /// Description for a message.
     pub fn describe(&self) -> String {
         match self {
             Self::Bool(b) => b.to_string(),

@@ -1,4 +1,4 @@
-//! What the robot's file says of its world, against a robot: states and actuators.
+//! The world of the robot's file, for a robot: states and actuators.
 
 use std::borrow::Cow;
 use std::collections::HashSet;
@@ -13,7 +13,7 @@ use articulated_formats::world::{Actuator, Keyframe, World};
 use crate::initial::{Coordinates, counted};
 use crate::scene::Scene;
 
-/// The world of a file that says nothing.
+/// The world of a file without one.
 static NOTHING: LazyLock<World> = LazyLock::new(World::default);
 
 /// A robot that a scene moves: its model, and the world of its file.
@@ -21,7 +21,7 @@ static NOTHING: LazyLock<World> = LazyLock::new(World::default);
 pub struct RobotInWorld<'a> {
     /// The model of the robot as the scene leaves it.
     pub model: &'a Model<f64>,
-    /// What the robot's file says beside the robot.
+    /// The world of the robot's file.
     pub world: &'a World,
 }
 
@@ -40,7 +40,7 @@ impl Scene {
         }
     }
 
-    /// The scene with the step of the robot's file, where it asks for that.
+    /// The scene with the step of the robot's file, if it requests that.
     #[must_use]
     pub fn with_step_of(mut self, world: &World) -> Self {
         if let Some(simulation) = self.simulation.as_mut().filter(|simulation| simulation.file_step.is_some()) {
@@ -106,7 +106,7 @@ impl<'a> RobotInWorld<'a> {
         Cow::Owned(world)
     }
 
-    /// Writes the controls that a scene gives, in the order of the file's actuators or by name.
+    /// Writes the scene's controls, in the order of the file's actuators or by name.
     pub(crate) fn put_controls(self, from: &Coordinates, into: &mut [f64], log: &mut Diagnostics) {
         match from {
             Coordinates::Neutral => {}

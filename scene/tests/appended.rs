@@ -1,4 +1,4 @@
-//! Robots that are appended, with what their files say beside them, and what hangs at frames.
+//! Robots that are appended, with the worlds of their files, and attachments at frames.
 
 use articulated_core::algorithm::{Workspace, inverse_dynamics};
 use articulated_core::description::Base;
@@ -99,7 +99,7 @@ fn actuators_and_springs_of_tendons_of_an_appended_file_act() {
     assert_eq!(bounds, [("g_foll".to_owned(), [-3.0, 3.0])]);
 }
 
-/// States of one name are one; others have those of their own file, and rest elsewhere.
+/// States of the same name are merged; others have the state of their own file, and rest elsewhere.
 #[test]
 fn states_of_both_files_are_merged_by_name() {
     let started = |name: &str| {
@@ -153,7 +153,7 @@ fn what_an_appended_file_cannot_bring_is_told() {
     assert_eq!(robot.reading.world.planes.len(), 1);
     assert!(robot.reading.unused.iter().any(|unused| unused.tag == "option gravity"), "{:?}", robot.reading.unused);
     assert_eq!(robot.model.gravity().z, -9.81);
-    // Its geometry meets the planes as the file says.
+    // Its geometry meets the planes according to the file.
     assert!(robot.reading.world.contact_masks.contains_key("g_palm"));
     let robot = opened(APPEND, &ARM.replace("name='servo'", "name='g_servo'"), &[HAND]).build().unwrap();
     assert_eq!(
@@ -174,7 +174,7 @@ fn inverse(robot: &BuiltRobot) -> Vec<f64> {
     tau
 }
 
-/// What hangs at a site moves as what hangs at the link that carries it, placed by hand.
+/// An attachment at a site moves like one at the link that carries the site, placed by hand.
 #[test]
 fn robots_loads_and_effects_at_a_frame_are_those_of_its_link_at_its_pose() {
     let upright = ARM.replace("euler='0.3 -0.4 1.1'", "");

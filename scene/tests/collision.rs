@@ -53,14 +53,14 @@ fn refused(text: &str) -> String {
     resolve_on(ROBOT, text, Base::Floating).unwrap_err().to_string()
 }
 
-/// On what, where, and of which radius.
+/// Link, centre and radius of each sphere.
 fn spheres(resolved: &Resolved) -> Vec<(&str, [f64; 3], f64)> {
     resolved.effects.iter().filter(|a| a.effect == EffectId::contact).map(|a| (a.on.as_str(), a.at.xyz, a.parameters[0])).collect()
 }
 
 const LAW: &str = "stiffness = 1e4\ndamping = 1\nfriction = 0.5\n";
 
-/// The law of each point is that of the scene, and the geometry is used.
+/// The law of each point is the scene's, and the geometry is used.
 #[test]
 fn all_links_with_shapes_get_a_contact_for_each_of_their_points() {
     let resolved = resolved(&format!("[effects.contact]\nfrom = 'collision'\n{LAW}height = 0.25"));
@@ -70,7 +70,7 @@ fn all_links_with_shapes_get_a_contact_for_each_of_their_points() {
     let trunk = [corners.as_flattened().as_flattened(), &[([0.0; 3], 0.75)]].concat();
     assert_eq!(of("trunk"), trunk);
     assert_eq!(of("shin"), [([0.0, 0.0, -1.0], 0.1), ([0.0, 0.0, 1.0], 0.1)]);
-    // A link without mass too, whose foot this is.
+    // A link without mass, which has this foot, too.
     assert_eq!(of("sole"), [-1.0, 1.0].map(|y| [-1.0, 1.0].map(|x| ([x, y, 0.0], 0.0))).as_flattened());
     assert_eq!(of("palm"), [([0.0; 3], 0.5)]);
     assert_eq!(found.len(), 9 + 2 + 4 + 1);
@@ -115,7 +115,7 @@ fn what_a_link_itself_says_comes_first() {
     assert_eq!(shin, [0.1, 0.1]);
 }
 
-/// One link alone, of a scene that says nothing of the others.
+/// A single link, in a scene without an entry for the others.
 #[test]
 fn a_link_by_its_name_gets_its_own_points_alone() {
     let resolved = resolved(&format!("[effects.contact.sole]\nfrom = 'collision'\n{LAW}"));
@@ -123,7 +123,7 @@ fn a_link_by_its_name_gets_its_own_points_alone() {
     assert!(resolved.effects.iter().all(|a| a.on == "sole") && resolved.warnings.is_empty());
 }
 
-/// A floor and a wall: each of a list for all links counts.
+/// A floor and a wall: each entry of a list for all links applies.
 #[test]
 fn there_may_be_several_planes() {
     let resolved = resolved(&format!(
@@ -178,7 +178,7 @@ fn a_link_that_is_named_and_has_no_shape_is_an_error() {
     assert_eq!(told, "s.toml:1: effects.contact.shin: found no stiffness for link \"shin\", expected stiffness, N/m");
 }
 
-/// A file with a negative size is read, and refused where a scene asks for contact of it.
+/// A file with a negative size is readable, and refused if a scene requests contact of it.
 #[test]
 fn geometry_that_cannot_be_read_is_an_error_where_it_is_asked_for() {
     let urdf = ROBOT.replace("radius=\"0.1\"", "radius=\"-0.1\"");
@@ -279,7 +279,7 @@ fn a_contact_is_damped_by_one_of_two_keys_or_by_both() {
         ["damping = 2.0", "damping_time = 0.01", "damping = 2.0\ndamping_time = 0.01"].map(numbers),
         [(2.0, 0.0), (0.0, 0.01), (2.0, 0.01)]
     );
-    // One of them for all, the other for a link.
+    // One entry for all links, the other for one link.
     let hand = resolved(&format!(
         "{}[effects.contact.palm]\ndamping_time = 0.02",
         law("").replace("[effects.contact]", "[effects.contact.'*']") + "damping = 1.0\n"

@@ -20,7 +20,7 @@ impl Random {
     }
 }
 
-/// Shipped scenes and what the macro's tests have.
+/// Shipped scenes and the scenes of the macro's tests.
 fn corpus() -> Vec<Vec<u8>> {
     let files = ["../models/scenes", "../tests/ui/scenes"].into_iter().flat_map(|folder| fs::read_dir(folder).unwrap());
     let mut files: Vec<_> = files.map(|file| file.unwrap().path()).collect();
@@ -56,7 +56,7 @@ fn robots() -> Vec<(String, String)> {
     urdfs.map(|path| (path.file_stem().unwrap().to_str().unwrap().to_owned(), fs::read_to_string(&path).unwrap())).collect()
 }
 
-/// Reads it, and has it edit its robot: a robot, or mistakes of which each is told.
+/// Reads a scene and edits its robot: a robot, or errors that are all reported.
 fn settles(bytes: &[u8], bundled: &[Bundled<'_>]) -> bool {
     let Ok(scene) = Scene::read_bytes("s.toml", bytes) else { return false };
     let settled = open_in(scene, Path::new("nowhere"), bundled).and_then(|opened| opened.build());
@@ -113,7 +113,7 @@ fn mutations_of_scenes_are_scenes_or_errors() {
                 2 => drop(bytes.splice(at..at, words[random.below(words.len())].iter().copied())),
                 3 => bytes.truncate(at + 1),
                 _ => {
-                    // A line goes elsewhere.
+                    // A line moves elsewhere.
                     let lines: Vec<&[u8]> = bytes.split(|b| *b == b'\n').collect();
                     let (from, to) = (random.below(lines.len()), random.below(lines.len()));
                     let mut moved = lines.clone();
@@ -128,7 +128,7 @@ fn mutations_of_scenes_are_scenes_or_errors() {
         read += usize::from(try_out(&bytes, &description, &model));
         settled += usize::from(settles(&bytes, &bundled));
     }
-    // Some survive: the names are looked up too, and robots are had.
+    // Some survive: names are looked up, and robots are built.
     assert!(read > 20 && settled > 20, "{read}, {settled}");
 }
 
@@ -151,7 +151,7 @@ fn what_is_deep_long_or_large_ends_soon() {
             + "]",
         "a = 1".repeat(5_000_000),
     ];
-    // What takes the square of its length would take hours here, and what hangs would not end.
+    // Quadratic time would take hours here, and an infinite loop would not end.
     for text in &texts {
         try_out(text.as_bytes(), &description, &model);
     }

@@ -33,7 +33,7 @@ fn the_manual_has_every_key() {
     assert!(missing.is_empty(), "no page has the tables {missing:?}");
 }
 
-/// The page of the macro's keys has all that say something of the code.
+/// The page of the macro has all keys that concern the code.
 #[test]
 fn the_page_of_the_macro_has_every_key_of_a_scene() {
     let page = text("../docs/macro.md");
@@ -47,7 +47,7 @@ fn the_page_of_the_macro_has_every_key_of_a_scene() {
     }
 }
 
-/// What the manual shows reads.
+/// Examples of the manual are readable.
 #[test]
 fn examples_of_the_manual_are_scenes() {
     let text = FILES.map(text).concat();
@@ -58,7 +58,7 @@ fn examples_of_the_manual_are_scenes() {
     }
 }
 
-/// What is asked of a number, where it is wrong, the manual says too.
+/// The manual also documents the range of each number.
 #[test]
 fn the_manual_says_where_numbers_have_to_be() {
     let headers = [

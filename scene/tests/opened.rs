@@ -1,4 +1,4 @@
-//! Scenes with their robots: documents read, edited, and held against what the scene says.
+//! Scenes with their robots: documents read, edited, and compared with the scene.
 
 use std::path::Path;
 

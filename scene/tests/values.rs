@@ -1,4 +1,4 @@
-//! What scenes say, as numbers in the order of a robot.
+//! Numbers of scenes in the order of a robot.
 
 use articulated_core::description::{Base, Description, Joint, JointDynamics, JointKind, Link, LinkId};
 use articulated_core::diagnostic::{Subject, Unused};
@@ -62,7 +62,7 @@ fn gains_are_those_of_their_joints() {
     assert_eq!(torque, [&base[..], &[-1.0, 0.0]].concat());
 }
 
-/// Of each effect: on what, and its numbers.
+/// Each effect: its joint or link, and its numbers.
 fn on(text: &str) -> Vec<(EffectId, String, Vec<f64>)> {
     let description = robot();
     let edited =
@@ -111,11 +111,11 @@ fn what_is_asked_of_ten_thousand_joints_and_links_is_soon_resolved() {
 #[test]
 fn what_is_asked_of_all_is_had_by_those_that_can() {
     let named = |effect, on: &str, numbers: &[f64]| (effect, on.to_owned(), numbers.to_vec());
-    // A name goes before all; what a name does not say, all do.
+    // A named entry has precedence; its missing numbers come from the entry of all.
     let friction = on("[effects.friction]\n\"*\" = { friction = 2, speed = 0.5 }\ntwo = { friction = 3 }");
     let (f, d) = (EffectId::friction, EffectId::damping);
     assert_eq!(friction, [named(f, "one", &[2.0, 0.5]), named(f, "two", &[3.0, 0.5]), named(f, "three", &[2.0, 0.5])]);
-    // From the URDF, where it says so.
+    // From the URDF, if requested.
     assert_eq!(on("[effects]\ndamping = \"urdf\""), [named(d, "two", &[0.5])]);
     assert_eq!(on("[effects.damping]\n\"*\" = \"urdf\"\none = 4"), [named(d, "one", &[4.0]), named(d, "two", &[0.5])]);
     let motor = on("[effects.motor]\n\"*\" = { torque = 5, speed = 6 }");
@@ -123,20 +123,20 @@ fn what_is_asked_of_all_is_had_by_those_that_can() {
     assert_eq!(motor.iter().map(|m| m.1.as_str()).collect::<Vec<_>>(), ["one", "two"]);
     let motor = on("[effects]\nmotor = \"urdf\"");
     assert!(motor.len() == 1 && motor[0].2[..2] == [7.0, 3.0], "{motor:?}");
-    // What a URDF has is behind the gear.
+    // Numbers of a URDF are behind the gear.
     let geared = on("[effects.motor.\"*\"]\nfrom = \"urdf\"\ngear = 10");
     assert!(geared.len() == 1 && geared[0].2[..3] == [0.7, 30.0, 10.0], "{geared:?}");
     let own = on("[effects.motor.\"*\"]\nfrom = \"urdf\"\ngear = 10\ntorque = 2");
     assert_eq!(own.iter().map(|m| &m.2[..2]).collect::<Vec<_>>(), [[2.0, 30.0]]);
-    // Off where a name says so, though all have it, and a number that nobody gives is not looked
-    // for where nobody said.
+    // A named entry turns an effect of all off; missing numbers come from the file only if
+    // requested.
     assert_eq!(on("[effects.damping]\n\"*\" = 1\ntwo = \"off\"").iter().map(|d| d.1.as_str()).collect::<Vec<_>>(), ["one", "three"]);
     let description = robot();
     let edited =
         Edited { description: &description, file: "r.urdf", base: Base::Fixed, unused: &[], world: &World::default(), shafts: &[] };
     let wrong = scene("[effects.motor]\ntwo = { gear = 2 }").resolve(&edited).unwrap_err().errors;
     assert!(wrong.len() == 1 && wrong[0].to_string().contains("no torque for joint \"two\""), "{wrong:?}");
-    // Nothing pulls at a link without mass that was not named, nor at one that stands still.
+    // No drag on a link without mass that was not named, nor on one that does not move.
     let drag = on("[effects.drag]\n\"*\" = { coefficient = 1 }");
     assert_eq!(drag.iter().map(|m| m.1.as_str()).collect::<Vec<_>>(), ["a", "b", "c"]);
     assert_eq!(on("[effects.drag]\ntip = { coefficient = 2 }"), [named(EffectId::drag, "tip", &[2.0])]);
@@ -151,7 +151,7 @@ fn a_quaternion_that_is_nearly_of_norm_one_is_made_so() {
     assert_eq!(q[3..], [0.0, 0.0, 0.0, 1.0, 0.25, 0.5]);
 }
 
-/// A place that a name does not say is that of all; a name that says it has its own.
+/// A named entry without a place takes that of all; one with a place has its own.
 #[test]
 fn what_is_asked_of_all_says_where_too() {
     let text = "[effects.drag]\n\"*\" = { coefficient = 1, xyz = [0, 0, 0.1] }\na = { coefficient = 2 }\nb = { coefficient = 3, xyz = [0.5, 0, 0] }";
@@ -167,7 +167,7 @@ fn said(keys: &str) -> Settings {
     scene(&format!("[simulation]\n{keys}")).simulation.unwrap().settings
 }
 
-/// And what no key says is as where nothing is said.
+/// Absent keys keep their defaults.
 #[test]
 fn every_key_of_a_scene_is_a_setting() {
     let keys =

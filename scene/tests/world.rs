@@ -127,7 +127,7 @@ fn actuators_that_cannot_be_are_refused() {
 }
 
 /// Servos p1 and p2 of two joints, a spring of a tendon over both, and a state. With joint two
-/// locked the rest of the control is that of the file.
+/// locked, the rest of the control is the file's.
 #[test]
 fn actuators_of_a_locked_joint_are_left_out_by_name() {
     const SERVOS: &str = "<mujoco><worldbody><body><joint name='one' axis='0 1 0'/><geom size='0.1'/>

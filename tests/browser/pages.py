@@ -248,7 +248,7 @@ def check_without_webgl(path, folder):
         for name in ["shapes", "arm"]:
             browser.open(folder / f"{name}.html")
             plays(browser, lambda part, image: image.save(folder / f"{name}_{part}_plain.png"))
-            # That the browser has no WebGL it says itself.
+            # The browser itself complains about missing WebGL.
             assert [c for c in browser.complaints() if "WebGL" not in c] == [], browser.complaints()
             print(f"{name} without WebGL: ok, {time.monotonic() - STARTED:.0f} s", flush=True)
 

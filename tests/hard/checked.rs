@@ -1,4 +1,4 @@
-//! The checked form: what it refuses, what it lets pass, and on whom it runs.
+//! The checked form: its errors, its accepted inputs, and the robots that it runs on.
 
 use articulated::algorithm::checked::{Factor, Measure, Solver, Unsolved, least_pivot};
 use articulated::{Dynamics, Workspace, algorithm};
@@ -41,7 +41,7 @@ fn a_solver_runs_on_whatever_has_dynamics() {
     }
 }
 
-/// What a motor cannot give does not accelerate anything: of a model, and of code generated for it.
+/// Only the torques that a motor delivers accelerate: for a model, and for code generated for it.
 #[test]
 fn a_solver_solves_with_what_motors_give() {
     articulated::robot! {
@@ -147,7 +147,7 @@ fn a_wrong_length_is_an_error_of_the_solver() {
 }
 
 /// Against all eigenvalues; an estimate of the 1-norm's condition number is within a factor n of
-/// that of the 2-norm.
+/// the 2-norm's.
 #[test]
 fn the_estimate_of_the_condition_number_is_near_it() {
     for n in [1, 2, 5, 12, 30] {
@@ -167,7 +167,7 @@ fn the_estimate_of_the_condition_number_is_near_it() {
     }
 }
 
-/// A solution of M x = b by the factor, with M as it was given.
+/// A solution of M x = b by the factor, with the original M.
 #[test]
 fn a_factor_solves() {
     let model = Case::bundled(articulated_models::robot("humanoid").unwrap()).model;

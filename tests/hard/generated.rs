@@ -1,4 +1,4 @@
-//! Generated code of the hard robots: errors within what its level promises.
+//! Generated code of the hard robots: errors within the contract of its level.
 
 use articulated_codegen::Precision;
 use articulated_core::description::Description;
@@ -10,8 +10,7 @@ fn hold(pairs: &[(&str, Description, Precision)]) {
     crate::hold(&rows);
 }
 
-/// No pass of the generator may cost a robot its digits: errors stay where they are for generic
-/// code.
+/// No pass of the generator may lose digits: errors stay as in generic code.
 #[test]
 fn generated_code_of_hard_robots_keeps_the_limits() {
     hold(&hard().into_iter().map(|(name, robot)| (name, robot, Precision::default())).collect::<Vec<_>>());

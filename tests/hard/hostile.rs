@@ -1,5 +1,5 @@
-//! A robot that reads is a model, or an error that says what overflows; what is computed of it is
-//! finite or an error, and nothing panics, whatever the numbers.
+//! A readable robot is a model, or an error that names the overflow; its results are finite or an
+//! error, and nothing panics, whatever the numbers.
 
 use articulated_codegen::model_pass::View;
 use articulated_codegen::{Request, generate};
@@ -45,7 +45,7 @@ fn mutated(urdf: &str, random: &mut Random) -> String {
     out.join("\"")
 }
 
-/// How many times as much as in every run: HOSTILE=100 takes a while.
+/// Factor on the number of cases of a normal run: HOSTILE=100 takes a while.
 fn patience() -> u64 {
     std::env::var("HOSTILE").ok().and_then(|n| n.parse().ok()).unwrap_or(1)
 }

@@ -1,4 +1,4 @@
-//! Monitors see what they are for.
+//! Monitors detect what they are made for.
 
 use articulated_core::algorithm::{FunctionId, Workspace};
 use articulated_core::description::Base;

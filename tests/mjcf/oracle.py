@@ -294,7 +294,7 @@ def compare(path, generated=False):
     return "equal" if all(value <= BOUND for value in off.values()) else "differs:", dict(off), counts
 
 
-# What code computes, rather than the reader.
+# Results of code, rather than of the reader.
 OF_CODE = ("mass matrix", "bias force", "position", "orientation")
 
 
@@ -361,7 +361,7 @@ def masses(model, robot, fused, differ, mujoco, np):
     model.body_sameframe[:] = 0
 
 
-# The flags of <option> that turn off what joints have.
+# The flags of <option> that turn off effects of joints.
 OFF_BY = {"friction": ("FRICTIONLOSS", "CONSTRAINT"), "limits": ("LIMIT", "CONSTRAINT"), "damping": ("DAMPER",), "stiffness": ("SPRING",)}
 
 

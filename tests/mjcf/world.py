@@ -14,7 +14,7 @@ import numpy as np
 
 BALL, SLIDE, HINGE = 1, 2, 3
 ACTING = {int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT), int(mujoco.mjtTrn.mjTRN_TENDON)}
-# docs/mjcf.md says so.
+# As documented in docs/mjcf.md.
 OUTSIDE = [
     "forces of contacts, and what adheres by them",
     "forces of the solver: limits, dry friction and equations act by their numbers, which are compared",
@@ -122,7 +122,7 @@ def keyframes(model, world, joints, differ, count):
     if world["home"]:
         state(world["home"]["q"], [(joint.name, joint.coordinates(model.qpos0)) for joint in joints], "home", differ)
     names = [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_KEY, key) or f"key_{key}" for key in range(model.nkey)]
-    # Those of models of which a part is attached are not read, and <size nkey> makes some without data.
+    # Keyframes of partly attached models are not read, and <size nkey> makes some without data.
     found = [key["name"] for key in world["keyframes"]]
     left = [name for name in names if name not in found]
     differ("keyframes", found != [name for name in names if name not in left], 0, 1.0)
@@ -227,7 +227,7 @@ def is_spatial(model, tendon):
     return model.wrap_type[model.tendon_adr[tendon]] != mujoco.mjtWrap.mjWRAP_JOINT
 
 
-# Of a spatial tendon there is one warning for all of its forces.
+# A spatial tendon has one warning for all of its forces.
 SPATIAL = "a spatial tendon with forces"
 
 

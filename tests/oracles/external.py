@@ -72,10 +72,10 @@ def check_sparsity(shared):
 
     derivatives = casadi.external("jac_inverse_dynamics", shared)
     assert [derivatives.name_out(k) for k in range(3)] == ["jac_out_q", "jac_out_v", "jac_out_a"]
-    # Gravity does not depend on the first angle, and nothing does: its axis is along gravity.
+    # Gravity torques do not depend on the first angle: its axis is along gravity.
     first = derivatives.sparsity_out(0)
     assert first.nnz() < first.numel() and not any(first.has_nz(row, 0) for row in range(6)), first
-    # What is left out is zero, and a call without arguments is one of zeros.
+    # Missing arguments are zero, and a call without arguments is one with zeros.
     ours = casadi.external("inverse_dynamics", shared)
     buffer, memory = ours.buffer()
     result = numpy.zeros(6)

@@ -151,7 +151,7 @@ class Oracle:
             force = momentum_rate[3:6] + casadi.cross(w, push) + slope[3:]
             tau = vertcat(moment, force, tau)
         potential_rate = casadi.dot(at_rest(gradient(potential, q)), rate) + casadi.dot(slope, twist)
-        # what the torques do is what the energies gain: v.tau - d/dt (T + U) = 0
+        # the power of the torques is the rate of the energies: v.tau - d/dt (T + U) = 0
         imbalance = casadi.dot(v, tau) - in_time(kinetic) - potential_rate
 
         loads = {

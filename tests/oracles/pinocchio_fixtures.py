@@ -35,7 +35,7 @@ OWN = [
 ]
 MUJOCO = ["ur5_like", "panda_like", "quadruped"]
 
-# What the large robots are judged by; the rest would be megabytes.
+# Functions for the large robots; the others would be megabytes.
 LARGE = ["golfer", "humanoid", "every_joint_floating"]
 FEW = ["placements", "accelerations_world_aligned", "inverse_dynamics", "inverse_dynamics_with_wrenches",
        "joint_wrenches", "forward_dynamics", "solve_mass_matrix", "center_of_mass", "center_of_mass_acceleration",

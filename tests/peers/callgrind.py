@@ -47,7 +47,7 @@ def wrapper(function):
     arguments = ARGUMENTS.get(function, ("q", "v", "tau"))
     takes = ", ".join(f"{x}: *const f64" for x in arguments)
     kept = function in KEPT
-    # What nobody reads would not be computed.
+    # Unread results would not be computed.
     out = "std::hint::black_box(&raw mut KEPT).cast()" if kept else "out"
     given = ", ".join(f"read({x})" for x in arguments)
     return (f'#[unsafe(no_mangle)] pub unsafe extern "C" fn peer_{function}(_: *mut H, {takes}{"" if kept else ", out: *mut f64"}) {{ '

@@ -38,7 +38,7 @@ def crate(name, way, source):
 def build(folder, way):
     """Wall-clock seconds."""
     target = PLACE / f"target {way}"
-    # flags of whoever runs this are not a user's
+    # flags of the environment are not those of a user
     environment = {key: value for key, value in os.environ.items() if not key.startswith(("CARGO_", "RUSTFLAGS"))}
     environment |= {"CARGO_TARGET_DIR": str(target), "PATH": os.environ["PATH"]}
     start = time.perf_counter()

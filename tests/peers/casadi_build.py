@@ -24,7 +24,8 @@ def fnv(data):
 
 
 TABLES = ("inverse_dynamics", "mass_matrix", "forward_dynamics", "inverse_dynamics_derivatives")  # of real robots no others are made
-# What stays inside until it is asked for, as CasADi gives it: without the zeros, and of symmetric matrices the upper triangle.
+# Results that stay inside until they are requested, in CasADi's form: without the zeros, and the
+# upper triangle of symmetric matrices.
 KEPT = ("mass_matrix", "mass_matrix_inverse", "inverse_dynamics_derivatives", "forward_dynamics_derivatives", "center_of_mass_jacobian",
         "centroidal_momentum_matrix")
 TURNED = ("center_of_mass_jacobian", "centroidal_momentum_matrix")  # its columns are rows
@@ -137,7 +138,7 @@ def wrapped(peer, code, symbol, function, takes):
     known = "".join(f"  if (!{x}) __builtin_unreachable();\n" for x in ["r0", "r1", "r2"])
     arguments = ", ".join(f"(const {numbers} *){x}" for x in names)
     results = "".join(f"  {numbers} *r{k} = ({numbers} *){f'head->results[{k}]' if kept else 'out'};\n" for k in range(3))
-    # All of CasADi's functions, so that no compiler leaves one of them as it is: of squares g++ does.
+    # All of CasADi's functions, so that the compiler inlines each: g++ does not inline squares.
     kinds = [("int", (f"{symbol}_code_f0", symbol), f"const {numbers} **, {numbers} **, long long *, {numbers} *, int"),
              (numbers, (f"{symbol}_code_sq", f"{symbol}_code_fabs"), numbers)]
     inlined = "".join(f"static inline __attribute__((always_inline)) {gives} {name}({parts});\n" for gives, each, parts in kinds for name in each)

@@ -42,7 +42,8 @@ def generate(folder, robot, wanted, most):
         file = casadi.CodeGenerator(f"{symbol}_code.c")
         file.add(code)
         file.generate(f"{folder}/")
-        # The first function pays for reading the robot, and each for what it is the first to need.
+        # The first function includes reading the robot, and each function the parts that it is the
+        # first to need.
         now = time.perf_counter()
         functions[function] = {"work": code.sz_w(), "takes": len(arguments), "outputs": [pattern(code.sparsity_out(k)) for k in range(code.n_out())],
                                "operations": operations(code), "generation_seconds": now - start}

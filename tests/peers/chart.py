@@ -14,7 +14,7 @@ from environment import REPOSITORY
 
 CHART = REPOSITORY / "docs" / "speed.svg"
 HEAD = "| ns per call |"
-# What a bar is called, what it measures of a row, and its colour.
+# The name of a bar, its number in a row, and its colour.
 BARS = [
     ("fastest C code by CasADi", lambda row: row["fastest generated C / generated"], "#3f8f5b"),
     ("Pinocchio", lambda row: row["Pinocchio / generated"], "#d9822b"),

@@ -7,7 +7,7 @@ from pathlib import Path
 import library
 from environment import FAST, HERE, NATIVE, machine
 
-# what Pinocchio's own CMake target asks for, without its PINOCCHIO_ENABLE_TEMPLATE_INSTANTIATION
+# definitions of Pinocchio's own CMake target, without its PINOCCHIO_ENABLE_TEMPLATE_INSTANTIATION
 DEFINITIONS = [
     "-DBOOST_MPL_LIMIT_LIST_SIZE=30", "-DBOOST_MPL_LIMIT_VECTOR_SIZE=30", "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS",
     "-DBOOST_FUSION_INVOKE_MAX_ARITY=12",

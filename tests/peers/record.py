@@ -20,13 +20,13 @@ PLACE = REPOSITORY / "docs" / "speed"
 FUNCTIONS = ["inverse_dynamics", "mass_matrix", "forward_dynamics", "inverse_dynamics_derivatives"]
 BATCHES = ["inverse_dynamics", "forward_dynamics"]
 MORE = ["forward_dynamics_derivatives", "mass_matrix_inverse", "jacobians_world_aligned"]
-# kind of run -> robots, functions, further words, and which peers take part
+# kind of run -> robots, functions, further words, and the peers that take part
 KINDS = {
     "one": (list(robots.ALL), FUNCTIONS, [], lambda peer: "lanes" not in peer),
     "more": (robots.BUNDLED, MORE, [], lambda peer: "lanes" not in peer and ("pinocchio" in peer or "casadi" in peer)),
     "many": (list(robots.ALL), BATCHES, ["--batch", "f64,f32"], lambda peer: "lanes" in peer or "eigen" in peer),
 }
-# family and model of a processor, where its own name does not tell which it is
+# family and model of a processor, if its own name does not identify it
 PROCESSORS = {(6, 143): "Sapphire Rapids", (6, 207): "Emerald Rapids", (6, 173): "Granite Rapids", (6, 106): "Ice Lake", (25, 1): "Zen 3", (25, 17): "Zen 4",
               (25, 97): "Zen 4", (26, 2): "Zen 5", (26, 17): "Zen 5"}
 
@@ -57,7 +57,7 @@ def asked(command, kind, robot, scratch, number, repetitions):
     kept = scratch / f"{kind}_{robot.name}_{number}.json"
     if not kept.exists():
         print(f"{kept.stem} …", file=sys.stderr, flush=True)
-        # A bundled robot's name says its base.
+        # A bundled robot's name implies its base.
         which = [str(robot.urdf), f"--{robot.base}"] if robot.file else [robot.name]
         line = [*command, "compare", *which, "--functions", ",".join(functions), *words, "--peers-manifest", str(manifest), "--format", "json",
                 "--repetitions", str(repetitions)]

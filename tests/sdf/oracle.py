@@ -211,7 +211,7 @@ def compare_files(path, ours):
     robot = json.loads(answer.stdout.partition(b"\n")[0])
     names = [plant.GetModelInstanceName(instance) for instance in instances]
     outer = [name for name in names if not any(name.startswith(f"{other}::") for other in names)]
-    # The only model gives no prefix to names, each of several does.
+    # A single model adds no prefix to names, each of several does.
     top = outer[0] if len(outer) == 1 else ""
     off = collections.Counter()
 
@@ -264,7 +264,7 @@ def compare_files(path, ours):
     states = [state(plant, robot, joints, bodies, np.random.default_rng(seed)) for seed in range(STATES)]
     sent = b"".join(np.concatenate(one[2]).astype("<f8").tobytes() for one in states)
     if not plant.num_velocities():
-        # The poses come without a state only where there is nothing to send.
+        # The poses come without a state only if there is none to send.
         return "equal" if all(value <= BOUND for value in off.values()) else "differs:", dict(off)
     at, nv, frames = 0, robot["nv"], robot["frames"]
     if nv != plant.num_velocities():

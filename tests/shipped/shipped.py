@@ -151,7 +151,8 @@ def compare(path, base, report):
         expected = engine.mass_matrix(q)
         diagonal = numpy.sqrt(numpy.abs(numpy.diag(expected)))
         matrix = numpy.array(unnest(ours["mass_matrix"][k], joints, engine.nv), dtype=float)
-        # a diagonal that cancels to nothing is held to the robot's largest entry in that column's unit
+        # a diagonal that cancels to zero is compared with the robot's largest entry in that
+        # column's unit
         note("mass_matrix", matrix - expected, numpy.outer(diagonal, diagonal) + 1e-4 * BOUND * numpy.max(expected, initial=0.0))
         unit = numpy.where(diagonal > 0, diagonal, 1)
         if not diagonal.all() or numpy.linalg.eigvalsh(expected / numpy.outer(unit, unit))[0] < SINGULAR * engine.nv:
@@ -162,7 +163,7 @@ def compare(path, base, report):
         accelerations = numpy.array(rows(ours["forward_dynamics"][k], engine.nv, joints), dtype=float)
         error = backward_error(engine, q, v, tau, accelerations)
         errors["forward_dynamics"] = max(errors["forward_dynamics"], error if error == error else float("inf"))
-        # Robots whose light links have no inertia leave more than rounding in every engine.
+        # Robots whose light links have no inertia leave more than rounding errors in every engine.
         theirs = engine.forward_dynamics(q, v, tau)
         own = max(own, backward_error(engine, q, v, tau, theirs) if theirs is not None else 0.0)
     return {"errors": errors, "singular": singular, "pinocchio_forward_dynamics": own}

@@ -1,4 +1,4 @@
-//! What Pinocchio and MuJoCo gave; the format is described in `tests/oracles/README.md`.
+//! Results of Pinocchio and MuJoCo; the format is described in `tests/oracles/README.md`.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -15,7 +15,7 @@ use crate::case::{Case, read};
 pub struct Answers {
     /// The robot's name.
     pub robot: String,
-    /// Who answered, with versions.
+    /// The engine, with versions.
     pub engine: String,
     /// `fixed` or `floating`.
     pub base: String,
@@ -29,7 +29,7 @@ pub struct Answers {
     pub nq: usize,
     /// Length of v.
     pub nv: usize,
-    /// Of a robot that is not a bundled one.
+    /// For a robot that is not bundled.
     pub description: Option<Drawn>,
     /// The states.
     pub states: Vec<Answered>,
@@ -49,7 +49,7 @@ pub struct Answered {
     pub arguments: BTreeMap<String, Vec<f64>>,
 }
 
-/// A description without what dynamics has no use for.
+/// A description without content that the dynamics do not use.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Drawn {
     links: Vec<DrawnLink>,
@@ -120,7 +120,7 @@ impl DrawnJoint {
 }
 
 impl Answers {
-    /// The robot that was asked about.
+    /// The robot of the question.
     ///
     /// # Panics
     /// If it is neither described nor bundled.

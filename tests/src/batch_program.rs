@@ -1,5 +1,5 @@
-//! Batches of generated modules as a program: it is fed with states, holds each function to the
-//! laws of batches, and gives the results.
+//! Batches of generated modules as a program: it reads states, checks each function for the laws of
+//! batches, and returns the results.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -9,7 +9,7 @@ use articulated_core::algorithm::function;
 
 use crate::program::Program;
 
-/// How many states a function is to be given: more than two blocks of either type.
+/// Number of states for a function: more than two blocks of either type.
 pub const STATES: usize = 37;
 
 /// The batches of several robots, in one instruction set, compiled as one program.
@@ -29,8 +29,8 @@ impl BatchProgram {
         Self(Program::of(&named, &main(&named), flags))
     }
 
-    /// Results for [`STATES`] states, each a list of arguments in the registry's order; `f32` are
-    /// given as what they are.
+    /// Results for [`STATES`] states, each a list of arguments in the registry's order; `f32`
+    /// results keep their values.
     ///
     /// # Panics
     /// If a law of batches does not hold.
@@ -45,8 +45,8 @@ impl BatchProgram {
     }
 }
 
-/// The source with one instruction set chosen: modules of the others, and the calls of them, are
-/// not compiled.
+/// The source with one instruction set chosen: modules of the others, and calls to them, are not
+/// compiled.
 fn only(set: &str, source: &str) -> String {
     let mut out = String::with_capacity(source.len());
     let mut lines = source.lines().peekable();
@@ -63,7 +63,7 @@ fn only(set: &str, source: &str) -> String {
     out
 }
 
-/// The instruction set whose module begins in these lines, or is called.
+/// The instruction set of the module or the call in these lines.
 fn named(lines: &[&str]) -> Option<&'static str> {
     let begins = |set: &&str| lines.first().is_some_and(|line| *line == format!("mod {set} {{"));
     let called = |set: &&str| lines.iter().skip(1).any(|l| l.trim_start().trim_start_matches("unsafe { ").starts_with(&format!("{set}::")));
@@ -262,10 +262,10 @@ WRONG_LENGTHS            let written: Vec<f64> = numbers(&out).into_iter().chain
         }
 ";
 
-/// Blocks give what states one after the other give, to the bit.
+/// Blocks return the same bits as states one after the other.
 const SAME_BLOCKS: &str = "same(\"blocks\", &of_blocks(&out_blocks), &in_blocks::<REAL, _>(&out, Lanes::LEN));";
 
-/// States give what the function of one state gives, to the bit. Blocks round differently.
+/// States return the same bits as the function of one state. Blocks round differently.
 const STATE_BY_STATE: &str = "\
 let mut singles = vec![mark; n];
             for (k, out) in singles.iter_mut().enumerate() {
@@ -282,7 +282,7 @@ fn wrong_lengths(takes: &[&str]) -> String {
         for (suffix, length) in [("", "n"), ("_blocks", "whole")] {
             let cut = |k: usize| if k == short { format!("[..{length} - 1]") } else { String::new() };
             let given: String = takes.iter().enumerate().map(|(k, a)| format!("&{a}{suffix}{}, ", cut(k))).collect();
-            // The first is what others are held to.
+            // The other lengths are compared with the first one.
             let (argument, found, expected) = if short == 0 { (arrays[1], 0, 1) } else { (*argument, 1, 0) };
             let error = format!("LengthError {{ argument: {argument:?}, found: {length} - {found}, expected: {length} - {expected} }}");
             let _ =

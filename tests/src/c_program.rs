@@ -44,11 +44,11 @@ pub fn check_header(compiler: &str, standard: &str, header: &File) {
 /// Which vectors generated C uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vectors {
-    /// Those of any processor of this kind.
+    /// The vectors of any processor of this kind.
     Any,
-    /// Those of this processor.
+    /// The vectors of this processor.
     Own,
-    /// None: as by a compiler that has none.
+    /// None: as with a compiler without vectors.
     None,
 }
 
@@ -81,7 +81,7 @@ pub fn build(robots: &[(&str, Shape, &Generated)], vectors: Vectors, level: &str
     Program::compiled(program, start.elapsed(), folder)
 }
 
-/// What a program prints that is compiled with generated files.
+/// The output of a program compiled with generated files.
 ///
 /// # Panics
 /// If the compiler refuses it, or it fails.
@@ -164,8 +164,8 @@ fn main(robots: &[(&str, Shape, &Generated)]) -> String {
     text + "    return 1;\n}\n"
 }
 
-/// Calls of a function for all states at once: one after the other, and in blocks. Numbers of
-/// results that no function writes are not numbers.
+/// Calls of a function for all states at once: one after the other, and in blocks. Unwritten
+/// numbers of results are NaN.
 fn batches(text: &mut String, robot: &str, name: &str, shape: Shape, generated: &Generated) {
     let row = function::<f64>(name).expect("a function of the registry");
     let lengths: Vec<usize> = row.takes.iter().map(|a| a.len(shape)).collect();

@@ -1,4 +1,4 @@
-//! What the oracle computed; its format is described in `tests/oracles/README.md`.
+//! Results of the oracle; its format is described in `tests/oracles/README.md`.
 
 use std::fs;
 use std::path::Path;
@@ -26,7 +26,7 @@ pub struct Fixture {
     pub states: Vec<Reference>,
 }
 
-/// One state and what is right in it.
+/// One state and its expected results.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Reference {
     /// `[nq]`.
@@ -37,7 +37,7 @@ pub struct Reference {
     pub a: Vec<f64>,
     /// τ, `[nv]`.
     pub inverse_dynamics: Vec<f64>,
-    /// What an error in τ is compared with, `[nv]`.
+    /// The scale of errors in τ, `[nv]`.
     pub torque_scale: Vec<f64>,
     /// T, J.
     pub kinetic_energy: f64,
@@ -50,7 +50,7 @@ pub struct Reference {
 /// The fixture of a robot.
 ///
 /// # Panics
-/// If there is none or it cannot be read: every bundled robot has to have one.
+/// If it is missing or unreadable: every bundled robot must have one.
 pub fn fixture(robot: &str) -> Fixture {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("oracles/fixtures/{robot}.json"));
     let text = fs::read_to_string(&path).unwrap_or_else(|e| panic!("no reference for {robot} ({e}): run python3 tests/oracles/make.py"));

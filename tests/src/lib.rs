@@ -1,4 +1,4 @@
-//! What the tests of the workspace share.
+//! Shared code of the tests of the workspace.
 //!
 //! Robots, states and yardsticks come from `articulated-test-support`; the laws of the core are
 //! tests of the core (`runtime/core/tests/laws`). Generated code is compiled and run as a user's

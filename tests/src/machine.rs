@@ -21,8 +21,8 @@ pub fn is_x86_64() -> bool {
     cfg!(target_arch = "x86_64") && emulator().is_none()
 }
 
-/// A compiler that is given these flags; what it makes for another machine needs no linker and no
-/// library of that machine's.
+/// A compiler with these flags; its output for another machine needs no linker and no library of
+/// that machine.
 pub(crate) fn compiler(flags: &[&str]) -> Command {
     let mut command = Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
     if emulator().is_none() {
@@ -37,7 +37,7 @@ pub(crate) fn compiler(flags: &[&str]) -> Command {
     command
 }
 
-/// What runs a program.
+/// The command that runs a program.
 pub(crate) fn run(program: &Path) -> Command {
     match emulator() {
         Some(emulator) => {

@@ -1,4 +1,4 @@
-//! Generated modules as a program: compiled by the user's compiler, fed with states, and asked for
+//! Generated modules as a program: compiled by the user's compiler; it reads states and returns
 //! results.
 
 use std::fmt::Write as _;
@@ -19,7 +19,7 @@ pub struct Program {
     file: PathBuf,
     /// How long the compiler took.
     pub time: Duration,
-    /// A variable that is set where it runs.
+    /// A variable that is set for the run.
     variable: Option<&'static str>,
     _folder: Arc<tempfile::TempDir>,
 }
@@ -34,7 +34,7 @@ impl Program {
         Self::of(robots, &main(robots), flags)
     }
 
-    /// The same with another `main`, which has to keep to what [`Program::run`] sends and reads.
+    /// The same with another `main`, which must follow the format of [`Program::run`].
     pub(crate) fn of(robots: &[(&str, &Generated)], main: &str, flags: &[&str]) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("a folder that can be written");

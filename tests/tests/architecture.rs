@@ -1,5 +1,5 @@
-//! How the code is laid out: arrows between crates point downward, files import each other in no
-//! more circles than are known, and comments wrap at 100 columns.
+//! The layout of the code: dependencies between crates point downward, files import each other in
+//! no more circles than are known, and comments wrap at 100 columns.
 //!
 //! `cargo test -p articulated-tests --test architecture -- --nocapture` prints the graph of crates
 //! and all circles.
@@ -42,7 +42,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The crates of this workspace that a crate is compiled with; those of its tests apart.
+/// The workspace's crates that a crate depends on, without those of its tests.
 fn dependencies(folder: &str) -> Vec<String> {
     let manifest = fs::read_to_string(root().join(folder).join("Cargo.toml")).expect("a manifest");
     let mut section = String::new();
@@ -213,7 +213,7 @@ fn a_circle_is_found_and_a_tree_is_none() {
 /// The number only falls.
 const LONG_COMMENTS: usize = 80;
 
-/// All files of Rust in a folder and the folders below it, but for what builds write.
+/// All Rust files in a folder and its subfolders, except build outputs.
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()) {
         let name = entry.file_name().and_then(|name| name.to_str()).unwrap_or_default();
@@ -234,7 +234,7 @@ fn comments_wrap_at_100_columns() {
         let text = fs::read_to_string(file).expect("a source");
         for (k, line) in text.lines().enumerate() {
             let words = line.trim_start();
-            // Rows of tables are as long as they are.
+            // Rows of tables may be long.
             let is_row = words.trim_start_matches(['/', '!']).trim_start().starts_with('|');
             if words.starts_with("//") && !is_row && line.chars().count() > 100 {
                 long.push(format!("{}:{}: {line}", file.display(), k + 1));

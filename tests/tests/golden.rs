@@ -1,4 +1,4 @@
-//! Generation is reproducible, and what it costs is written down.
+//! Generation is reproducible, and its costs are recorded.
 //!
 //! `UPDATE_GOLDEN=1 cargo test -p articulated-tests --test golden` writes `tests/golden` anew.
 
@@ -47,8 +47,8 @@ fn the_ledger_of_operations() {
     let _ = writeln!(out, "{:<18}{:<44}{:>6}{:>6}{:>6}{:>6}{:>6}{:>6}", "robot", "function", "mul", "add", "ins", "trig", "depth", "lanes");
     for robot in ROBOTS {
         let generated = generated(robot.name);
-        // What is not generated and yet has a cost: forward dynamics that looks at its pivots,
-        // beside the same that does not.
+        // Costs of functions that are not generated: forward dynamics that checks its pivots, next
+        // to the same without checks.
         let checked = checked_cost(&generated.model);
         for entry in generated.ledger.functions.iter().chain(&checked) {
             let c = entry.emitted();
@@ -76,7 +76,7 @@ fn the_same_request_gives_the_same_bytes() {
     }
 }
 
-/// A build script's interface, on the file, gives what the library gives on its bytes.
+/// A build script's interface, on the file, returns the same as the library on its bytes.
 #[test]
 fn a_build_script_gives_the_same_source() {
     for name in ["simple_pendulum", "quadruped"] {

@@ -1,5 +1,5 @@
-//! What each published crate needs on a registry: its metadata, its licences, and no file outside
-//! its folder.
+//! Requirements of a registry for each published crate: its metadata, its licences, and no file
+//! outside its folder.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -27,7 +27,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().expect("the root of the workspace")
 }
 
-/// What Cargo reads from the manifests of the workspace.
+/// Cargo's metadata from the manifests of the workspace.
 fn packages() -> Vec<Value> {
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--no-deps", "--offline", "--format-version", "1"])

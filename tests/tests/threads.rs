@@ -1,5 +1,5 @@
-//! Many states over several threads: the same bits as in one, every state reported, nothing
-//! allocated for it.
+//! Many states over several threads: the same bits as in one, every state reported, no allocation
+//! for it.
 #![allow(unsafe_code)]
 // Why: to count allocations, the allocator has to be wrapped.
 
@@ -42,7 +42,7 @@ unsafe impl GlobalAlloc for Counted {
 #[global_allocator]
 static ALLOCATOR: Counted = Counted;
 
-/// Tests of this file count what the others allocate too: one at a time.
+/// Tests of this file also count allocations of the others: one at a time.
 static ALONE: Mutex<()> = Mutex::new(());
 
 /// Numbers that look random, in [−1, 1).
@@ -95,7 +95,7 @@ fn blocks_and_single_numbers_go_the_same_way() {
     let told = |_| *parts.lock().unwrap() += 1;
     pool(3).install(|| in_threads(all, |(q, v, a, out)| batch_f32::inverse_dynamics_blocks(q, v, a, out), told)).unwrap();
     assert!(out == alone && out[99][2].0[15] != 0.0);
-    // A block is full by itself: parts need not be sixteen of them.
+    // Each block is full by itself: parts need not have sixteen.
     assert!(parts.into_inner().unwrap() >= 20);
 }
 
@@ -113,7 +113,7 @@ fn progress_counts_every_state_once() {
         let mut told = told.into_inner().unwrap();
         told.sort_unstable();
         assert!(told.last() == Some(&n) && told.windows(2).all(|w| (1..=1024).contains(&(w[1] - w[0]))), "{told:?}");
-        // Some parts for each thread where there are states enough.
+        // Some parts for each thread if there are enough states.
         assert!(told.len() >= (n / 32).min(12) && x == y, "{} parts of {n}", told.len());
     }
 }
@@ -152,9 +152,9 @@ fn no_state_is_allocated_for() {
         });
         ALLOCATIONS.load(Ordering::Relaxed) - before
     };
-    // What the pool allocates for its queues, and for a thread when it first finds work, is little,
-    // and no more for a hundred times as many parts: the least of some runs, as a thread may find
-    // none for a while.
+    // The pool allocates little for its queues, and for a thread when it first finds work, and no
+    // more for a hundred times as many parts: the minimum of some runs, as a thread may find no
+    // work for a while.
     let found = [1000, 100_000].map(|n| (0..5).map(|_| allocations(n)).min());
     let found = found.map(Option::unwrap_or_default);
     assert!(found.iter().all(|n| *n <= 8), "{found:?}");

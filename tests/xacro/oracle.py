@@ -45,7 +45,7 @@ def main():
     cases = list(chosen(arguments))
     counts = collections.Counter()
     for folder, file, mappings in cases:
-        # A package of the file's own repository goes before one of the same name elsewhere.
+        # A package of the file's own repository has precedence over one of the same name elsewhere.
         inside = file.relative_to(folder).parts[0] if folder in file.parents else "."
         packages = packages_of(folder) | packages_of(folder / inside) | dict(pair.split("=", 1) for pair in arguments.package)
         verdict, detail = compare(file, mappings, packages)

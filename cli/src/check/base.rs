@@ -1,5 +1,5 @@
-//! Base parameters: what joints can feel of the inertial parameters, and what model passes made of
-//! them.
+//! Base parameters: the inertial parameters that joint torques depend on, and their values after
+//! model passes.
 
 use articulated_codegen::model_pass::{View, drop_symmetric_rotation};
 use articulated_core::algorithm::{BaseParameter, BodyParameters, Identifiability, base_parameters, identifiable_parameters};
@@ -17,15 +17,15 @@ const MANY: usize = 60;
 pub(super) struct Base {
     /// Ten for each moving link.
     pub(super) parameters: usize,
-    /// Whether joints of several stages (planar, universal) have bodies between that are no links:
-    /// what is listed of these is of the links beyond, and not all independent.
+    /// Whether joints of several stages (planar, universal) have intermediate bodies that are not
+    /// links: parameters listed for these belong to the links beyond, and are not all independent.
     pub(super) stages: bool,
     /// How many are not zero by regrouping, and how many of those joint torques determine.
     pub(super) regrouped: usize,
     pub(super) identifiable: usize,
     /// Fixed and locked joints, whose links are part of the body they are fixed to.
     pub(super) merged_joints: usize,
-    /// From the tips inward: each is determined by torques when those before it are known.
+    /// From the tips inward: torques determine each if the previous ones are known.
     pub(super) joints: Vec<BaseRow>,
 }
 
@@ -36,9 +36,9 @@ pub(super) struct BaseRow {
     pub(super) slid: [f64; 3],
     /// rad, by which it was turned about the joint.
     pub(super) turned: f64,
-    /// Whether the body is the same from all sides, so that no torque depends on the joint's angle.
+    /// Whether the body is rotationally symmetric, so that no torque depends on the joint's angle.
     pub(super) round: bool,
-    /// What is left to the body; the rest is its parent's.
+    /// Remaining parameters of the body; the others are its parent's.
     pub(super) parameters: Vec<Parameter>,
 }
 
@@ -62,7 +62,7 @@ impl Parameter {
     }
 }
 
-/// What torques tell of a parameter.
+/// Whether torques determine a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Identifiable {
@@ -73,7 +73,7 @@ pub(super) enum Identifiable {
 }
 
 impl Base {
-    /// Of a model as it was read; nothing for a model of very many bodies.
+    /// From a model as it was read; `None` for a model of very many bodies.
     pub(super) fn of(read: &Model<f64>) -> Option<Self> {
         if read.bodies().len() > MANY {
             return None;
@@ -139,7 +139,7 @@ mod tests {
         assert_eq!(round, ["wrist_3_joint"]);
     }
 
-    /// A floating base feels everything that regrouping leaves.
+    /// For a floating base all parameters after regrouping are identifiable.
     #[test]
     fn a_floating_base_leaves_nothing_in_the_dark() {
         let quadruped = base("quadruped");

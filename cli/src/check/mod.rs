@@ -41,7 +41,7 @@ fn examine(robot: &Robot, scene: Option<&Path>, functions: &[String]) -> Report 
             describe(robot, &built, &mut report);
         }
     }
-    // Joints may be locked beside the scene: its motion is that of the scene alone.
+    // Joints may be locked in addition to the scene's: its motion is that of the scene alone.
     match scene.map(crate::simulate::motion::look_over) {
         Some(Ok(warning)) => warning.into_iter().for_each(|line| report.warn(Diagnostic::from(line).into_warning())),
         Some(Err(failure)) => report.errors.extend(failure.errors),
@@ -61,7 +61,7 @@ fn describe(robot: &Robot, built: &BuiltRobot, report: &mut Report) {
     let mut findings = Diagnostics::new(&robot.file);
     articulated_codegen::check_names(&request, built, &mut findings);
     for finding in &findings.errors {
-        // Names that are one in code are in the way of code alone.
+        // Name clashes in generated code matter only for code.
         match finding.code {
             Code::NameClash => report.warn(Diagnostic::of(finding).into_warning()),
             _ => report.errors.push(Diagnostic::of(finding)),

@@ -1,4 +1,4 @@
-//! What there is to say of a robot, as data.
+//! The report about a robot, as data.
 
 use articulated_core::description::{ById, Description, Joint, JointKind, Link, LinkId, Mimic};
 use articulated_core::diagnostic::{Diagnostic as Finding, summary};
@@ -13,7 +13,8 @@ use crate::diagnostic::Diagnostic;
 use crate::robot::Robot;
 use articulated_lab::json::Units;
 
-/// Beyond this many bodies some questions are left unasked: no robot, and quadratic work.
+/// Beyond this number of bodies some questions are not answered: it is no robot, and the work is
+/// quadratic.
 const MANY: usize = 5000;
 
 #[derive(Clone, Debug, Serialize)]
@@ -34,7 +35,7 @@ pub(super) struct Report {
     pub(super) totals: Totals,
     pub(super) links: Vec<LinkRow>,
     pub(super) joints: Vec<JointRow>,
-    /// What joints can feel of the inertial parameters; none for a robot of very many bodies.
+    /// Base parameters; `None` for a robot of very many bodies.
     pub(super) base_parameters: Option<Base>,
     /// The requested functions that can be generated.
     pub(super) functions: Vec<String>,
@@ -65,7 +66,7 @@ pub(super) struct Totals {
     pub(super) degrees_of_freedom: usize,
     /// kg, of all links.
     pub(super) mass: f64,
-    /// kg, of what moves.
+    /// kg, of all moving links.
     pub(super) moving_mass: f64,
 }
 
@@ -73,7 +74,7 @@ pub(super) struct Totals {
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct LinkRow {
     pub(super) link: String,
-    /// The joint that it moves with; none for what stands with the base.
+    /// The joint that it moves with; `None` for links fixed to the base.
     pub(super) moves_with: Option<String>,
     /// kg.
     pub(super) mass: f64,
@@ -100,7 +101,7 @@ pub(super) struct JointRow {
     pub(super) mimic: Option<MimicRow>,
     /// The coordinates at which it is locked.
     pub(super) locked: Option<Vec<f64>>,
-    /// kg that the joint moves: everything behind it; none if it is fixed or locked.
+    /// Mass that the joint moves, kg: all links behind it; zero if it is fixed or locked.
     pub(super) carries: f64,
 }
 
@@ -161,7 +162,7 @@ impl Report {
         self.warnings.push(warning);
     }
 
-    /// Fills in what the robot is made of, and warns of joints without an inertia of their own.
+    /// Fills in the contents of the robot, and warns of joints without an inertia of their own.
     pub(super) fn describe(&mut self, description: &Description, model: &Model<f64>) {
         self.robot = Some(description.name.clone());
         let bodies = model.bodies_of_links(description);
@@ -212,8 +213,8 @@ fn link_row(link: &Link, body: BodyId, model: &Model<f64>) -> LinkRow {
     }
 }
 
-/// The floating base first, then the joints in the order of their coordinates, then those that have
-/// none of their own, as the file has them.
+/// The floating base first, then the joints in the order of their coordinates, then joints without
+/// coordinates of their own, in the order of the file.
 fn joint_rows(description: &Description, model: &Model<f64>, bodies: &ById<LinkId, BodyId>) -> Vec<JointRow> {
     let carried = model.carried();
     let base = model.joints().iter().find(|j| j.name == FLOATING_BASE).map(|j| JointRow {

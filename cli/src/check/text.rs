@@ -134,7 +134,7 @@ fn joints(rows: &[JointRow]) -> Table {
     table
 }
 
-/// What a joint follows: `0.5 · a - 0.5 · c + 0.1`.
+/// The law of a follower: `0.5 · a - 0.5 · c + 0.1`.
 fn sum(mimic: &MimicRow) -> String {
     let mut out = String::new();
     let sign = |x: f64| if x < 0.0 { " - " } else { " + " };
@@ -172,8 +172,8 @@ fn base_parameters(base: &Base) -> String {
     format!("{head}\n\n{}", table.text())
 }
 
-/// Along the joint; all three numbers if it was shifted another way; and how far it was turned
-/// about it.
+/// The shift along the joint, or all three numbers if it was shifted in another direction; and the
+/// turn about it.
 fn moved(row: &BaseRow) -> String {
     let slid = match row.slid {
         [0.0, 0.0, 0.0] => "–".into(),

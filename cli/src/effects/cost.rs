@@ -1,5 +1,5 @@
-//! What effects cost: code is generated without them, with each of them, and with all of them, and
-//! counted or timed.
+//! Costs of effects: code is generated without effects, with each of them, and with all of them,
+//! and counted or timed.
 
 use articulated_codegen::graph::{Counts, Op};
 use articulated_codegen::{Generated, defined, generate as generate_code, massless};
@@ -20,7 +20,7 @@ use articulated_lab::session::Session;
 
 /// The scene with some of its effects.
 struct Variant {
-    /// What it has that the one of number `against` has not.
+    /// Its addition relative to the variant `against`.
     what: String,
     places: usize,
     effects: Vec<Applied>,
@@ -28,15 +28,15 @@ struct Variant {
     against: usize,
 }
 
-/// Functions, and the variants of the scene that have all of them.
+/// Functions, and the variants of the scene for which all of them exist.
 pub(super) struct Part {
     variants: Vec<Variant>,
     functions: Vec<String>,
-    /// Why one is not defined without effects.
+    /// The reason why a function is not defined without effects.
     why: Vec<Option<String>>,
 }
 
-/// Number of the variant that others are compared with.
+/// Index of the variant that others are compared with.
 const FIRST: usize = 0;
 /// States that functions are timed on.
 const STATES: usize = 64;
@@ -109,7 +109,7 @@ impl Part {
         made.into_iter().map(|made| made.map_err(Failure::from)).collect()
     }
 
-    /// What each function costs by its ledger.
+    /// The cost of each function by its ledger.
     pub(super) fn counted(&self, made: &[Generated]) -> Vec<Cost> {
         let operations = |k: usize, f: usize| Operations::of(made[k].ledger.functions[f].emitted());
         let cost = |(f, name): (usize, &String)| {
@@ -127,7 +127,7 @@ impl Part {
 }
 
 fn added(variant: &Variant, with: Operations, against: Operations) -> Added {
-    // Code without gravity is what gravity is added to.
+    // The variant is the code without gravity, so the difference has the opposite sign.
     let operations = if variant.what == "gravity" { against.less(with) } else { with.less(against) };
     Added { what: variant.what.clone(), places: variant.places, operations, ns: None }
 }

@@ -21,18 +21,18 @@ pub(super) struct Report {
     /// On how many joints or links each effect is, and where its numbers come from.
     pub(super) counts: Vec<Count>,
     pub(super) off: Vec<Off>,
-    /// What the robot's file says and nothing uses.
+    /// Unused content of the robot's file.
     pub(super) ignored: Vec<Ignored>,
     /// How many limbs the generated code computes at once.
     pub(super) limbs: usize,
-    /// What compiled the code that was timed.
+    /// The compiler of the timed code.
     pub(super) compiler: Option<String>,
     /// One for each function.
     pub(super) costs: Vec<Cost>,
     pub(super) units: Units,
 }
 
-/// Of what does not say its own.
+/// Units of numbers without their own.
 const UNITS: Units = Units(&[("gravity", "m/s²")]);
 
 /// An effect on a joint or a link.
@@ -63,8 +63,8 @@ pub(super) struct Count {
     pub(super) on: usize,
     /// Number of joints or links that move.
     pub(super) of: usize,
-    /// How many of those that have it take numbers from the robot's file, points from its collision
-    /// geometry, or numbers from the scene.
+    /// Number of those with numbers from the robot's file, points from its collision geometry, or
+    /// numbers from the scene.
     pub(super) from_file: usize,
     pub(super) from_collision: usize,
     pub(super) from_scene: usize,
@@ -90,12 +90,12 @@ pub(super) struct Ignored {
     pub(super) line: Option<u32>,
 }
 
-/// What a function costs without effects, what each effect adds by itself, and what all of them
-/// add; or what it costs with all of them.
+/// The cost of a function without effects, the addition of each effect alone, and of all together;
+/// or the cost with all of them.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Cost {
     pub(super) function: String,
-    /// Gravity is in it, effects are not; `None` where it is not defined without them.
+    /// Includes gravity, but no effects; `None` if the function is not defined without them.
     pub(super) without: Option<Counted>,
     /// For a function that is not defined without effects.
     pub(super) only_with: Option<OnlyWith>,
@@ -128,7 +128,7 @@ pub(super) struct Counted {
     pub(super) ns: Option<Summary>,
 }
 
-/// What something adds.
+/// The addition of an effect.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Added {
     /// An effect's name, `gravity`, or `all together`.
@@ -189,8 +189,7 @@ fn count(own: EffectCount) -> Count {
     Count { effect: effect.name(), on, of, from_file, from_collision, from_scene, text: own.to_string() }
 }
 
-/// Units are those of a joint that turns or of one that slides; both, as in the manual, of one that
-/// does both.
+/// Units are those of a joint that turns or slides; both, as in the manual, for one that does both.
 fn number(n: &articulated_scene::Number, kind: Option<JointKind>) -> Number {
     let (turning, sliding) = n.unit.split_once('|').unwrap_or((n.unit, n.unit));
     let has = |quantity| kind.is_some_and(|kind| kind.rates().contains(&quantity));

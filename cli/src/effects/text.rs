@@ -1,4 +1,4 @@
-//! Effects of a scene for people.
+//! Effects of a scene as text.
 
 use std::fmt::Write;
 
@@ -51,7 +51,7 @@ pub(super) fn text(r: &Report) -> String {
     out
 }
 
-/// Effects with the same numbers: the first of them, the joints or links of all, and their lines.
+/// Effects with the same numbers: the first one, the joints or links of all, and their lines.
 fn together(on: &[On]) -> Vec<(&On, Vec<String>, Vec<String>)> {
     let mut groups: Vec<(&On, Vec<String>, Vec<String>)> = Vec::new();
     for e in on {
@@ -67,12 +67,12 @@ fn together(on: &[On]) -> Vec<(&On, Vec<String>, Vec<String>)> {
     groups
 }
 
-/// What is not used for the same reason: tag, reason, and all that it is about.
+/// Unused content with the same reason: tag, reason, and all subjects.
 fn alike(ignored: &[Ignored]) -> Vec<(&str, &str, Vec<String>)> {
     let mut groups: Vec<(&str, &str, Vec<String>)> = Vec::new();
     for i in ignored {
         match groups.iter_mut().find(|(tag, why, _)| (*tag, *why) == (&i.tag, &i.why)) {
-            // "joint" once for all of them
+            // "joint" once for all subjects
             Some((.., subjects)) => subjects.push(i.of.split_once(' ').map_or(i.of.clone(), |(_, name)| name.to_owned())),
             None => groups.push((&i.tag, &i.why, vec![i.of.clone()])),
         }

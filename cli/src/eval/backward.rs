@@ -1,6 +1,6 @@
-//! Solutions with the mass matrix where rounding may move the result itself: a stiff contact, steep
-//! friction, a light link. There a bound on the result says little, and the torques that the result
-//! needs are compared with those that were applied.
+//! Solutions with the mass matrix for which rounding may change the result itself: a stiff contact,
+//! steep friction, a light link. There a bound on the result is of little use, so the torques
+//! required by the result are compared with the applied ones.
 
 use articulated_core::algorithm::Function;
 use articulated_core::model::Model;
@@ -9,7 +9,7 @@ use articulated_reference::ROUNDOFF;
 
 use super::BOUND;
 
-/// A result is judged by its torques where one unit of the bound is more than this part of it.
+/// A result is judged by its torques if one unit of the bound exceeds this part of it.
 pub(super) const LOOSE: f64 = 1e-3;
 
 /// The largest backward error of the states that are judged by it.
@@ -29,7 +29,7 @@ impl Backward {
         self.residual.units.is_nan() || self.residual.units > BOUND
     }
 
-    /// The larger of what was found and a new state.
+    /// The larger residual: the old one or that of a new state.
     pub(super) fn larger(old: Option<Self>, state: usize, residual: Residual) -> Self {
         match old {
             Some(old) if old.residual.is_larger(&residual) => Self { states: old.states + 1, ..old },
@@ -38,7 +38,7 @@ impl Backward {
     }
 }
 
-/// Whether one unit of the bound is more than [`LOOSE`] of the result. `scale`: that of each
+/// Whether one unit of the bound is more than [`LOOSE`] of the result. `scale`: the scale of each
 /// number.
 pub(super) fn is_loose(scale: &[f64], result: &[f64]) -> bool {
     let largest = |numbers: &[f64]| numbers.iter().fold(0.0_f64, |most, x| most.max(x.abs()));

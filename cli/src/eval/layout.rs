@@ -1,4 +1,4 @@
-//! What the numbers of a result belong to.
+//! Names of the numbers of a result.
 
 use articulated_core::algorithm::{Dim, Function};
 use articulated_core::model::{JointInfo, Model};
@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 
 /// The names along one dimension.
 struct Names {
-    /// (name, how many indices it stands for); without a name: an index is only a number.
+    /// (name, number of its indices); without names, indices are numbers.
     parts: Option<Vec<(String, usize)>>,
     length: usize,
 }
@@ -18,7 +18,7 @@ impl Names {
             Dim::Nq => Some(joints(|j| j.q.1)),
             Dim::Nv => Some(joints(|j| j.v.1)),
             Dim::Frames => Some(model.frames().iter().map(|f| (f.name.clone(), 1)).collect()),
-            // A moving link goes by the joint that carries it.
+            // A moving link has the name of its joint.
             Dim::Links => Some(model.links().map(|i| (model.bodies()[i].name.clone(), 1)).collect()),
             Dim::Of(_) => None,
         };
@@ -35,8 +35,8 @@ impl Names {
     }
 }
 
-/// A result with its names: objects by joint or link, a list where a joint has several numbers or
-/// where a dimension has no names.
+/// A result with its names: objects by joint or link, a list if a joint has several numbers or a
+/// dimension has no names.
 pub(super) fn labelled(function: &Function<f64>, out: &[f64], model: &Model<f64>) -> Labelled {
     let names: Vec<Names> = function.gives.iter().map(|d| Names::of(*d, model)).collect();
     nested(&names, out)
@@ -87,7 +87,7 @@ pub(super) struct Grid {
 const PLACEMENT: [&str; 12] = ["r11", "r12", "r13", "r21", "r22", "r23", "r31", "r32", "r33", "x", "y", "z"];
 
 impl Grid {
-    /// That of a function's result; one column without a name for one dimension or none.
+    /// The layout of a function's result; one column without a name for at most one dimension.
     pub(super) fn of(function: &Function<f64>, model: &Model<f64>) -> Self {
         let each = |d: &Dim| Names::of(*d, model).each();
         let (rows, columns) = match function.gives {

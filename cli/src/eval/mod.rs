@@ -74,7 +74,7 @@ fn functions(names: &[String]) -> Vec<&'static Function<f64>> {
     wanted
 }
 
-/// The states of the file; all functions must find their arguments in all of them.
+/// The states of the file; each must contain the arguments of all functions.
 fn read_states(path: &Path, model: &Model<f64>, functions: &[&'static Function<f64>]) -> Result<states::States, Failure> {
     let file = path.display();
     let wrong = |lines: Vec<String>| Failure::input(lines.into_iter().map(|line| format!("{file}: {line}")));
@@ -85,7 +85,7 @@ fn read_states(path: &Path, model: &Model<f64>, functions: &[&'static Function<f
     if missing.is_empty() { Ok(states) } else { Err(wrong(states::listed(missing))) }
 }
 
-/// The arguments that functions do not find, a line each.
+/// The missing arguments of functions, a line each.
 fn missing(states: &[State], model: &Model<f64>, functions: &[&'static Function<f64>]) -> Vec<String> {
     let mut lines = Vec::new();
     for (k, state) in states.iter().enumerate() {
@@ -99,7 +99,7 @@ fn missing(states: &[State], model: &Model<f64>, functions: &[&'static Function<
     lines
 }
 
-/// Compiled code, or none with a note of the reason if generic results will do.
+/// Compiled code, or `None`, with a note of the reason, if generic results suffice.
 fn compile(robot: &Robot, names: &[String], needed: bool, report: &mut Report) -> Result<Option<Compiled>, Failure> {
     let generated = robot.generate(names)?;
     let progress = console::Progress::new(1);

@@ -56,7 +56,7 @@ impl Difference {
     /// The largest difference of two results in one state.
     pub(super) fn largest(state: usize, a: &[f64], b: &[f64], scale: &[f64]) -> Self {
         let mut worst = Self { state, absolute: 0.0, units: 0.0 };
-        // Where neither is a number there is nothing to compare: that is told of the state.
+        // If both are not finite, there is no difference: that is reported for the state.
         for (k, (a, b)) in a.iter().zip(b).enumerate().filter(|(_, (a, b))| a.is_finite() || b.is_finite()) {
             let absolute = (a - b).abs();
             let units = if absolute == 0.0 { 0.0 } else { absolute / (ROUNDOFF * scale.get(k).copied().unwrap_or(0.0)) };
@@ -71,7 +71,7 @@ impl Difference {
         self.units.is_nan() || self.units > BOUND
     }
 
-    /// The larger of what was found and what is new.
+    /// The larger difference, old or new.
     pub(super) fn larger(old: Option<Self>, new: Self) -> Option<Self> {
         Some(match old {
             Some(old) if worse(old.units, new.units).to_bits() == old.units.to_bits() => {

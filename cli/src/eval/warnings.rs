@@ -39,12 +39,12 @@ pub(super) fn of_results(functions: &[FunctionReport], states: &[State], model: 
     lines
 }
 
-/// Which of these numbers are none.
+/// Indices of the numbers that are not finite.
 fn not_finite(out: &[f64]) -> Vec<usize> {
     (0..out.len()).filter(|&at| !out[at].is_finite()).collect()
 }
 
-/// Why solutions with the mass matrix at these coordinates say nothing.
+/// The reason why solutions with the mass matrix are meaningless at these coordinates.
 fn singular(model: &Model<f64>, ws: &mut Workspace<f64>, q: &[f64]) -> Option<String> {
     let (zero, mut out) = (vec![0.0; model.nv()], vec![0.0; model.nv()]);
     checked_forward_dynamics(model, ws, q, &zero, &zero, &mut out).err().map(|singular| singular.to_string())

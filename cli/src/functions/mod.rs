@@ -27,7 +27,7 @@ struct Subject {
     tips: Tips,
 }
 
-/// Prints what there is and what it costs.
+/// Prints the functions and their costs.
 pub(crate) fn run(arguments: &FunctionsArguments, format: Format) -> Result<(), Failure> {
     let default: Vec<PathBuf> = ROBOTS.map(PathBuf::from).to_vec();
     let names = if arguments.robots.is_empty() { &default } else { &arguments.robots };
@@ -77,7 +77,7 @@ fn subject(name: &Path, arguments: &FunctionsArguments) -> Result<(Subject, Robo
     Ok((Subject { robot, tips }, row))
 }
 
-/// What a function costs on a robot, or why it is not defined there.
+/// The cost of a function on a robot, or the reason why it is not defined there.
 fn cell(f: &Function<f64>, subject: &Subject) -> Result<Cell, Failure> {
     let Some(frames) = subject.tips.of_function(f) else { return Ok(Cell::Undefined(FEW.into())) };
     let request = subject.robot.clone().on(frames).whole_request(&[f.name.to_owned()]);

@@ -35,7 +35,7 @@ pub(super) struct FunctionRow {
     pub(super) unit: &'static str,
     pub(super) summary: &'static str,
     pub(super) algorithm: &'static str,
-    /// Of a preset: the function, and which of its arguments are zero.
+    /// For a preset: the function, and its arguments that are zero.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) preset_of: Option<Preset>,
     /// One for each robot.
@@ -46,7 +46,7 @@ pub(super) struct FunctionRow {
 #[serde(rename_all = "snake_case")]
 pub(super) enum Cell {
     Cost(Cost),
-    /// Why the robot does not have the function.
+    /// The reason why the robot does not have the function.
     Undefined(String),
 }
 
@@ -57,7 +57,7 @@ pub(super) struct Preset {
     zeros: Vec<&'static str>,
 }
 
-/// What is emitted.
+/// The emitted operations.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Cost {
     pub(super) multiplications: u64,
@@ -66,7 +66,7 @@ pub(super) struct Cost {
     pub(super) instructions: u64,
     pub(super) sines_and_cosines: u64,
     pub(super) depth: u32,
-    /// The ways chosen by count, where there is a choice.
+    /// The forms chosen by count, if there are several.
     pub(super) ways: Vec<Cow<'static, str>>,
 }
 
@@ -89,8 +89,7 @@ impl FunctionRow {
         }
     }
 
-    /// The algorithm and its source; of a preset what it is a preset of, the function's name
-    /// between two of these quotes.
+    /// The algorithm and its source; for a preset, its function's name between two of these quotes.
     pub(super) fn computed_by(&self, quote: &str) -> String {
         self.preset_of.as_ref().map_or_else(
             || self.algorithm.to_owned(),

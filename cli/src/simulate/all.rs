@@ -34,8 +34,8 @@ struct Row {
     generic: f64,
 }
 
-/// Runs every bundled scene, by generated and by generic code, without writing anything. The status
-/// is that of the worst of them.
+/// Runs every bundled scene, by generated and by generic code, without writing files. The status is
+/// the worst one.
 pub(super) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let progress = Progress::new(articulated_models::SCENES.len());
@@ -50,8 +50,7 @@ pub(super) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     Ok(status(&rows))
 }
 
-/// What the command ends with: as of a single scene, if one of them ended outside its own
-/// tolerance.
+/// The command's status: as for a single scene, if one ended outside its own tolerance.
 fn status(rows: &[Row]) -> u8 {
     if rows.iter().all(|row| row.status == "ok") { OK } else { OUT_OF_TOLERANCE }
 }

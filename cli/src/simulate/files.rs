@@ -1,4 +1,4 @@
-//! What `articulated simulate` writes: a folder with every file of a motion, or its page alone.
+//! Output of `articulated simulate`: a folder with every file of a motion, or its page alone.
 
 use std::path::Path;
 
@@ -19,7 +19,7 @@ use crate::arguments::Package;
 use crate::failure::Failure;
 use crate::{console, output};
 
-/// Where the motion goes.
+/// Destination of the motion.
 pub(super) struct Files<'a> {
     place: Place<'a>,
     /// Only the ends of the motion are recorded.
@@ -27,7 +27,7 @@ pub(super) struct Files<'a> {
     packages: &'a [Package],
 }
 
-/// What messages call the path and the time between records.
+/// Names of the path and of the time between records in messages.
 pub(super) const OPTIONS: [&str; 2] = ["--output", "--every"];
 pub(super) const FIELDS: [&str; 2] = ["path", "every"];
 
@@ -37,9 +37,9 @@ enum Place<'a> {
 }
 
 impl<'a> Files<'a> {
-    /// The folder of `--output`, made if it is not there, or the page, if the name ends with
-    /// `.html`. `names`: [`OPTIONS`] or [`FIELDS`]. Errors: the name of a Parquet file; a page of
-    /// the motion's ends.
+    /// The folder of `--output`, created if missing, or the page, if the name ends with `.html`.
+    /// `names`: [`OPTIONS`] or [`FIELDS`]. Errors: the name of a Parquet file; a page of the
+    /// motion's ends.
     pub(super) fn at(path: &'a Path, packages: &'a [Package], settings: &Settings, names: [&str; 2]) -> Result<Self, Failure> {
         let ends = settings.output == Output::Ends;
         let [output, every] = names;
@@ -74,8 +74,8 @@ impl<'a> Files<'a> {
         }
     }
 
-    /// All files of a motion, of its ends alone without what draws it; their names go into the
-    /// summary, which is the last of them.
+    /// All files of a motion; without drawings if only its ends are recorded. Their names are added
+    /// to the summary, which is written last.
     fn write_all(&self, session: &Session, motion: &Motion, summary: &mut Summary, folder: &Path) -> Result<(), Failure> {
         let recording = &motion.recording;
         let drawn = if self.ends { None } else { Some(self.drawn(session, motion, summary)?) };
@@ -101,16 +101,16 @@ impl<'a> Files<'a> {
         output::write(&folder.join("summary.json"), crate::json(summary))
     }
 
-    /// The page. What cannot be drawn as it is becomes a warning.
+    /// The page. A warning reports what is not drawn exactly.
     fn page(&self, session: &Session, motion: &Motion, summary: &mut Summary) -> Result<String, Failure> {
-        // Those of the command line are before those of the scene.
+        // Packages of the command line come before those of the scene.
         let of_scene =
             session.request.options.robot.packages.iter().map(|(name, folder)| Package { name: name.clone(), folder: folder.clone() });
         let packages: Vec<Package> = self.packages.iter().cloned().chain(of_scene).collect();
         let meshes = Meshes::new(session.folders.clone(), &packages, &session.request.file);
         let setting = setting(session, &motion.recording, summary);
         let page = page::html(&motion.recording, &setting, &meshes).map_err(|e| Failure::tool(&e))?;
-        // A line for each sort on the console, and all of them in the summary.
+        // A line for each kind on the console, and all of them in the summary.
         let warnings = meshes.into_warnings().warnings;
         lines(warnings.iter()).iter().for_each(|line| console::warn(line));
         summary.warnings.extend(warnings.iter().map(ToString::to_string));
@@ -126,7 +126,7 @@ impl<'a> Files<'a> {
     }
 }
 
-/// Writes the MCAP file of a motion, of at most so many MB.
+/// Writes the MCAP file of a motion, of at most `most` MB.
 pub(super) fn write_mcap(session: &Session, motion: &Motion, summary: &mut Summary, path: &Path, most: u64) -> Result<(), Failure> {
     let bytes = mcap::bytes(&motion.recording, &session.description, &session.model, session.base(), most as usize * 1_000_000);
     let Some(bytes) = bytes.map_err(|e| Failure::tool(&e))? else {
@@ -148,7 +148,7 @@ pub(super) fn is_page(path: &Path) -> bool {
 const PAGE: &str = "motion.html";
 const ANIMATION: &str = "motion.svg";
 
-/// What draws a motion.
+/// Drawings of a motion.
 struct Drawn {
     page: String,
     animation: String,
@@ -167,7 +167,7 @@ fn clear(folder: &Path, pictures: &[&str], page: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What the page shows of a scene.
+/// Contents of the page besides the motion.
 fn setting<'a>(session: &'a Session, recording: &Recording, summary: &Summary) -> Setting<'a> {
     let contacts = || session.effects_of(EffectId::contact);
     let ball = |a: &articulated_core::effect::Applied| (a.on.clone(), a.at.xyz, field(a, "radius").first().copied().unwrap_or(0.0));
@@ -187,10 +187,10 @@ fn setting<'a>(session: &'a Session, recording: &Recording, summary: &Summary) -
     }
 }
 
-/// Density of a ball of which only the mass is known, kg/m³: that of a golf ball.
+/// Density of a ball with a given mass only, kg/m³: that of a golf ball.
 const DENSITY: f64 = 1130.0;
 
-/// The ball of the scene: at rest or as fast as the scene says up to its event, free after it.
+/// The ball of the scene: at rest or at the scene's speed until its event, free after it.
 fn projectile(session: &Session, recording: &Recording) -> Option<Projectile> {
     let impact = session.scene.impact.as_ref()?;
     let normal = unit(impact.normal)?;

@@ -1,5 +1,5 @@
-//! Scenes for programs: what `articulated simulate` does, with values in place of a command line
-//! and lines on a console.
+//! Scenes for programs: `articulated simulate` with values in place of a command line and console
+//! output.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -22,7 +22,7 @@ use crate::robot::has_room;
 
 pub use super::table::Column;
 
-/// Why there is no scene, no motion, or no file.
+/// The reason for a missing scene, motion or file.
 #[derive(Clone, Debug)]
 pub struct Refusal {
     /// A line for each error.
@@ -38,7 +38,7 @@ impl From<Failure> for Refusal {
     }
 }
 
-/// What a caller says in place of the scene's `[simulation]`.
+/// A caller's replacements for the scene's `[simulation]`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Changes {
     /// The last time, s.
@@ -49,7 +49,7 @@ pub struct Changes {
     pub step: Option<f64>,
     /// Relative tolerance of a step.
     pub rtol: Option<f64>,
-    /// Absolute tolerance of a step, rad, m, and those a second.
+    /// Absolute tolerance of a step, rad, m, and the same per second.
     pub atol: Option<f64>,
     /// Seconds between two records.
     pub every: Option<f64>,
@@ -146,7 +146,7 @@ impl Recorded {
         table::columns(&self.motion.recording)
     }
 
-    /// Numbers of a state: nq and nv.
+    /// Lengths of a state: nq and nv.
     #[must_use]
     pub fn sizes(&self) -> (usize, usize) {
         (self.motion.recording.q_names.len(), self.motion.recording.v_names.len())
@@ -158,9 +158,9 @@ impl Recorded {
         crate::json(&self.summary)
     }
 
-    /// Writes a folder with all files, or a page alone where the path ends with `.html`.
-    /// `packages`: folders of ROS packages, `NAME=FOLDER` or `FOLDER`, for meshes. The paths or
-    /// names of what is written.
+    /// Writes a folder with all files, or only a page if the path ends with `.html`. `packages`:
+    /// folders of ROS packages, `NAME=FOLDER` or `FOLDER`, for meshes. Returns the paths or names
+    /// of the written files.
     pub fn write<P: AsRef<OsStr>>(&self, path: &Path, packages: &[P]) -> WithWarnings<Vec<String>> {
         warned(|| {
             let package = |text: &P| Package::parse(&text.as_ref().to_string_lossy());

@@ -1,11 +1,11 @@
-//! Names that are cut to the room there is for them.
+//! Names that are cut to the available room.
 
 use std::collections::BTreeMap;
 
 use articulated_lab::plot::width;
 
-/// A text that is no wider than `most`, with … for what does not fit, in its middle: most names
-/// differ at their ends.
+/// A text no wider than `most`, with … in its middle if it is too long: most names differ at their
+/// ends.
 fn fitted(text: &str, size: f64, most: f64) -> String {
     if width(text, size) <= most {
         return text.to_owned();
@@ -19,7 +19,8 @@ fn fitted(text: &str, size: f64, most: f64) -> String {
     (0..letters.len()).rev().map(cut).find(|t| width(t, size) <= most).unwrap_or_default()
 }
 
-/// Each no wider than `most`; of names that would look alike, what they share is cut first.
+/// Each label is no wider than `most`; in names that would look alike, the common part is cut
+/// first.
 pub(super) fn told_apart(names: &[String], size: f64, most: f64) -> Vec<String> {
     let mut labels: Vec<String> = names.iter().map(|name| fitted(name, size, most)).collect();
     let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
@@ -39,7 +40,7 @@ pub(super) fn told_apart(names: &[String], size: f64, most: f64) -> Vec<String> 
     labels
 }
 
-/// How many letters all names begin and end with, whole numbers only.
+/// Number of letters that all names begin and end with, without splitting numbers.
 fn shared(names: &[Vec<char>]) -> (usize, usize) {
     let Some(first) = names.first() else { return (0, 0) };
     let shortest = names.iter().map(Vec::len).min().unwrap_or(0);
@@ -55,7 +56,7 @@ fn shared(names: &[Vec<char>]) -> (usize, usize) {
     (head, tail)
 }
 
-/// As much of the head and of the tail about the middle as fits.
+/// As much of the head and of the tail around the middle as fits.
 fn around(head: &[char], middle: &str, tail: &[char], size: f64, most: f64) -> String {
     let cut = |keep: usize| {
         let (begin, end) = (keep.min(head.len()), tail.len() - keep.min(tail.len()));

@@ -19,7 +19,7 @@ use super::recording::Recording;
 
 /// The first and the last bytes of a file.
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
-/// A chunk ends when it has as many bytes.
+/// Bytes after which a chunk ends.
 const CHUNK: usize = 1 << 20;
 
 /// Topics with the names that viewers know their schemas by.
@@ -76,8 +76,7 @@ struct Header<'a> {
     frame_id: &'a str,
 }
 
-/// The file's bytes; `None`, if there would be more than `most` of them. `model` has a frame for
-/// each link.
+/// The file's bytes; `None` if there are more than `most`. `model` has a frame for each link.
 pub(super) fn bytes(
     r: &Recording,
     description: &Description,
@@ -90,7 +89,7 @@ pub(super) fn bytes(
     let children: Vec<&str> = links.into_iter().filter(|name| *name != root).collect();
     let Ok(framed) = model.clone().with_frames(&children) else { return Ok(Some(Vec::new())) };
     let (mut ws, mut row) = (Dynamics::workspace(&framed), vec![0.0; 12 * children.len()]);
-    // Of a joint with several coordinates the place is among the transforms.
+    // The positions of a joint with several coordinates are among the transforms.
     let joints: Vec<(&str, usize, usize)> =
         model.joints().iter().filter(|j| j.q.1 == 1 && j.v.1 == 1).map(|j| (j.name.as_str(), j.q.0, j.v.0)).collect();
     let names: Vec<&str> = joints.iter().map(|j| j.0).collect();
@@ -125,8 +124,8 @@ pub(super) fn bytes(
     Ok(Some(file.finish()))
 }
 
-/// The frame that placements are given in: the root link of a fixed base, else the world, under a
-/// name that no link has.
+/// The frame of placements: the root link of a fixed base, else the world, with a name that no link
+/// has.
 fn root(description: &Description, base: Base) -> String {
     match (base, description.root()) {
         (Base::Fixed, Some(root)) => description.links[root].name.clone(),

@@ -36,7 +36,7 @@ use motion::Motion;
 use size::Size;
 use summary::Summary;
 
-/// What `--print-scene` prints as JSON.
+/// Output of `--print-scene` as JSON.
 #[derive(Serialize)]
 struct PrintedScene<'a> {
     /// The scene, as TOML.

@@ -8,7 +8,7 @@ use crate::console::Progress;
 use crate::table::number;
 use articulated_lab::session::{Session, joint_of};
 
-/// When to say that a motion is slow, and what is left of it then at least.
+/// Time after which a slow motion is reported, and the minimum remaining time then.
 const PATIENCE: Duration = Duration::from_secs(8);
 const LONG: Duration = Duration::from_secs(30);
 
@@ -32,7 +32,7 @@ impl<'a> RunMonitor<'a> {
     /// After a step, to the time t, s.
     pub(super) fn look(&mut self, t: f64, counts: &Counts) {
         let tries = counts.steps + counts.rejected;
-        // The bar moves once every few steps, so that it costs next to nothing.
+        // The bar moves once every few steps, so its cost is negligible.
         if tries < self.looked + EVERY {
             return;
         }

@@ -16,15 +16,15 @@ use crate::failure::Failure;
 use crate::named_scene;
 use crate::robot::has_room;
 
-/// What came of it.
+/// The result.
 pub(super) struct Motion {
     pub(super) recording: Recording,
     pub(super) counts: Counts,
     /// Over all steps.
     pub(super) balance: Balance,
-    /// What smoothed friction did not hold.
+    /// Creep where smoothed friction should hold.
     pub(super) creep: Vec<Creep>,
-    /// What friction would hold, and moves all the same.
+    /// Links that move although friction would hold them.
     pub(super) slides: Vec<Slide>,
     /// The time that was reached, s.
     pub(super) reached: f64,
@@ -33,7 +33,7 @@ pub(super) struct Motion {
     pub(super) wall: Duration,
     /// Kinetic energy that the ball of the scene's impact got, J, if it was hit.
     pub(super) ball: Option<f64>,
-    /// Why it did not go on to its end.
+    /// The reason why it did not reach its end.
     pub(super) error: Option<String>,
     /// Warnings about its initial state, its events and its steps.
     pub(super) warnings: Vec<String>,
@@ -65,8 +65,8 @@ fn requested_events(session: &Session) -> Result<Vec<String>, Failure> {
     Ok(motion.unavailable_events().iter().map(ToString::to_string).collect())
 }
 
-/// Whether torques determine accelerations at all. What generated code would be refused for,
-/// generic code is.
+/// Checks that torques determine accelerations: generic code is refused for the same robots as
+/// generated code.
 pub(super) fn solvable(session: &Session) -> Result<(), Failure> {
     let (file, model) = (&session.request.file, &session.model);
     Ok(articulated_codegen::defined(file, model, &articulated_codegen::massless(model), FunctionId::forward_dynamics.row::<f64>())?)
@@ -113,7 +113,7 @@ pub(super) fn run(
 fn named_recording(session: &Session, run: Run, occurrences: Vec<Occurrence>) -> Recording {
     let n = run.len();
     let whole = |x: Vec<f64>| if x.len() == n { x } else { vec![0.0; n] };
-    // Without mass there is no centre of it: rotors have no momentum here.
+    // Without mass there is no centre of mass: rotors have no momentum here.
     let heavy = session.model.moving_mass() > 0.0;
     let momentum = (0..n).map(|k| run.momentum_at(k).filter(|_| heavy).and_then(|p| p.try_into().ok()).unwrap_or_default()).collect();
     Recording {

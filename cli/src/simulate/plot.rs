@@ -12,17 +12,17 @@ pub(super) struct Picture {
     pub(super) svg: String,
 }
 
-/// More events than this are counted and not drawn: they would be all that is seen.
+/// More events than this are counted and not drawn: they would hide the curves.
 const EVENTS: usize = 60;
 
-/// Of the largest number of a picture: what is no more than this throughout is rounding of it as a
-/// rule, and a line at zero beside it.
+/// Relative to the largest number of a picture: a curve that is never larger is usually a rounding
+/// error, and looks like zero.
 const UNSEEN: f64 = 1e-12;
 
-/// What there can be pictures of; of energy there always is one.
+/// Pictures of a motion; energy is always drawn.
 pub(super) const PICTURES: [&str; 4] = ["positions", "velocities", "torques", "energy"];
 
-/// All pictures of a motion called `title`; one without a curve that is worth drawing is none.
+/// All pictures of a motion called `title`, without those that have no curve worth drawing.
 pub(super) fn pictures(r: &Recording, title: &str) -> Vec<Picture> {
     let moving = |names: &[Named], rows: &[f64]| (panels(&seen(coordinates(names, r, rows))), names.len());
     let kinds = [moving(&r.q_names, &r.q), moving(&r.v_names, &r.v), moving(&r.tau_names, &r.tau), (energies(r), 0)];
@@ -30,7 +30,7 @@ pub(super) fn pictures(r: &Recording, title: &str) -> Vec<Picture> {
     worth.map(|(name, (panels, all))| picture(name, &panels, &notes(r, &panels, all), r, title)).collect()
 }
 
-/// Without those that are zero throughout, or as good as that beside the largest.
+/// Without curves that are zero, or negligible relative to the largest, throughout.
 fn seen(mut all: Vec<Series>) -> Vec<Series> {
     let numbers = all.iter().flat_map(|(_, values)| values).map(|x| x.abs());
     let least = UNSEEN * numbers.filter(|x| x.is_finite()).fold(0.0, f64::max);
@@ -71,7 +71,7 @@ fn coordinates(names: &[Named], r: &Recording, rows: &[f64]) -> Vec<Series> {
     names.iter().enumerate().map(|(k, n)| (n.clone(), r.series(names, rows, k))).collect()
 }
 
-/// What a panel of numbers of this unit is about.
+/// The quantity of a panel of numbers of this unit.
 fn quantity(unit: &str) -> &'static str {
     match unit {
         "rad" => "angle, rad",
@@ -84,8 +84,8 @@ fn quantity(unit: &str) -> &'static str {
     }
 }
 
-/// Numbers of one unit share panels, those of the base apart; at most eight to a panel, and no
-/// panel is much emptier than another.
+/// Numbers of one unit share panels, separate from those of the base; at most eight per panel,
+/// evenly distributed.
 fn panels(series: &[Series]) -> Vec<Panel> {
     let mut kinds: Vec<(bool, &str)> = Vec::new();
     for (n, _) in series {
@@ -132,7 +132,7 @@ fn energies(r: &Recording) -> Vec<Panel> {
     ]
 }
 
-/// What a panel shows.
+/// Contents of a panel.
 #[derive(Clone, Debug)]
 struct Panel {
     /// Over the field, with the unit: `angle, rad`.
@@ -176,7 +176,7 @@ fn draw(out: &mut Drawing, panel: &Panel, clock: &Clock, [x0, y0]: Point) {
     legend(out, panel, &strokes, !clock.events.is_empty(), [right + 12.0, top + 6.0]);
 }
 
-/// What an axis is of, with the power of ten of the numbers at it.
+/// Title of an axis, with the power of ten of its numbers.
 fn titled(what: &str, power: i32) -> String {
     if power == 0 { what.to_owned() } else { format!("{what} (numbers × 10{})", raised(power)) }
 }
@@ -200,8 +200,8 @@ fn legend(out: &mut Drawing, panel: &Panel, strokes: &[Stroke], events: bool, [x
     }
 }
 
-/// The curve's points, in pieces where it is not finite: of many that share a place along the axis,
-/// the first, the least, the most and the last.
+/// The curve's points, in finite pieces: of many points at the same place of the axis, the first,
+/// the least, the largest and the last.
 fn thinned(t: &[f64], values: &[f64], time: &Axis, value: &Axis) -> Vec<Vec<Point>> {
     let mut pieces: Vec<Vec<Point>> = Vec::new();
     let mut bin: Vec<Point> = Vec::new();
@@ -250,11 +250,11 @@ struct Curve {
     values: Vec<f64>,
 }
 
-/// Colours of curves. Readers with colour blindness can distinguish them, on screen and in print.
-/// Largest number of curves of a panel.
+/// Colours of curves, distinguishable with colour blindness, on screen and in print. Their number
+/// is the largest number of curves of a panel.
 const COLOURS: [&str; 8] = ["#1b6ca8", "#d9822b", "#3f8f5b", "#c2453f", "#7a5195", "#b59f00", "#36a9bf", "#555555"];
 
-/// The look of a curve.
+/// The stroke of a curve.
 #[derive(Clone, Debug, PartialEq)]
 struct Stroke {
     colour: &'static str,
@@ -262,20 +262,20 @@ struct Stroke {
     dash: Option<Dash>,
 }
 
-/// Curves nearer to each other than this are one, in points.
+/// Curves closer to each other than this coincide, in points.
 const APART: f64 = 0.75;
-/// What shows of each of several curves that are one, in points.
+/// Visible part of each of several coinciding curves, in points.
 const SHOWN: f64 = 6.0;
-/// Points to an oscillation for a line of full width; with fewer it is thinner.
+/// Minimum points per oscillation for a line of full width; with fewer it is thinner.
 const WAVE: f64 = 12.0;
 
-/// Of a line.
+/// Widths of a line.
 const THICK: f64 = 1.5;
 const THIN: f64 = 0.5;
 
-/// Of the curves of a panel, over a field of this width in points: those that oscillate too often
-/// to be told apart are thinner; of those that lie on each other all but the first are dashed, the
-/// later the shorter.
+/// Strokes of the curves of a panel, over a field of this width in points: curves with too many
+/// oscillations to be distinguished are thinner; of coinciding curves all but the first are dashed,
+/// later ones with shorter dashes.
 fn strokes(curves: &[Curve], value: &Axis, width: f64) -> Vec<Stroke> {
     let first = firsts(curves, value);
     let alike = |k: usize| first.iter().filter(|f| **f == first[k]).count();
@@ -288,7 +288,7 @@ fn strokes(curves: &[Curve], value: &Axis, width: f64) -> Vec<Stroke> {
     (0..first.len()).map(|k| Stroke { colour: COLOURS[k % COLOURS.len()], width: line(k), dash: dash(k) }).collect()
 }
 
-/// For each curve the first that lies where it does.
+/// For each curve the first curve that it coincides with.
 fn firsts(curves: &[Curve], value: &Axis) -> Vec<usize> {
     let same = |a: f64, b: f64| (a.is_nan() && b.is_nan()) || (value.at(a) - value.at(b)).abs() < APART;
     let mut out: Vec<usize> = Vec::new();
@@ -299,7 +299,7 @@ fn firsts(curves: &[Curve], value: &Axis) -> Vec<usize> {
     out
 }
 
-/// How often a curve goes up and down by what is seen.
+/// Number of visible oscillations of a curve.
 fn waves(values: &[f64], value: &Axis) -> f64 {
     let mut heights = values.iter().map(|x| value.at(*x)).filter(|y| y.is_finite());
     let Some(mut last) = heights.next() else { return 0.0 };
@@ -316,7 +316,7 @@ fn waves(values: &[f64], value: &Axis) -> f64 {
     0.5 * f64::from(turns)
 }
 
-/// Times, and what the axis is called.
+/// Times, and the title of their axis.
 struct Clock {
     t: Vec<f64>,
     /// Of events.
@@ -325,7 +325,7 @@ struct Clock {
 }
 
 /// A motion that starts this many of its lengths after 0 gets tick labels relative to its start.
-/// Otherwise all labels would be alike but for their last digits.
+/// Otherwise all labels would differ only in their last digits.
 const FAR: f64 = 1e4;
 
 impl Clock {
@@ -377,7 +377,7 @@ mod tests {
         assert!(drawn.contains("1 of 19 curves are not drawn") && !drawn.contains(&format!(">{}<", r.q_names[9].label)));
         (r.q, r.v) = (vec![0.0; r.q.len()], vec![0.0; r.v.len()]);
         assert_eq!(pictures(&r, "still").iter().map(|p| p.name).collect::<Vec<_>>(), ["energy"]);
-        // What is small by itself is there; beside what is large it is rounding.
+        // Small numbers alone are drawn; next to large ones they are rounding errors.
         torque(&mut r, 9e-13);
         let drawn = &pictures(&r, "small")[0];
         assert!(drawn.name == "torques" && drawn.svg.contains("17 of 18 curves") && drawn.svg.contains("torque, N·m (numbers × 10⁻¹"));
@@ -427,7 +427,7 @@ mod tests {
         assert_eq!(raised(-12), "⁻¹²");
     }
 
-    /// Each number at the axis times the power that the axis tells is a time.
+    /// Each number at the axis, multiplied by the axis's power, is a time.
     #[test]
     fn the_axis_of_time_tells_its_power() {
         for (end, told, last) in

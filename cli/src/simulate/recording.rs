@@ -1,15 +1,14 @@
-//! A motion as its outputs need it: numbers at times, with the names and units of what they belong
-//! to.
+//! A motion for its outputs: numbers at times, with their names and units.
 
 use articulated_core::description::{JointKind, Quantity};
 use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
 use articulated_motion::{EventKind, Occurrence};
 use serde::Serialize;
 
-/// A coordinate or a rate: whose it is, and in what unit.
+/// A coordinate or a rate: its joint and its unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Named {
-    /// The joint's name, with the number of the coordinate where the joint has several: `elbow`,
+    /// The joint's name, with the index of the coordinate if the joint has several: `elbow`,
     /// `base[3]`.
     pub(crate) name: String,
     /// For people: `elbow`, `base y`.
@@ -44,7 +43,7 @@ pub(crate) struct About {
     pub(crate) on: String,
     /// Whether it begins or ends.
     pub(crate) begins: bool,
-    /// Which of the link's contacts, from 1.
+    /// Index among the link's contacts, from 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) contact: Option<usize>,
 }
@@ -59,8 +58,7 @@ impl From<Occurrence> for EventRecord {
     }
 }
 
-/// A motion at the times of its output. Vectors of vectors are one behind the other, one of each a
-/// time.
+/// A motion at the times of its output. Vectors of vectors are concatenated, one for each time.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Recording {
     /// The coordinates.
@@ -83,9 +81,9 @@ pub(crate) struct Recording {
     pub(crate) potential: Vec<f64>,
     /// Of motors and wrenches since the start, J.
     pub(crate) work: Vec<f64>,
-    /// Of friction, damping and drag since the start, J: negative, since they take energy.
+    /// By friction, damping and drag since the start, J: negative, since they take energy.
     pub(crate) dissipated: Vec<f64>,
-    /// Of events that map the state since the start, J: negative where they take energy, as a blow
+    /// By events that map the state since the start, J: negative if they take energy, as a blow
     /// does.
     pub(crate) from_events: Vec<f64>,
     /// Angular momentum about the centre of mass, then linear momentum, in axes of the world frame:
@@ -118,8 +116,8 @@ impl Recording {
         self.kinetic.iter().zip(&self.potential).map(|(t, u)| t + u).collect()
     }
 
-    /// What the energy balance misses at each time, J: (T + U) − (T + U)₀ − work − dissipated −
-    /// what events brought.
+    /// The error of the energy balance at each time, J: (T + U) − (T + U)₀ − work − dissipated −
+    /// energy from events.
     pub(crate) fn imbalance(&self) -> Vec<f64> {
         let energy = self.energy();
         let start = energy.first().copied().unwrap_or(0.0);
@@ -132,7 +130,7 @@ impl Recording {
     }
 }
 
-/// What the coordinates, the rates and the torques of a joint are called where it has several.
+/// Names of the coordinates, the rates and the torques of a joint with several of them.
 struct Parts {
     coordinates: &'static [&'static str],
     rates: &'static [&'static str],
@@ -159,8 +157,7 @@ impl Parts {
     }
 }
 
-/// Numbers of a joint, by what they are called and what they are of; `units`: of a turn and of a
-/// way.
+/// Numbers of a joint, by name and quantity; `units`: of an angle and of a length.
 fn named(joint: &str, parts: &[&str], of: &[Quantity], units: [&'static str; 2]) -> Vec<Named> {
     let single = of.len() == 1;
     let name = |k: usize| if single { joint.to_owned() } else { format!("{joint}[{k}]") };
@@ -175,7 +172,7 @@ fn named(joint: &str, parts: &[&str], of: &[Quantity], units: [&'static str; 2])
     of.iter().zip(parts).enumerate().map(|(k, (of, part))| Named { name: name(k), label: label(part), unit: unit(*of), base }).collect()
 }
 
-/// A motion to test outputs with: that of a quadruped that falls and turns, without its physics.
+/// A motion to test outputs with: a quadruped that falls and turns, without physics.
 #[cfg(test)]
 pub(crate) fn example(model: &Model<f64>, times: usize) -> Recording {
     let mut r = Recording::of(model);

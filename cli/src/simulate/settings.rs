@@ -1,4 +1,4 @@
-//! How a scene is simulated: what it says itself, and what the command line says instead.
+//! Settings of a simulation: the scene's own, and those of the command line.
 
 use articulated::simulate::{Output, SettingError, Settings, integrator};
 
@@ -7,7 +7,7 @@ use crate::console;
 use crate::failure::Failure;
 use articulated_lab::session::Session;
 
-/// The settings, or why there are none.
+/// The settings, or the reason why there are none.
 pub(super) fn of(session: &Session, arguments: &SimulateArguments) -> Result<Settings, Failure> {
     let (scene, file) = (session.scene.simulation.as_ref(), &session.scene.file);
     if scene.is_none() && arguments.end.is_none() {
@@ -30,8 +30,8 @@ pub(super) fn of(session: &Session, arguments: &SimulateArguments) -> Result<Set
     Ok(settings)
 }
 
-/// Fixed steps of which a motion makes less than it needs to its end, unless an event ends it
-/// before.
+/// Reports fixed steps that need more than the maximum number to the end, unless an event ends the
+/// motion before.
 fn too_many_steps(settings: &Settings) -> Option<String> {
     let (step, most) = (settings.step?, settings.max_steps);
     let (steps, reached) = ((settings.end - settings.start) / step, settings.start + step * most as f64);
@@ -43,15 +43,15 @@ fn too_many_steps(settings: &Settings) -> Option<String> {
     (steps > most as f64 * (1.0 + 1e-9)).then(message)
 }
 
-/// The integrator and what chooses its steps. Errors: an option that has no part in it, and steps
-/// that nothing chooses.
+/// The integrator and the choice of its steps. Errors: an option that does not apply to it, and a
+/// missing step.
 fn choose_steps(settings: &mut Settings, a: &SimulateArguments, session: &Session) -> Result<(), Failure> {
     let file = &session.scene.file;
     settings.step = a.step.or(settings.step);
     let of_file = session.world.step;
     if let Some(row) = a.integrator.as_deref().and_then(integrator) {
         settings.integrator = row.id;
-        // A step that the scene gives is for the integrator that it names.
+        // The step of a scene applies to the scene's own integrator.
         if row.adaptive && a.step.is_none() {
             settings.step = None;
         } else if !row.adaptive && settings.step.is_none() {
@@ -79,7 +79,7 @@ fn choose_steps(settings: &mut Settings, a: &SimulateArguments, session: &Sessio
     if lines.is_empty() { Ok(()) } else { Err(Failure::input(lines)) }
 }
 
-/// A problem, of the option where that has said it, else of the scene.
+/// A problem, reported at its option if that was given, else at the scene.
 fn message(problem: &SettingError, a: &SimulateArguments, file: &str) -> String {
     let options = [
         ("end", "end", a.end.is_some()),

@@ -1,5 +1,5 @@
-//! How much is written into a folder: told before the motion begins where it is much, and refused
-//! where it is more than may be.
+//! Size of the files in a folder: announced before the motion if it is large, and refused if it
+//! exceeds the limit.
 
 use std::path::Path;
 
@@ -11,16 +11,16 @@ use super::files::is_page;
 use crate::console;
 use crate::failure::Failure;
 
-/// Bytes of a number with its comma, at most.
+/// Upper bound of bytes of a number with its comma.
 const NUMBER: f64 = 25.0;
 
 /// The command announces a size of this many bytes or more.
 const MUCH: f64 = 1e7;
 
-/// MB that the table may have where no option says it.
+/// Default limit of the table, MB.
 pub(super) const DEFAULT: u64 = 1000;
 
-/// What is written of a motion's records.
+/// Size of a motion's records.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Size {
     /// Numbers in a row.
@@ -32,7 +32,7 @@ pub(super) struct Size {
 }
 
 impl Size {
-    /// Of motions of a robot that records all that there is.
+    /// For motions of a robot that records all numbers.
     fn of(shape: Shape, allowed: u64) -> Self {
         let columns = 1 + shape.nq + 2 * shape.nv + 6 + 6;
         Self { columns, most: (allowed as f64 * 1e6 / Self::bytes(columns, 1.0)).floor(), allowed }
@@ -48,9 +48,9 @@ impl Size {
         format!("{rows} rows of {} columns: up to {size:.0} MB", self.columns)
     }
 
-    /// Looks ahead at what a motion would write into the folder that the arguments name. Of records
-    /// whose number only the motion shows, no more are made than there is room for. Errors: more
-    /// than may be.
+    /// Checks the size of a motion in the folder of the arguments in advance. If the number of
+    /// records is known only after the motion, it is limited to the available room. Errors: the
+    /// size exceeds the limit.
     pub(super) fn look_ahead(shape: Shape, settings: &mut Settings, arguments: &SimulateArguments) -> Result<Option<Self>, Failure> {
         let Some(folder) = arguments.output.as_ref().filter(|path| !is_page(path)) else { return Ok(None) };
         let size = Self::of(shape, allowed(arguments));
@@ -74,7 +74,7 @@ impl Size {
         )
     }
 
-    /// Why a motion ended after this number of records.
+    /// The reason why a motion ended after this number of records.
     pub(super) fn ended(self, records: usize) -> Option<String> {
         let full = records as f64 >= self.most;
         full.then(|| {
@@ -92,7 +92,7 @@ pub(super) fn allowed(arguments: &SimulateArguments) -> u64 {
     arguments.max_output_size.unwrap_or(DEFAULT)
 }
 
-/// How many records a motion to its end has; `None`: one for each step, and steps by tolerance.
+/// Number of records of a motion to its end; `None`: one for each step, with steps by tolerance.
 fn rows(settings: &Settings) -> Option<f64> {
     let length = settings.end - settings.start;
     match (&settings.output, settings.step) {

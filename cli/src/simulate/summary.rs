@@ -1,4 +1,4 @@
-//! What there is to say about a motion, as data.
+//! The report about a motion, as data.
 
 use articulated::simulate::{Balance, Counts, Settings};
 use articulated_core::description::JointKind;
@@ -28,7 +28,7 @@ pub(super) struct Summary {
     pub(super) end_s: f64,
     /// The requested end time.
     pub(super) requested_end_s: f64,
-    /// The time of the last record: what energies and momentum are of at the end.
+    /// The time of the last record: energies and momentum at the end refer to it.
     pub(super) last_record_s: f64,
     pub(super) ended: String,
     /// `ok`; `out_of_tolerance`: it ended, but its balance of energy is not kept; `error`.
@@ -37,14 +37,14 @@ pub(super) struct Summary {
     pub(super) energy: Energy,
     pub(super) momentum: Momentum,
     pub(super) counts: Done,
-    /// What smoothed friction did not hold: of contacts and of joints the one that crept furthest.
+    /// Creep where smoothed friction should hold: the contact and the joint that crept furthest.
     pub(super) creep: Vec<Crept>,
-    /// Links whose contacts move although friction would hold them.
+    /// Links with contacts that move although friction would hold them.
     pub(super) slides: Vec<Slid>,
     pub(super) events: Vec<EventRecord>,
-    /// Whether the ball of the scene's impact was reached and hit; `None` where there is none.
+    /// Whether the ball of the scene's impact was reached and hit; `None` without a ball.
     pub(super) ball_reached: Option<bool>,
-    /// Its speed along the normal once its turn came.
+    /// Its speed along the normal after its event.
     pub(super) ball_speed_m_per_s: Option<f64>,
     pub(super) wall_s: f64,
     pub(super) simulated_s_per_wall_s: f64,
@@ -55,15 +55,15 @@ pub(super) struct Summary {
     /// The columns of the table among them, with their units.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) columns: Vec<Unit>,
-    /// Pictures that are not, since all that they would show is zero throughout, or since the ends
-    /// alone are recorded.
+    /// Pictures that are not written, since all their curves are zero throughout, or since only the
+    /// ends are recorded.
     pub(super) pictures_left_out: Vec<&'static str>,
-    /// Whether the page is not either, since the ends alone are recorded.
+    /// Whether the page is not written either, since only the ends are recorded.
     pub(super) page_left_out: bool,
     pub(super) units: Units,
 }
 
-/// Of what does not say its own.
+/// Units of numbers without their own.
 const UNITS: Units = Units(&[
     ("integrator.atol", "rad, m, and those a second"),
     ("energy", "J; relative_imbalance a number"),
@@ -103,13 +103,13 @@ pub(super) struct Energy {
     pub(super) potential_end: f64,
     pub(super) work: f64,
     pub(super) dissipated: f64,
-    /// What events that map the state brought; negative where they took energy.
+    /// Energy from events that map the state; negative if they took energy.
     pub(super) from_events: f64,
     /// Kinetic energy that the ball of the scene's impact got, if it was hit.
     pub(super) ball: Option<f64>,
     /// T + U − start − work − dissipated − from_events, the largest after any step.
     pub(super) largest_imbalance: f64,
-    /// The largest kinetic energy, or what was done, lost or brought by events, after any step.
+    /// The largest of kinetic energy, work, dissipation and energy from events, after any step.
     pub(super) largest_moved: f64,
     /// The imbalance over that.
     pub(super) relative_imbalance: f64,
@@ -134,7 +134,7 @@ pub(super) struct Crept {
     /// The link or the joint.
     pub(super) on: String,
     pub(super) distance: f64,
-    /// Of the distance: `m`, or `rad` of a joint that rotates.
+    /// Unit of the distance: `m`, or `rad` for a joint that rotates.
     pub(super) unit: &'static str,
     /// How long it crept.
     pub(super) time_s: f64,
@@ -142,8 +142,8 @@ pub(super) struct Crept {
 
 impl Crept {
     fn of(session: &Session, creep: &Creep) -> Self {
-        // A degree of freedom of a planar joint, as `puck[2]`, has the name of its joint before the
-        // bracket.
+        // For a degree of freedom of a planar joint, such as `puck[2]`, the name of its joint is
+        // before the bracket.
         let joint = |name: &str| session.description.joints.iter().find(|joint| joint.name == name).map(|joint| joint.kind);
         let name = creep.on.split_once('[').map_or(creep.on.as_str(), |(name, _)| name);
         let unit = match (creep.effect, joint(&creep.on).or_else(|| joint(name))) {
@@ -155,7 +155,7 @@ impl Crept {
     }
 }
 
-/// A link whose contacts move although friction would hold them.
+/// A link with contacts that move although friction would hold them.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Slid {
     /// The link.
@@ -189,7 +189,7 @@ pub(super) struct Done {
     pub(super) steps_over_stiff_layers: u64,
     /// Where stiffness was noted.
     pub(super) stiff_at_s: Option<f64>,
-    /// The joint whose error limits most steps, where they are chosen by tolerances.
+    /// The joint with the error that limits most steps, if tolerances choose them.
     pub(super) limited_by: Option<String>,
     pub(super) records: usize,
 }
@@ -264,19 +264,19 @@ impl Energy {
         }
     }
 
-    /// Whether the balance of energy is kept well enough for the motion to be that of the scene.
+    /// Whether the balance of energy is good enough to trust the motion.
     fn is_kept(&self) -> bool {
         self.relative_imbalance <= NOT_KEPT
     }
 }
 
-/// Part of the largest energy moved that a motion may lack and still be that of the scene.
+/// Tolerated error of the energy balance, relative to the largest energy moved.
 const NOT_KEPT: f64 = 0.1;
 
-/// Part from which on fixed steps deserve to be shorter.
+/// Fixed steps with a larger imbalance should be shorter.
 const LOOSE_STEPS: f64 = 0.01;
 
-/// Part from which on steps chosen by tolerances deserve smaller tolerances.
+/// Steps by tolerance with a larger imbalance should have smaller tolerances.
 const LOOSE: f64 = 1e-4;
 
 impl Summary {

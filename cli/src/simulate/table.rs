@@ -16,8 +16,8 @@ pub struct Column {
 
 const MOMENTUM: [&str; 6] = ["angular.x", "angular.y", "angular.z", "linear.x", "linear.y", "linear.z"];
 
-/// `t`, `q.<joint>`, `v.<joint>`, `tau.<joint>`, the energies, and the momentum. What of a name a
-/// terminal would obey is escaped.
+/// `t`, `q.<joint>`, `v.<joint>`, `tau.<joint>`, the energies, and the momentum. Control characters
+/// in names are escaped.
 pub(super) fn columns(r: &Recording) -> Vec<Column> {
     let one = |title: &str, unit: &str, values: Vec<f64>| Column { title: title.to_owned(), unit: unit.to_owned(), values };
     let mut all = vec![one("t", "s", r.t.clone())];

@@ -45,7 +45,7 @@ fn method(s: &Summary) -> String {
     format!("{} (order {}), {steps}; {} code; {}", m.name, m.order, s.code, span(s))
 }
 
-/// From when to when, and the last record where that is another time.
+/// Start and end time, and the time of the last record if it differs.
 fn span(s: &Summary) -> String {
     let time = |t: f64| time(t, s.requested_end_s - s.start_s);
     let [start, asked, recorded] = [s.start_s, s.requested_end_s, s.last_record_s].map(time);
@@ -54,7 +54,7 @@ fn span(s: &Summary) -> String {
     format!("from {start} s to {} s{of}, ended {}{recorded}", time(s.end_s), s.ended)
 }
 
-/// To a millionth of the motion's length at least.
+/// With a resolution of at least a millionth of the motion's length.
 fn time(t: f64, length: f64) -> String {
     let short = number(t);
     if short.parse().is_ok_and(|x: f64| (x - t).abs() <= 1e-6 * length) { short } else { t.to_string() }
@@ -124,7 +124,7 @@ fn table(s: &Summary) -> Table {
     table
 }
 
-/// Events are words: the last column of a table of numbers would push them to the right.
+/// Events are words: as the last column of a table of numbers they would be aligned to the right.
 fn left_aligned(text: &str) -> String {
     text.lines()
         .map(|line| {

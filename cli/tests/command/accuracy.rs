@@ -32,7 +32,7 @@ fn files_that_cannot_be_written_do_not_cost_the_report() {
         assert!(ended.status == 1 && ended.err.contains(&format!("error: {folder}/")), "{}", ended.err);
         assert!(ended.json()[list].as_array().is_some_and(|l| !l.is_empty()), "{}", ended.out);
     }
-    // A folder that there cannot be is told before anything is measured.
+    // An impossible folder is reported before any measurement.
     let file = File::new("taken", b"");
     for words in [&functions[..], &motion] {
         let ended = run(&[&["accuracy", "--output", file.name()], words].concat());

@@ -17,7 +17,7 @@ fn every_bundled_robot_is_usable() {
     }
 }
 
-/// Warnings that say one thing are a line in each road; as data, each is there.
+/// Equal warnings are one line in text; as data, each is listed.
 #[test]
 fn warnings_of_one_sort_are_one_line_with_a_count() {
     let inertia = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial>";
@@ -103,8 +103,8 @@ fn a_file_that_is_not_there_is_told_with_the_nearest() {
     assert!(ended.status == 1 && ended.err.contains("did you mean \"elbow.urdf\"?"), "{}", ended.err);
 }
 
-/// Several joints on a body and joints beside the origin of their body: each link moves with the
-/// last joint before it, and each joint carries what is behind it. Sites are no links.
+/// Several joints on a body and joints away from the origin of their body: each link moves with the
+/// last joint before it, and each joint carries the links behind it. Sites are not links.
 #[test]
 fn joints_in_sequence_and_beside_the_origin_have_their_own_rows() {
     let crane = File::new(
@@ -146,7 +146,7 @@ fn the_mass_table_adds_up() {
     assert!(!gripper["unused"].as_array().unwrap().is_empty());
 }
 
-/// A wrist that two motors turn: both of them are in the report, with the sum of the offsets.
+/// A wrist driven by two motors: both are in the report, with the sum of the offsets.
 #[test]
 fn a_joint_that_follows_several_is_reported_with_all_of_them() {
     let link = |name: &str| {
@@ -276,7 +276,7 @@ fn a_tolerance_of_angles_is_above_nothing() {
     }
 }
 
-/// What a simulation would not begin for is wrong with the scene, whoever looks at it.
+/// Errors that prevent a simulation are errors of the scene in every command.
 #[test]
 fn a_scene_is_usable_if_its_motion_can_begin() {
     let table = File::new("table.csv", b"t,nobody\n0,1\n");
@@ -371,7 +371,7 @@ fn base_parameters_are_counted_and_listed() {
     assert!(text.out.contains("torques determine 43"), "{}", text.out);
 }
 
-/// What `simulate` would refuse, and what it would warn of.
+/// Errors of `simulate`, and its warnings.
 #[test]
 fn a_scene_whose_motion_would_be_refused_is_not_usable() {
     let inertia = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial>";

@@ -39,7 +39,7 @@ fn a_link_that_falls_through_the_ground_is_warned_of_by_simulate() {
         assert!(told.contains(part), "{part}: {told}");
     }
     assert!(ended.err.contains(told), "{}", ended.err);
-    // It starts above: `check` has nothing to say.
+    // It starts above: `check` reports nothing.
     assert!(!run(&["check", scene.name()]).out.contains("below a contact plane"));
 }
 

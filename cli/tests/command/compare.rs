@@ -29,8 +29,7 @@ fn a_report_has_everything() {
     }
 }
 
-/// Paths of `units` that lead to nothing: of lists that are not empty, each has to have what is
-/// named.
+/// Paths of `units` without a number: every item of a non-empty list must have the named field.
 fn without_numbers(json: &serde_json::Value) -> Vec<String> {
     let leads = |path: &String| {
         let step = |found: Vec<serde_json::Value>, word: &str| -> Vec<serde_json::Value> {
@@ -88,7 +87,7 @@ fn groups_have_headings_and_frames_can_be_chosen() {
     assert_eq!(run(&["compare", "cart_pole", "--functions", "twists_body", "--frames", "wheel"]).status, 1);
 }
 
-/// A base without mass, free to do what the joint on it does: no mass matrix of it has an inverse.
+/// A base without mass, free to move like the joint on it: its mass matrix is singular.
 const TWICE: &str = r#"<robot name="twice"><link name="a"/><link name="b"><inertial><mass value="1"/>
 <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
 <joint name="turn" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint></robot>"#;
@@ -118,7 +117,7 @@ fn a_result_that_is_zero_throughout_is_right() {
     assert!(["generated", "generic"].iter().all(|side| errors[side].as_f64().is_some_and(|e| e < 1.0)), "{errors}");
 }
 
-// Nobody can write there, an administrator neither.
+// No user can write there, not even an administrator.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_chart_that_cannot_be_written_does_not_cost_the_report() {
@@ -170,7 +169,7 @@ use std::ffi::{c_char, c_int, c_void};
 }
 "#;
 
-/// Beside that its mass matrix, which stays inside until it is read.
+/// Also its mass matrix, which stays inside until it is read.
 const KEEPING: &str = r#"
 #[unsafe(no_mangle)] pub extern "C" fn peer_keeps(_: *mut c_void, _: *const c_char) -> c_int {
     1
@@ -371,7 +370,7 @@ fn an_interrupted_command_leaves_no_files_behind() {
         assert!(child.try_wait().unwrap().is_none(), "it ended before it made a folder");
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
-    // Not INT, which whoever runs this test in the background has it ignore.
+    // Not INT, which a shell that runs this test in the background lets it ignore.
     assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
     assert_eq!(child.wait().unwrap().code(), Some(143));
     assert_eq!(files(), 0);
@@ -429,8 +428,8 @@ fn a_compiler_that_a_signal_ends_is_reported_as_that() {
     assert!(ended.status == 3 && ended.err.contains("rustc was ended: signal: 9"), "{} {}", ended.status, ended.err);
 }
 
-/// Whether the process whose number a script wrote into `file` runs. One that has ended and waits
-/// for its parent does not.
+/// Whether the process whose number a script wrote into `file` runs. A process that has ended and
+/// waits for its parent does not run.
 #[cfg(unix)]
 fn runs(file: &std::path::Path) -> bool {
     let id = std::fs::read_to_string(file).unwrap();
@@ -463,8 +462,8 @@ fn a_compiler_that_hangs_is_ended_with_all_that_it_started() {
 }
 
 #[cfg(unix)]
-/// Whether this process was started with the signal ignored, as shells start what runs in the
-/// background; the command then ignores it too.
+/// Whether this process was started with the signal ignored, as shells start background processes;
+/// the command then ignores it too.
 fn ignores(signal: u32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).map(str::trim);
@@ -504,7 +503,7 @@ fn a_scene_with_effects_is_held_to_the_library_and_that_is_said() {
     assert!(found.iter().all(|units| (0.0..16.0).contains(units)) && found[0] > 0.0, "{errors}");
 }
 
-/// They are inputs of a function that its user writes; here they have the numbers of the file.
+/// They are inputs of a function that its user writes; here they have the values of the file.
 #[test]
 fn parameters_of_a_scene_are_constants_where_its_functions_are_called() {
     let scene = File::new("loaded.toml", b"robot = \"cart_pole\"\nparameters = [\"payload(pole_rod)\"]\n");

@@ -1,10 +1,9 @@
-//! What moves the robots of scenes: tables that are sampled, targets that turn, and steps that are
-//! too long.
+//! Drives of the robots of scenes: sampled tables, targets that turn, and steps that are too long.
 
 use crate::scenes::{Motion, largest};
 use crate::{File, run};
 
-/// A body of 0.1 kg·m² about z that nothing holds, and one that turns freely.
+/// A free body of 0.1 kg·m² about z, and one that turns freely.
 fn robot(joint: &str) -> File {
     let text = format!(
         "<robot name='r'><link name='base'/><link name='body'><inertial><mass value='2'/>\
@@ -21,8 +20,8 @@ fn ball() -> File {
     robot("<joint name='j' type='spherical'><parent link='base'/><child link='body'/></joint>")
 }
 
-/// q̈ = u/I with u held from sample to sample is a recursion: rows of the table that lie between
-/// samples have no part in it.
+/// q̈ = u/I with u held from sample to sample is a recursion: rows of the table between samples
+/// have no effect.
 #[test]
 fn a_table_that_is_sampled_is_the_recursion_of_its_samples() {
     let (urdf, period, spacing, inertia) = (hinge(), 0.025, 0.013, 0.1);
@@ -97,7 +96,7 @@ fn a_target_that_is_no_turn_is_an_error() {
 }
 
 /// Steps of a hundredth of a second on a stop of 1e9 N·m/rad, whose half period is fifty
-/// microseconds: nothing is unstable, and nothing is right.
+/// microseconds: the motion is stable, but wrong.
 #[test]
 fn a_motion_without_balance_of_energy_is_told() {
     let urdf = robot(

@@ -112,8 +112,7 @@ fn a_locked_joint_is_missing_in_states() {
     assert_eq!(ended.status, 0, "{}", ended.err);
 }
 
-/// Of a joint that is appended there is as much damping as of the scene's own, and of one that is
-/// locked none.
+/// An appended joint has as much damping as the scene's own joints, and a locked one has none.
 #[test]
 fn effects_of_a_scene_are_on_the_joints_of_the_edited_robot() {
     let gripper = File::new("gripper.urdf", GRIPPER.as_bytes());

@@ -19,13 +19,12 @@ fn every_effect_is_on_or_off_and_what_each_adds_is_counted() {
     assert_eq!(costs.iter().map(|c| c["function"].as_str().unwrap()).collect::<Vec<_>>(), ["inverse_dynamics", "forward_dynamics"]);
     let inverse = costs[0]["adds"].as_array().unwrap();
     let of = |what: &str| inverse.iter().find(|a| a["what"] == what).unwrap_or_else(|| panic!("{what}: {report}"));
-    // An addition a joint, and what is told of places is what the scene asks for.
+    // One addition per joint, and the places are those that the scene requests.
     assert_eq!((of("damping")["places"].as_u64(), of("damping")["operations"]["additions"].as_i64()), (Some(7), Some(7)));
-    // The first joint's acceleration has a constant for a factor already.
+    // The first joint's acceleration already has a constant factor.
     assert_eq!(of("armature")["operations"]["instructions"], 6);
     assert!(of("gravity")["operations"]["additions"].as_i64().unwrap() > 0);
-    // The same operations; of how many an addition goes with a multiplication in one instruction
-    // depends on where sums are cut.
+    // The same operations; the number of fused additions depends on the splitting of sums.
     for kind in ["multiplications", "additions"] {
         let each = inverse.iter().filter(|a| a["what"] != "gravity" && a["what"] != "all together");
         let sum: i64 = each.map(|a| a["operations"][kind].as_i64().unwrap()).sum();
@@ -84,8 +83,8 @@ fn a_function_that_only_effects_define_is_told_with_all_of_them() {
     assert!(none.status == 1 && none.err.contains("forward_dynamics: found no inertia of its own for joint j, expected"), "{}", none.err);
 }
 
-/// One number is of the slides and of the turns of a planar or a free joint: it is not told as that
-/// of an angle.
+/// One number applies to the slides and the turns of a planar or a free joint: its unit is not that
+/// of an angle alone.
 #[test]
 fn numbers_have_the_units_of_what_their_joint_does() {
     let joint = |name: &str, kind: &str, parent: &str, child: &str| {

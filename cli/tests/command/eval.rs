@@ -21,8 +21,8 @@ fn the_pendulum_is_its_closed_form_in_both_ways() {
     assert_eq!(json["functions"][1]["function"], "gravity_torque");
 }
 
-/// A frame that no joint can move along y or turn about x but by way of z: zeros that generated
-/// code computes in other axes are zeros but for rounding.
+/// A frame that joints can move along y or turn about x only by way of z: zeros that generated code
+/// computes in other axes have rounding errors.
 #[test]
 fn a_result_of_zeros_may_be_off_by_a_rounding_of_its_neighbours() {
     let body =
@@ -44,7 +44,7 @@ fn a_result_of_zeros_may_be_off_by_a_rounding_of_its_neighbours() {
     assert!(difference["in_units_of_roundoff"].as_f64().unwrap() < 16.0, "{difference}");
 }
 
-/// A lever that vanishes at q = 0, where frames were turned by a seventh of a turn: zero but for
+/// A lever that vanishes at q = 0, in frames turned by a seventh of a turn: zero except for
 /// rounding.
 #[test]
 fn where_levers_vanish_frames_that_were_turned_may_round() {
@@ -69,7 +69,7 @@ fn where_levers_vanish_frames_that_were_turned_may_round() {
     assert_eq!(ended.status, 0, "{}", ended.err);
 }
 
-/// About the joint's axis: what a unit of acceleration costs at rest.
+/// About the joint's axis: the torque for a unit of acceleration at rest.
 fn inertia() -> f64 {
     let torque = |a: f64| {
         let states = format!(r#"[{{"q": [0], "v": [0], "a": [{a}]}}]"#);
@@ -147,7 +147,7 @@ fn the_examples_of_the_help_run_as_they_are_printed() {
     }
 }
 
-/// A mass on the axis of its joint, which nothing resists.
+/// A mass on the axis of its joint, without inertia about it.
 const ON_AXIS: &str = r#"<robot name="spinner"><link name="base"/><link name="mass"><inertial><mass value="1"/>
 <inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>
 <joint name="spin" type="continuous"><parent link="base"/><child link="mass"/><axis xyz="0 0 1"/></joint></robot>"#;
@@ -223,8 +223,8 @@ fn every_function_has_a_result_by_name() {
     assert!(text.lines_with("largest difference") == all.len() && text.lines_with(&format!("[1] {cart}")) >= 1, "{}", text.out);
 }
 
-/// Turned about z, y, z with y = 0 the first and the last axis are one: M is singular there, and
-/// next to it as good as that.
+/// Turned about z, y, z with y = 0, the first and the last axis coincide: M is singular there, and
+/// nearly singular next to it.
 #[test]
 fn results_of_a_singular_mass_matrix_are_told() {
     let joint = |k: usize, axis: &str| {
@@ -249,7 +249,7 @@ fn results_of_a_singular_mass_matrix_are_told() {
         assert!(warnings.contains(&singular), "{warnings}");
     }
     assert!(warnings.contains("states[1]: mass_matrix_inverse: number 0 of the result is not finite"), "{warnings}");
-    // What does not divide by it is well there.
+    // Functions without division by it are valid there.
     assert_eq!(run_with(&words("mass_matrix"), states.as_bytes()).lines_with("warning: -"), 0);
 }
 
@@ -331,8 +331,8 @@ fn a_robot_that_no_matrix_fits_is_refused() {
     }
 }
 
-/// Files as they are shipped, against closed forms: a hinge about y through the origin has M = I_yy
-/// + m (x² + z²), summed over what it carries.
+/// Files as they are shipped, against closed forms: a hinge about y through the origin has
+/// M = I_yy + m (x² + z²), summed over the carried links.
 #[test]
 fn robots_of_shipped_files_have_the_values_of_closed_forms() {
     let body = |name: &str, mass: &str, at: &str, moments: [&str; 4]| {
@@ -366,7 +366,7 @@ fn robots_of_shipped_files_have_the_values_of_closed_forms() {
     ];
     near(value("1.0", &lamp, "mass_matrix"), 0.121625);
     near(value("1.0", &lamp, "gravity_torque"), -3.924);
-    // A point mass whose inertia is rounding: 1.2·0.0185².
+    // A point mass whose inertia is a rounding error: 1.2·0.0185².
     let point = [
         body("bob", "1.2", "0.0185 -0.11 6.8e-18", ["0", "3.1e-35", "0", "0"]),
         joint("hinge", "continuous", ["ground", "bob"], "<axis xyz='0 1 0'/>"),

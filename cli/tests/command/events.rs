@@ -1,8 +1,8 @@
-//! What `articulated simulate` tells of events, and of robots that have hardly any mass.
+//! Reports of `articulated simulate` about events, and about robots of very small mass.
 
 use super::{File, run};
 
-/// A scene of a robot whose joints are these; every link weighs as much.
+/// A scene of a robot with these joints; every link has the same mass.
 fn simulated(joints: &str, mass: f64, scene: &str) -> serde_json::Value {
     let link = |name: &str| {
         let inertial =
@@ -44,7 +44,7 @@ fn joints_that_follow_come_to_their_limits_and_stick() {
     assert!((time - expected).abs() < 1e-3, "{time} {expected}");
 }
 
-/// Bounds of the file are those of the joint that they are of, not of the one that it follows.
+/// Bounds of the file apply to their own joint, not to the one that it follows.
 #[test]
 fn a_follower_has_its_own_bounds_in_the_file() {
     let bounds = |upper: &str| match upper {
@@ -79,7 +79,7 @@ fn universal_joints_come_to_their_limits() {
     assert!((summary["events"][0]["time"].as_f64().unwrap() - 0.3).abs() < 1e-6, "{}", summary["events"]);
 }
 
-/// Rotors alone move, and there is no centre of mass: no number of the summary is missing.
+/// Only rotors move, and there is no centre of mass: no number of the summary is missing.
 #[test]
 fn a_robot_of_rotors_alone_moves() {
     let scene = "initial = { v = { x = 1.0 } }\neffects = { armature = { x = 0.5 } }\n[simulation]\nend = 0.1\n";
@@ -91,8 +91,7 @@ fn a_robot_of_rotors_alone_moves() {
     assert!(!momentum.contains("null"), "{momentum}");
 }
 
-/// Generated code of a motion has hardly any frames; a link may have another name in Rust all the
-/// same.
+/// Generated code of a motion has few frames; a link may still have another name in Rust.
 #[test]
 fn links_that_a_motion_does_not_need_may_be_renamed() {
     let text = "robot = \"ur5_like\"\nrename = { flange = \"FLANGE\" }\n[simulation]\nend = 0.01\n";
@@ -101,8 +100,8 @@ fn links_that_a_motion_does_not_need_may_be_renamed() {
     assert_eq!(ended.status, 0, "{}", ended.err);
 }
 
-/// A ball joint at 10 rad/s would turn by more than π in a step of 1 s: `check` says so, as the run
-/// does.
+/// A ball joint at 10 rad/s would turn by more than π in a step of 1 s: `check` reports it, like
+/// the run.
 #[test]
 fn check_makes_the_first_step_of_a_motion() {
     let urdf = File::new(
@@ -127,7 +126,7 @@ fn check_makes_the_first_step_of_a_motion() {
     }
 }
 
-/// A link of 2 kg that 6 N·m of friction hold against 4.905 N·m: 26 steps, no event, and 0.142 mrad
+/// A link of 2 kg held by 6 N·m of friction against 4.905 N·m: 26 steps, no event, and 0.142 mrad
 /// of creep in 10 s.
 #[test]
 fn what_friction_holds_is_told_with_its_creep() {

@@ -9,8 +9,8 @@ use std::sync::{Mutex, PoisonError};
 use articulated_cli::{Answer, answer, failure};
 use serde_json::Value;
 
-/// The folders of the repository that have robots' files and scenes, with the least number of
-/// files: a test of nothing cannot pass.
+/// The folders of the repository with robots' files and scenes, with the minimum number of files,
+/// so that an empty test cannot pass.
 const FOLDERS: [(&str, usize); 8] = [
     ("models/urdf", 11),
     ("models/scenes", 11),
@@ -80,7 +80,7 @@ fn check(file: &str) -> Option<Value> {
     for (list, name) in [("links", "link"), ("joints", "joint")] {
         for row in report[list].as_array().into_iter().flatten() {
             let name = row[name].as_str().unwrap();
-            // Text escapes what a terminal would obey.
+            // Text escapes control characters.
             assert!(name.contains(|c: char| !c.is_ascii_graphic()) || answer.text.contains(name), "{file}: {list}: {name}");
         }
     }
@@ -91,7 +91,7 @@ fn check(file: &str) -> Option<Value> {
     (answer.status == failure::OK).then_some(report)
 }
 
-/// A state of the robot: every quaternion turns nothing, all other numbers are small.
+/// A state of the robot: every quaternion is the identity, all other numbers are small.
 fn state(report: &Value) -> String {
     let total = |name: &str| report["totals"][name].as_u64().unwrap() as usize;
     let (nq, nv) = (total("coordinates"), total("degrees_of_freedom"));
@@ -112,7 +112,7 @@ fn state(report: &Value) -> String {
 fn every_command(file: &Path) -> (bool, usize) {
     let name = file.to_str().unwrap();
     let Some(report) = check(name) else {
-        // Other commands refuse what `check` refuses, and say why.
+        // Other commands refuse the files that `check` refuses, with a reason.
         for words in [&["generate", name][..], &["simulate", name, "--end", "0"]] {
             let answer = checked(words);
             assert!(answer.status != failure::OK && !answer.errors.is_empty(), "{words:?} accepts what `check` refuses");

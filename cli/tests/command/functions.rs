@@ -2,7 +2,7 @@ use std::path::Path;
 
 use super::{File, run};
 
-/// A joint that moves nothing, and a link that nothing moves.
+/// A joint without moving mass, and a link that does not move.
 const IDLE: &str = r#"<robot name="idle"><link name="a"/><link name="b"/><link name="c"/>
 <joint name="turn" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint>
 <joint name="weld" type="fixed"><parent link="a"/><child link="c"/></joint></robot>"#;
@@ -60,7 +60,7 @@ fn the_document_of_all_functions_is_up_to_date() {
     assert!(made.out == kept, "docs/functions.md: {changed:?}; run with UPDATE_GOLDEN=1");
 }
 
-/// What the README counts.
+/// Numbers in the README.
 #[test]
 fn the_readme_counts_what_there_is() {
     let readme = include_str!("../../../README.md");

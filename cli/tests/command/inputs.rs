@@ -1,5 +1,5 @@
-//! Files and names as they come: paths that are not UTF-8, what is no regular file, names with
-//! characters that a terminal obeys.
+//! Unusual files and names: paths that are not UTF-8, files that are not regular, names with
+//! control characters.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -62,7 +62,7 @@ fn paths_need_not_be_utf_8() {
     assert!(told.status == 1 && told.err.contains("no\u{fffd}.urdf: found neither a file"), "{}", told.err);
 }
 
-/// Nothing writes to the pipe: a program that opens it waits forever.
+/// The pipe has no writer: a program that opens it waits forever.
 #[cfg(unix)]
 #[test]
 fn what_is_no_regular_file_is_refused_at_once() {
@@ -106,8 +106,8 @@ fn what_is_no_regular_file_is_refused_at_once() {
     refused(&["simulate", "chain", "--against", &at("pipe.json")], pipe);
 }
 
-/// A name that ends a line and says something on the next, turns the direction of what follows, and
-/// sets a colour.
+/// A name that contains a line break and text after it, turns the direction of the following text,
+/// and sets a colour.
 const EVIL: &str = "&#10;FAKE: all is well&#x202e;&#x9b;31m";
 
 /// Neither stream, and no file, has the name's characters as they are.
@@ -183,7 +183,7 @@ fn names_end_no_lines_and_move_no_cursor() {
     assert!(table.lines().next().unwrap().contains("q.elbow\\nFAKE: all is well\\u{202e}\\u{9b}31m,"), "{table}");
 }
 
-/// Nothing that moves has mass: the sum of nothing is zero, and not minus zero.
+/// The moving mass is zero: an empty sum is zero, and not minus zero.
 #[test]
 fn the_mass_of_nothing_is_zero() {
     let still = File::new("still.urdf", b"<robot name='still'><link name='base'/></robot>");

@@ -110,7 +110,7 @@ fn a_robot_may_be_that_of_a_scene_and_help_says_so() {
         let ended = run(&[command, "pendulum"]);
         assert!(ended.status == 0 && ended.out.contains("pendulum"), "{command}: {}", ended.err);
     }
-    // A path is a path: no other robot stands in for a file that is not there.
+    // A path is a path: no other robot replaces a missing file.
     for command in ["check", "generate", "simulate", "effects", "stress"] {
         let ended = run(&[command, "pendulum.toml"]);
         assert!(
@@ -160,7 +160,7 @@ fn a_command_line_that_cannot_be_read_is_told_as_data_too() {
         assert!(error.starts_with("invalid value '") && ended.err.contains(error), "{error}");
     }
     assert_eq!(run(&["check", "panda_like", "--gravity", "1"]).out, "");
-    // What is listed under the sentence is part of it.
+    // The list under the sentence is part of it.
     let missing = [(&["check"][..], "<ROBOT>"), (&["simulate"], "<SCENE>"), (&["accuracy", "panda_like", "--error", "1"], "--advise")];
     for (words, what) in missing {
         let told = run(&[words, &["--format", "json"]].concat()).json();

@@ -1,5 +1,5 @@
-//! Mistakes of scenes and names of files: all of them in one run, where they are, with what was
-//! meant.
+//! Errors of scenes and of names of files: all in one run, with their places and the intended
+//! names.
 
 use std::path::Path;
 
@@ -29,7 +29,7 @@ fn path(folder: &Path, name: &str) -> String {
     folder.join(name).display().to_string()
 }
 
-/// Keys of errors in the order in which they are told.
+/// Keys of errors in the order of the report.
 fn fields(ended: &Ended) -> Vec<String> {
     let errors = ended.json()["errors"].as_array().unwrap().clone();
     errors.iter().map(|error| error["field"].as_str().unwrap_or_default().to_owned()).collect()
@@ -99,7 +99,7 @@ file = 'torqes.csv'
     for meant in ["\"arm.urdf\"?", "\"hand.urdf\"?", "\"torques.csv\"?", "`mass_matrix`?"] {
         assert!(ended.err.contains(&format!("did you mean {meant}")), "{meant}: {}", ended.err);
     }
-    // A scene that is refused has the status of a motion that failed.
+    // A refused scene has the status of a failed motion.
     assert_eq!((ended.status, ended.json()["status"].as_str()), (1, Some("error")));
     assert!(ended.json()["exit_status"] == 1);
 }
@@ -118,12 +118,12 @@ fn a_file_that_is_not_there_is_told_with_the_one_that_was_meant() {
     }
     told(&["simulate", &at("arm.tomll")], "arm.toml");
     told(&["eval", &at("arm.urdf"), "--function", "mass_matrix", "--states", &at("stats.json")], "states.json");
-    // Another ending alone is no mistake of writing.
+    // A different ending alone is no typing error.
     let ended = run(&["check", &at("arm.step")]);
     assert!(ended.status == 1 && !ended.err.contains("arm.urdf"), "{}", ended.err);
 }
 
-/// A scene that the command makes has no file: its numbers are those of the robot's file.
+/// A scene made by the command has no file: its numbers are those of the robot's file.
 #[test]
 fn what_is_wrong_with_a_number_of_the_file_is_told_where_that_stands() {
     let model = "<mujoco>

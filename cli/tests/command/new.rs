@@ -11,7 +11,7 @@ fn fresh(name: &str) -> PathBuf {
     folder
 }
 
-/// The program of a new crate, with the path of the robot that the examples have.
+/// The program of a new crate, with the robot's path in the examples.
 fn program(folder: &Path, robot: &str) -> String {
     let text = std::fs::read_to_string(folder.join("src/main.rs")).unwrap();
     text.replace("\"robot.urdf\"", &format!("\"../models/urdf/{robot}.urdf\""))

@@ -28,7 +28,7 @@ fn chains_are_measured_and_drawn() {
     assert!(drawn.starts_with("<svg ") && drawn.ends_with("</svg>\n"));
 }
 
-// Nobody can write there, an administrator neither.
+// No user can write there, not even an administrator.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_chart_that_cannot_be_written_does_not_cost_the_report() {

@@ -1,8 +1,8 @@
-//! What each bundled scene is there to show.
+//! The purpose of each bundled scene.
 
 use crate::{File, run};
 
-/// A motion as its files tell it.
+/// A motion in its files.
 pub(crate) struct Motion {
     titles: Vec<String>,
     rows: Vec<Vec<f64>>,
@@ -28,7 +28,7 @@ impl Motion {
         self.rows.iter().map(|r| r[at]).collect()
     }
 
-    /// The last numbers of all columns whose title begins so.
+    /// The last numbers of all columns whose titles start with `start`.
     pub(crate) fn last(&self, start: &str) -> Vec<f64> {
         self.at(self.rows.len() - 1, start)
     }
@@ -70,7 +70,7 @@ fn a_pendulum_comes_back_after_its_period() {
     let end = format!("{period:?}");
     let motion = Motion::of("pendulum", &["--end", &end, "--every", &end]);
     assert!((motion.last("q.swing")[0] - 2.0).abs() < 1e-10);
-    // At the turning point the rate tells how late it is.
+    // At the turning point the rate shows the delay.
     let late = motion.last("v.swing")[0] * inertia / (weight * 2.0_f64.sin());
     assert!(late.abs() < 1e-10 * period, "{late} s late");
 }
@@ -99,7 +99,7 @@ fn an_arm_with_friction_falls_and_comes_to_rest_within_its_bounds() {
     let kinetic = motion.column("kinetic_energy");
     assert!(kinetic[kinetic.len() - 1] < 1e-3 * largest(&kinetic), "{}", kinetic[kinetic.len() - 1]);
     assert!(motion.number("energy", "dissipated") < -1.0);
-    // ½ k x², if all that moves went into one stop, and what weight does meanwhile.
+    // ½ k x², if all kinetic energy went into one stop, plus the work of the weight.
     let depth = 1.2 * (2.0 * largest(&kinetic) / 2e3).sqrt();
     let model = articulated_models::robot("panda_like").unwrap();
     let model = articulated::load_bytes("panda_like.urdf", model.urdf.as_bytes(), model.base).unwrap();
@@ -110,7 +110,7 @@ fn an_arm_with_friction_falls_and_comes_to_rest_within_its_bounds() {
     }
 }
 
-/// A free head would give (1 + e)/(1 + m_b/m_h) = 1.49 of its speed; the shaft behind it gives a
+/// A free head would give (1 + e)/(1 + m_b/m_h) = 1.49 of its speed; with the shaft behind it a
 /// little more, a wall 1 + e.
 #[test]
 fn a_golf_ball_leaves_faster_than_the_head_that_hits_it() {
@@ -120,8 +120,8 @@ fn a_golf_ball_leaves_faster_than_the_head_that_hits_it() {
     let what = hit["what"].as_str().unwrap();
     let speed: f64 = what.split("leaves at ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!(speed > 40.0 && speed < 80.0 && time > 0.1, "{what} at {time}");
-    // The impulse m_b v_ball is what all else lost along y: weight and feet give some tenths of
-    // 1e-3 N·s in the microsecond around.
+    // The impulse m_b v_ball equals the loss of all others along y: weight and feet contribute some
+    // tenths of 1e-3 N·s in the microsecond around.
     let toml = articulated_models::scene("golf_swing").unwrap().toml;
     let around = toml.replace("output = 2e-3", &format!("output = [0.0, {:?}, {:?}]", time - 5e-7, time + 5e-7));
     assert_ne!(toml, around);
@@ -129,14 +129,14 @@ fn a_golf_ball_leaves_faster_than_the_head_that_hits_it() {
     let y = blow.column("momentum.linear.y");
     let lost = y[1] - y[2];
     assert!((0.04593 * speed - lost).abs() < 1e-3 * 0.04593 * speed, "{lost} N·s for {}", 0.04593 * speed);
-    // What the blow took is in the balance, and more than the ball got.
+    // The energy taken by the blow is in the balance, and exceeds the ball's gain.
     let (taken, ball) = (-motion.number("energy", "from_events"), motion.number("energy", "ball"));
     assert!((ball - 0.5 * 0.04593 * speed * speed).abs() < 1e-3 * ball && taken > ball, "{taken} J, {ball} J");
     assert!(motion.number("energy", "relative_imbalance") < 1e-8, "{}", motion.number("energy", "relative_imbalance"));
     assert_eq!(blow.column("from_events").iter().map(|e| *e < 0.0).collect::<Vec<_>>(), [false, false, true]);
 }
 
-/// The bob comes down at once and passes the lowest point forth and back: one blow there. What goes
+/// The bob comes down at once and passes the lowest point forth and back: one blow there. A ball
 /// faster than the bob is not hit.
 #[test]
 fn a_ball_is_hit_once_and_only_by_what_moves_towards_it() {
@@ -163,8 +163,8 @@ fn a_ball_is_hit_once_and_only_by_what_moves_towards_it() {
 }
 
 /// A pendulum without weight that turns at 2 rad/s, its bob a metre below the hinge: the ball is
-/// hit where it is or when it is said, at the start too, and what the blow makes of the motion is
-/// told where it ends with it.
+/// hit at its place or at its time, also at the start; the changed motion is reported even if the
+/// blow ends it.
 #[test]
 fn a_ball_is_hit_at_the_start_and_not_outside_of_the_motion() {
     let file = File::new("pendulum.urdf", articulated_models::robot("simple_pendulum").unwrap().urdf.as_bytes());
@@ -227,7 +227,7 @@ fn a_quadruped_comes_to_rest_where_the_ground_holds_its_weight() {
     let motion = Motion::of("quadruped_drop", &["--every", "0.1"]);
     assert_eq!(motion.summary["events"].as_array().unwrap().len(), 4);
     assert!(motion.number("energy", "kinetic_end") < 1e-4);
-    // ΣF − m g is the rate of momentum: nothing, of a weight of 883 N.
+    // ΣF − m g is the rate of momentum: zero, relative to a weight of 883 N.
     let p = motion.column("momentum.linear.z");
     let rate = (p[p.len() - 1] - p[p.len() - 6]) / 0.5;
     assert!(rate.abs() < 1e-3 * 883.0, "{rate} N");

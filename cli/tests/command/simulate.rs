@@ -47,7 +47,7 @@ fn everything_is_written_and_can_be_read() {
     let summary: serde_json::Value = serde_json::from_str(&text(&folder, "summary.json")).unwrap();
     assert_eq!(summary["columns"][1], serde_json::json!({"column": "q.slide", "unit": "m"}));
     assert_eq!(summary["columns"].as_array().unwrap().len(), rows[0].len());
-    // Nothing drives it.
+    // It has no drive.
     assert!(!files.iter().any(|f| f.starts_with("torques")));
     for picture in ["positions", "velocities", "energy"] {
         let drawn = text(&folder, &format!("{picture}.svg"));
@@ -70,7 +70,7 @@ fn everything_is_written_and_can_be_read() {
     assert_eq!((motion["moving"].as_u64(), motion["joints"].as_array().unwrap().len()), (Some(2), 2));
 }
 
-/// A name that ends with .html is that of the page, and nothing else is written.
+/// A name that ends with .html is that of the page, and no other file is written.
 #[test]
 fn the_page_alone_is_written_where_its_name_is_given() {
     let folder = tempfile::tempdir().unwrap();
@@ -143,11 +143,11 @@ fn meshes_are_drawn_where_they_are_found_and_told_where_they_are_not() {
     std::fs::write(&scene, format!("packages = {{ parts = \"../store\" }}\n{scene_alone}")).unwrap();
     assert_eq!(count(&write(&[]).0, "visual"), 2);
     std::fs::write(&scene, scene_alone).unwrap();
-    // A package beside the robot needs no option.
+    // A package next to the robot needs no option.
     std::fs::rename(at("store"), at("parts")).unwrap();
     assert_eq!(count(&write(&[]).0, "visual"), 2);
     assert_eq!(count(&write(&["--package", at("parts").to_str().unwrap()]).0, "visual"), 2);
-    // A file that is no mesh is a warning.
+    // A file that is not a mesh is a warning.
     std::fs::write(at("parts/mesh/rod.stl"), "solid").unwrap();
     let (page, ended) = write(&[]);
     assert!(count(&page, "visual") == 1 && ended.err.contains("rod.stl"), "{}", ended.err);
@@ -155,7 +155,7 @@ fn meshes_are_drawn_where_they_are_found_and_told_where_they_are_not() {
     assert!(ended.status == 2 && ended.err.contains("nowhere"), "{}", ended.err);
 }
 
-/// What a program that knows the format reads.
+/// Content read by a program that knows the format.
 #[test]
 fn the_mcap_file_has_every_record_and_the_transforms_of_forward_kinematics() {
     use articulated_core::dynamics::Dynamics;
@@ -204,7 +204,7 @@ fn the_mcap_file_has_every_record_and_the_transforms_of_forward_kinematics() {
         let stamp = |at: &serde_json::Value| at["sec"].as_u64().unwrap() * 1_000_000_000 + at["nsec"].as_u64().unwrap();
         if topic == "/joint_states" {
             assert_eq!(stamp(&content["header"]["stamp"]), message.log_time);
-            // Twelve joints of one coordinate; those of the base are a transform.
+            // Twelve joints of one coordinate; the base is a transform.
             assert_eq!(content["name"].as_array().unwrap().len(), 12);
             assert_eq!(content["position"][0].as_f64().unwrap(), row[1 + 7]);
             assert_eq!(content["velocity"][11].as_f64().unwrap(), row[1 + 19 + 17]);
@@ -228,7 +228,7 @@ fn the_mcap_file_has_every_record_and_the_transforms_of_forward_kinematics() {
     let each = [("/joint_states sensor_msgs/msg/JointState".to_owned(), 501), ("/tf foxglove.FrameTransforms".to_owned(), 501)];
     assert_eq!(counts, each.into());
 
-    // Of a fixed base the root link is the frame of all others; no folder is needed.
+    // With a fixed base, the root link is the frame of all others; no folder is needed.
     let ended = run(&["simulate", "arm", "--end", "0.1", "--mcap", path.to_str().unwrap()]);
     assert!(ended.status == 0 && ended.out.contains("drop.mcap"), "{}", ended.err);
     let file = std::fs::read(&path).unwrap();
@@ -314,7 +314,8 @@ fn all_that_is_wrong_with_a_scene_is_said_with_its_line_and_what_would_be_right(
     );
     let ended = run(&["simulate", file.name()]);
     assert!(ended.status == 1 && ended.err.contains("did you mean \"slide\"?"), "{}", ended.err);
-    // What only the robot shows, wherever it stands; then what only its motion and its files show.
+    // Errors that only the robot shows, at any place; then errors that only its motion and its
+    // files show.
     let effects = "[effects.damping]\nslid = 0.1\n[initial]\nq = { pol = 1 }\n[control]\nkind = \"pd\"\nkp = { slde = 1 }\n";
     let table = "[control]\nkind = \"table\"\nfile = \"nowhere.csv\"\n";
     for (lines, told) in [(effects, &["slid", "pol", "slde"][..]), (table, &["nowhere.csv", "[simulation]"])] {
@@ -428,14 +429,14 @@ fn what_cannot_be_found_or_run_is_said() {
     for command in ["simulate", "effects"] {
         assert_eq!(run(&[command, urdf.name()]).status, 0, "{command}");
     }
-    // The content tells what it is.
+    // The content defines the format.
     let xacro = File::new("arm.xacro", b"<robot name='arm'><link name='base'/></robot>");
     assert_eq!(run(&["simulate", xacro.name()]).status, 0);
     let ended = run(&["simulate", "pendulum", "--print-scene"]);
     assert!(ended.status == 1 && ended.err.contains("--print-scene: found no file of a robot"), "{}", ended.err);
     let ended = run(&["simulate", "pendulum", "-o", urdf.name()]);
     assert!(ended.status == 1 && ended.err.contains("found a file, expected a folder"), "{}", ended.err);
-    // A scene may begin before 0 s. What the command line says is not the scene's mistake.
+    // A scene may begin before 0 s. Errors of the command line are not reported at the scene.
     for (words, told) in [
         (["--end", "-1"], "--end: found -1, expected a time after start = 0, s"),
         (["--end", "0"], "--end: found 0, expected a time after start = 0, s"),
@@ -473,7 +474,7 @@ fn a_step_that_is_not_stable_is_refused_and_what_was_up_to_then_is_there() {
     assert!(told["error"].as_str().unwrap().contains("at t = "), "{told}");
 }
 
-/// The end of a motion, and the last time that something is known of.
+/// The end of a motion, and the last time with a record.
 #[test]
 fn what_is_told_of_the_end_is_told_with_its_time() {
     let scene = |output: &str| format!("robot = \"simple_pendulum\"\n[initial]\nv = [1.0]\n[simulation]\nend = 2\noutput = {output}\n");
@@ -489,8 +490,8 @@ fn what_is_told_of_the_end_is_told_with_its_time() {
     assert!(out.contains("from 0 s to 2 s, ended at its end\n") && !out.contains("last record"), "{out}");
 }
 
-/// The folder holds what the scene asks for: two records, and nothing that draws a motion, of an
-/// earlier one neither.
+/// The folder holds what the scene requests: two records, and no drawings, not even of an earlier
+/// motion.
 #[test]
 fn of_a_scene_of_its_ends_two_records_are_written() {
     let text = "robot = \"simple_pendulum\"\n[initial]\nv = [1.0]\n[simulation]\nend = 0.5\noutput = \"ends\"\n";
@@ -540,7 +541,7 @@ fn much_is_told_before_it_is_written_and_more_than_may_be_is_refused() {
         assert_eq!(run(&["simulate", file.name(), "-o", out, "--max-output-size", "9"]).status, 1);
     }
 
-    // Only the motion shows how many steps there are.
+    // The number of steps is known only after the motion.
     let steps = scene("1e4", "\"steps\"");
     let ended = run(&["simulate", steps.name(), "-o", out, "--max-output-size", "1", "--rtol", "1e-9", "--atol", "1e-9"]);
     assert!(ended.status == 1 && ended.err.contains("unless --max-output-size allows more than 1 MB"), "{}", ended.err);
@@ -550,7 +551,7 @@ fn much_is_told_before_it_is_written_and_more_than_may_be_is_refused() {
     assert_eq!(run(&["simulate", steps.name(), "--max-output-size", "1"]).status, 2, "an option of what is written");
 }
 
-/// A pendulum that hangs: nothing to draw of its angle and its rate.
+/// A pendulum that hangs: its angle and its rate are not drawn.
 #[test]
 fn a_picture_of_nothing_is_not_written_and_that_is_said() {
     let file = File::new("still.toml", b"robot = \"simple_pendulum\"\n[simulation]\nend = 0.1\n");
@@ -566,7 +567,7 @@ fn a_picture_of_nothing_is_not_written_and_that_is_said() {
     assert!(!folder.path().join("positions.svg").exists() && folder.path().join("energy.svg").is_file());
 }
 
-/// Pictures of another motion would pass for pictures of this one.
+/// Pictures of another motion would look like those of this one.
 #[test]
 fn pictures_that_a_motion_has_not_are_removed() {
     let scene = |v: f64| {
@@ -609,8 +610,7 @@ fn levels_of_single_precision_are_refused_where_states_are_doubles() {
     }
 }
 
-/// A tolerance does not choose a fixed step: it is no use to say it, unless the integrator goes
-/// too.
+/// A tolerance does not choose a fixed step: it is refused, unless the integrator changes too.
 #[test]
 fn tolerances_of_fixed_steps_are_refused() {
     let text = "robot = \"simple_pendulum\"\n[simulation]\nend = 0.1\nintegrator = \"rk4\"\nstep = 0.01\n";
@@ -621,8 +621,7 @@ fn tolerances_of_fixed_steps_are_refused() {
     assert_eq!(run(&["simulate", file.name(), "--integrator", "dopri5", "--rtol", "1e-3"]).status, 0);
 }
 
-/// A light body that tumbles fast about all three axes, and nothing acts on it: its energy stays as
-/// it is.
+/// A light body that tumbles fast about all three axes, without forces: its energy is constant.
 fn tumbling_body_warns(integrator: &str) {
     let urdf = "<robot name='top'><link name='top'><inertial><mass value='0.1'/>
         <inertia ixx='1e-5' ixy='0' ixz='0' iyy='2e-5' iyz='0' izz='2.8e-5'/></inertial></link></robot>";

@@ -16,7 +16,7 @@ fn a_chapter_is_a_table_and_its_rows_are_in_the_json() {
     assert_eq!(run(&["stress", "--chapters", "screw"]).status, 2);
 }
 
-/// Bounds that are open are no place to stand: URDF 1.2 has infinite ones where none are written.
+/// Infinite bounds are not samples: URDF 1.2 has infinite ones if none are written.
 #[test]
 fn limits_that_are_open_or_far_away_are_within_their_limits() {
     for limit in ["", " lower='-1'", " lower='-1.7e308' upper='1.7e308'"] {
@@ -30,7 +30,7 @@ fn limits_that_are_open_or_far_away_are_within_their_limits() {
     }
 }
 
-/// A robot whose joint moves nothing is judged by what it has.
+/// A robot whose joint moves no mass is judged by its other numbers.
 #[test]
 fn a_robot_of_ones_own_is_judged_and_watched() {
     let urdf = br#"<robot name="bare"><link name="a"/><link name="b"><inertial><origin xyz="0.5 0 0"/><mass value="1"/>
@@ -61,8 +61,8 @@ fn a_robot_of_ones_own_is_judged_and_watched() {
     assert_eq!(whole["notes"], serde_json::json!([]));
 }
 
-/// A round tool about its own axis has velocity forces that cancel to the last digit: what is left
-/// of them is no measure.
+/// A round tool about its own axis has velocity forces that cancel to the last digit: the remainder
+/// is not a measure.
 #[test]
 fn what_cancels_to_nothing_is_measured_by_its_terms() {
     let link = |name: &str| {
@@ -82,16 +82,16 @@ fn what_cancels_to_nothing_is_measured_by_its_terms() {
     assert_eq!(ended.status, 0, "{}{}", ended.out, ended.err);
 }
 
-/// Magnitudes of terms have those of effects among them: stops are stiff, and far beyond them
-/// forces are large.
+/// Magnitudes of terms include those of effects: stops are stiff, and forces are large far beyond
+/// them.
 #[test]
 fn a_scene_with_effects_is_within_its_limits() {
     let ended = run(&["stress", "arm"]);
     assert_eq!(ended.status, 0, "{}", ended.out);
 }
 
-/// Two links that stay level: M and h are what two joints leave of each other. And one whose angle
-/// is a sum itself.
+/// Two links that stay level: M and h are differences between two joints. And one whose angle is a
+/// sum itself.
 const FOLLOWED: &str = "<robot name='arm'><link name='base'/>LINKS\
     <joint name='shoulder' type='continuous'><parent link='base'/><child link='l1'/><axis xyz='0 -1 0'/></joint>\
     <joint name='elbow' type='continuous'><parent link='l1'/><child link='l2'/><origin xyz='0.5 0 0'/><axis xyz='0 -1 0'/>MIMIC</joint></robot>";

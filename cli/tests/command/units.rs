@@ -1,10 +1,10 @@
-//! Units beside the numbers of reports in JSON.
+//! Units next to the numbers of reports in JSON.
 
 use serde_json::Value;
 
 use super::run;
 
-/// What a path leads to, `links[].mass` to the mass of each of the links.
+/// The values at a path: `links[].mass` means the mass of each link.
 fn found<'a>(report: &'a Value, path: &str) -> Vec<&'a Value> {
     path.split('.').fold(vec![report], |at, word| {
         let inner = at.into_iter().filter_map(|value| value.get(word.trim_end_matches("[]")));

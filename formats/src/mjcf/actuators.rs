@@ -1,8 +1,8 @@
 //! The section `<actuator>`: forces with an affine law on joints and fixed tendons.
 //!
-//! All kinds share one default, as in MuJoCo: gear, bounds and the like are those of any kind. The
-//! numbers of the law (`kp`, `kv`) come from a default of the same kind or of `<general>`, of the
-//! nearest class that has one.
+//! All kinds share one default, as in MuJoCo: gear and bounds apply to any kind. The numbers of the
+//! law (`kp`, `kv`) come from a default of the same kind or of `<general>`, of the nearest class
+//! that has one.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -51,7 +51,7 @@ pub(crate) struct Control {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Dynamics {
     None,
-    /// With a state, as the file calls it.
+    /// With a state, under its name in the file.
     State(&'static str),
 }
 
@@ -97,7 +97,7 @@ const BIASES: [(&str, Bias); 6] = [
     ("user", Bias::Other("user")),
 ];
 
-/// The attributes that name what an actuator acts on.
+/// The attributes for the target of an actuator.
 const TARGETS: [(&str, Sort); 6] = [
     ("joint", Sort::Joint),
     ("jointinparent", Sort::Joint),
@@ -129,7 +129,7 @@ struct General {
     group: i64,
     /// Which controls it has.
     input: Option<String>,
-    /// The kind whose numbers these are, if they are not read.
+    /// The kind of these numbers, if this kind is not read.
     foreign: Option<String>,
 }
 
@@ -163,7 +163,7 @@ impl Default for General {
 impl General {
     /// The defaults of a class and of the classes above, the farthest first.
     fn defaults(class: usize, settings: &Settings<'_>, log: &mut Diagnostics) -> Vec<Self> {
-        // A mistake in a default is one error, not one for each class below.
+        // An error in a default is reported once, not for each class below.
         let mut own = log.apart();
         let mut above = vec![Self::default()];
         for tags in settings.classes.lineage(class) {
@@ -183,7 +183,7 @@ impl General {
         all
     }
 
-    /// Takes what a tag says; `above`: the defaults of the classes above.
+    /// Applies a tag; `above`: the defaults of the classes above.
     fn apply(&mut self, element: &Element, above: &[Self], log: &mut Diagnostics) {
         let values = Values::alone(element, &Subject::Document);
         self.gear = values.at_most("gear", self.gear, log);
@@ -208,15 +208,15 @@ impl General {
         element.name.clone_into(&mut self.kind);
     }
 
-    /// The numbers that a kind starts from: those of the nearest default of this kind, or of
-    /// `<general>` with a gain of this type.
+    /// The initial numbers of a kind: those of the nearest default of this kind, or of `<general>`
+    /// with a gain of this type.
     fn base(&self, kind: &str, above: &[Self]) -> Self {
         let gain = if kind == "damper" { Gain::Affine } else { Gain::Fixed };
         let fits = |own: &&Self| own.kind == kind || (own.kind == "general" && own.gain == gain);
         Some(self).filter(fits).or_else(|| above.iter().rev().find(fits)).cloned().unwrap_or_default()
     }
 
-    /// The law of the force that a tag stands for.
+    /// The law of the force for a tag.
     fn law_of(&mut self, values: &Values<'_>, above: &[Self], log: &mut Diagnostics) {
         let kind = values.element.name.as_str();
         if kind == "general" {
@@ -232,7 +232,7 @@ impl General {
         let fixed = if base.gain == Gain::Fixed { base.gains[0] } else { 1.0 };
         (self.dynamics, self.gain, self.bias, self.foreign) = (Dynamics::None, Gain::Fixed, Bias::None, None);
         (self.gains, self.biases) = ([0.0; 10], [0.0; 10]);
-        // A number of a kind that is not read, such as the area of a cylinder
+        // A number of an unsupported kind, such as the area of a cylinder
         let foreign = base.foreign.clone();
         match kind {
             "motor" => self.gains[0] = 1.0,
@@ -323,12 +323,12 @@ impl General {
         }
     }
 
-    /// Whether the control is a length that the force leads to.
+    /// Whether the control is a target length of the force.
     fn is_servo(&self) -> bool {
         (self.gain, self.bias) == (Gain::Fixed, Bias::Affine) && self.gains[0] == -self.biases[1]
     }
 
-    /// Why it is not read, apart from what it acts on.
+    /// The reason why it is not read, apart from its target.
     fn obstacle(&self, simulation: &Simulation<'_>) -> Option<String> {
         if let Some(kind) = &self.foreign {
             return Some(format!("an actuator of the kind <{kind}>"));
@@ -348,14 +348,14 @@ impl General {
         }
     }
 
-    /// The law of the force, where the ratio of damping is not one yet.
+    /// The law of the force, without a damping ratio.
     fn law(&self) -> ([f64; 3], [f64; 3]) {
         let first = |all: &[f64; 10]| [all[0], all[1], all[2]];
         let gain = if self.gain == Gain::Affine { first(&self.gains) } else { [self.gains[0], 0.0, 0.0] };
         (gain, if self.bias == Bias::None { [0.0; 3] } else { first(&self.biases) })
     }
 
-    /// The bounds of control and force of an actuator on something of this range.
+    /// The bounds of control and force of an actuator with a target of this range.
     fn bounds(&self, element: &Element, settings: &Settings<'_>, target: Option<[f64; 2]>, log: &mut Diagnostics) -> [Option<[f64; 2]>; 2] {
         let mut control = self.control_range;
         if self.is_servo() && self.inherit_range > 0.0 {
@@ -397,7 +397,7 @@ fn of_word<T: Copy>(values: &Values<'_>, name: &str, words: &[(&str, T)], base: 
     values.word(name, words, log).unwrap_or(base)
 }
 
-/// What an actuator acts on.
+/// Target of an actuator.
 struct Target {
     drives: Drives,
     /// Of the coordinate or length, if it has one.
@@ -405,8 +405,8 @@ struct Target {
     is_ball: bool,
 }
 
-/// Reads all actuators; returns the controls of all of the file, and the armatures of actuators and
-/// tendons with the lengths that they are on.
+/// Reads all actuators; returns the controls of the whole file, and the armatures of actuators and
+/// tendons with the lengths that they act on.
 pub(crate) fn actuators(
     scope: &mut Scope<'_>,
     tendons: &[Tendon],
@@ -495,7 +495,7 @@ fn lose(element: &Element, why: &str, scope: &mut Scope<'_>, log: &mut Diagnosti
     scope.unread(element, &format!("{why} is not read"), Some((why, LOST)), log);
 }
 
-/// What an actuator refers to: what it acts on first.
+/// References of an actuator: its target first.
 fn references<'a>(element: &'a Element, log: &mut Diagnostics) -> References<'a> {
     let mut all: References<'_> = TARGETS.iter().filter_map(|(field, sort)| Some((*sort, *field, element.text(field)?))).collect();
     let expected = "one of joint, jointinparent, tendon, site, cranksite and body";
@@ -538,7 +538,7 @@ fn target(field: &str, index: usize, general: &General, scope: &Scope<'_>, tendo
     }
 }
 
-/// The damping of an actuator acts without its control: −d gear² on what it acts on.
+/// The damping of an actuator acts without its control: −d gear² on its target.
 fn passive(
     name: &str,
     element: &Element,
@@ -568,8 +568,8 @@ fn passive(
     }
 }
 
-/// Turns ratios of damping into coefficients: b₂ = −2 ζ √(kp m) with the mass m that the actuator
-/// feels at the reference state. Returns those for which there is none.
+/// Turns damping ratios into coefficients: b₂ = −2 ζ √(kp m) with the mass m felt by the actuator
+/// at the reference state. Returns those without such a mass.
 fn damp(
     ratios: &[(usize, &Element)],
     (armatures, drives_of): (&[(f64, Drives)], &[Drives]),
@@ -593,7 +593,7 @@ fn damp(
                 lose(element, "an actuator with a dampratio and kp below zero", scope, log);
                 lost.push(*index);
             }
-            // What the mistakes are is reported.
+            // These errors are already reported.
             Err(Unknown::Mistakes) => {}
             Err(why) => {
                 lose(element, &why.found("an actuator with a dampratio"), scope, log);

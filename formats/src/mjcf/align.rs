@@ -1,12 +1,12 @@
-//! Free bodies whose frame is that of their inertia: `align` of a free joint and `alignfree`.
+//! Free bodies with the frame of their inertia: `align` of a free joint and `alignfree`.
 
 use super::axes::{in_axes, principal};
 use super::bodies::{Body, Kind};
 use super::mass::Mass;
 use crate::pose::{IDENTITY, Pose, conjugate, rotate, scale};
 
-/// Moves the frames of free bodies without children to their centres of mass and principal axes,
-/// where the file says so. Coordinates of the free joint are those of that frame.
+/// Moves the frames of free bodies without children to their centres of mass and principal axes, if
+/// the file requests it. Coordinates of the free joint are those of that frame.
 pub(crate) fn align(bodies: &mut [Body<'_>], inertials: &mut [Option<Mass>]) {
     let mut has_child = vec![false; bodies.len()];
     bodies.iter().skip(1).for_each(|body| has_child[body.parent] = true);

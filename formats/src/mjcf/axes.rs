@@ -2,7 +2,7 @@
 
 use crate::pose::{IDENTITY, Quaternion, Symmetric, Vector, about, conjugate, diagonal, multiply, turned};
 
-/// Smaller entries beside the diagonal count as zero, as in MuJoCo.
+/// Smaller off-diagonal entries count as zero, as in MuJoCo.
 const LEAST: f64 = 1e-12;
 const MOST_TURNS: usize = 500;
 
@@ -11,15 +11,14 @@ pub(crate) fn principal(inertia: Symmetric) -> (Vector, Quaternion) {
     jacobi(inertia, 0.0)
 }
 
-/// As [`principal`], of a mesh: MuJoCo stops before a turn of which one minus the cosine is below
-/// 1e-12, so that up to 1.5e-6 rad are left. Shapes that are fitted to the mesh have these axes.
+/// As [`principal`], for a mesh: MuJoCo stops before a turn with one minus its cosine below 1e-12,
+/// so up to 1.5e-6 rad remain. Shapes that are fitted to the mesh have these axes.
 pub(crate) fn principal_of_mesh(inertia: Symmetric) -> (Vector, Quaternion) {
     jacobi(inertia, LEAST)
 }
 
-/// Jacobi's classical method, which turns away the largest entry beside the diagonal; Golub & Van
-/// Loan, *Matrix Computations*, §8.5.3. It stops at a turn of which one minus the cosine is below
-/// `least`.
+/// Jacobi's classical method, which removes the largest off-diagonal entry by a turn; Golub & Van
+/// Loan, *Matrix Computations*, §8.5.3. It stops at a turn with one minus its cosine below `least`.
 fn jacobi(inertia: Symmetric, least: f64) -> (Vector, Quaternion) {
     let mut axes = IDENTITY;
     let mut moments = [inertia[0], inertia[3], inertia[5]];
@@ -59,7 +58,7 @@ fn jacobi(inertia: Symmetric, least: f64) -> (Vector, Quaternion) {
     (moments, axes)
 }
 
-/// The inertia in axes that are turned so, without what is left beside the diagonal.
+/// The inertia in axes of this orientation, without the remaining off-diagonal entries.
 pub(crate) fn in_axes(axes: Quaternion, inertia: Symmetric) -> Symmetric {
     let [xx, _, _, yy, _, zz] = turned(conjugate(axes), inertia);
     diagonal([xx, yy, zz])

@@ -19,18 +19,18 @@ use super::values::Values;
 use crate::LeaveOut;
 use crate::pose::{IDENTITY, Pose, Vector, about, diagonal, multiply, rotate, unit};
 
-/// A model may have so many bodies, joints, geoms and sites altogether.
+/// Maximum total number of bodies, joints, geoms and sites of a model.
 const MOST_ITEMS: usize = 100_000;
-/// All names may have so many bytes together, those of copies and attached models among them.
+/// Maximum total length of all names, bytes, including those of copies and attached models.
 const MOST_LETTERS: usize = 32 << 20;
-/// Tags may be nested so deeply, those of attached models in those that attach them.
+/// Maximum depth of nested tags; tags of attached models count inside the attaching ones.
 const MOST_DEPTH: usize = 256;
-/// Attached models may attach others so many times.
+/// Maximum depth of models attached inside attached models.
 const MOST_ATTACHED: usize = 16;
 
 /// A body with its content, in its own frame. The first body of a model is the world.
 pub(crate) struct Body<'a> {
-    /// With prefixes and suffixes; `None` where it has none.
+    /// With prefixes and suffixes; `None` if it has no name.
     pub(crate) name: Option<String>,
     pub(crate) element: &'a Element,
     pub(crate) settings: Rc<Settings<'a>>,
@@ -62,7 +62,7 @@ pub(crate) struct Joint<'a> {
     pub(crate) anchor: Vector,
     /// Of length 1, in the body's frame.
     pub(crate) axis: Vector,
-    /// The coordinate at which the body is where its `pos` says, rad or m.
+    /// The coordinate at which the body has its `pos`, rad or m.
     pub(crate) reference: f64,
     /// Whether its range is a bound.
     pub(crate) is_limited: bool,
@@ -74,8 +74,8 @@ pub(crate) struct Joint<'a> {
     pub(crate) dynamics: JointDynamics,
     /// The coordinate at which tendons are measured for `springlength="-1"`, rad or m.
     pub(crate) rest: f64,
-    /// `springdamper`: time constant, s, and ratio of damping, which give stiffness and damping
-    /// where both are above zero.
+    /// `springdamper`: time constant, s, and damping ratio, which define stiffness and damping if
+    /// both are above zero.
     pub(crate) spring_damper: [f64; 2],
     pub(crate) armature: f64,
     /// The part of the tree that it is in.
@@ -90,7 +90,7 @@ pub(crate) struct Site<'a> {
     pub(crate) part: usize,
 }
 
-/// What `<inertial>` says.
+/// The numbers of `<inertial>`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Explicit<'a> {
     pub(crate) element: &'a Element,
@@ -105,7 +105,7 @@ fn explicit<'a>(values: &Values<'a>, compiler: &Compiler, log: &mut Diagnostics)
     }
     let pose = values.pose(&compiler.angles, log);
     let mass = values.number("mass", log)?;
-    // The axes of a diagonal are those of the tag.
+    // The axes of a diagonal inertia are those of the tag.
     let (inertia, axes) = match values.exactly::<6>("fullinertia", log) {
         Some([xx, yy, zz, xy, xz, yz]) => {
             let turns = ["quat", "axisangle", "xyaxes", "zaxis", "euler", "diaginertia"];
@@ -120,22 +120,22 @@ fn explicit<'a>(values: &Values<'a>, compiler: &Compiler, log: &mut Diagnostics)
     Some(Explicit { element: values.element, own: Mass { pose, mass, inertia, axes }, has_inertia })
 }
 
-/// The bodies of a model, and the documents that they are from.
+/// The bodies of a model, and their documents.
 pub(crate) struct Tree<'a> {
     /// Parents first; the first body is the world.
     pub(crate) bodies: Vec<Body<'a>>,
-    /// The main document, then what is attached, in the order in which it is.
+    /// The main document, then the attached ones, in the order of attachment.
     pub(crate) parts: Vec<Part<'a>>,
 }
 
-/// What of a document a part of the tree is.
+/// The extent of a part in its document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Extent {
     /// All of it.
     Whole,
-    /// A body or a frame. The rest of the document counts as far as it is about nothing else.
+    /// A body or a frame. The rest of the document applies if it refers to nothing outside.
     Attached,
-    /// One of several copies. The rest of the document counts as far as it is about the copy.
+    /// One of several copies. The rest of the document applies if it refers to the copy.
     Copy,
 }
 
@@ -147,7 +147,7 @@ pub(crate) struct Part<'a> {
     pub(crate) extent: Extent,
     /// The part that it is in; of the main document itself.
     pub(crate) parent: usize,
-    /// Whether it is in no copy but the first.
+    /// Whether it is outside all copies except the first.
     pub(crate) is_first: bool,
     /// Indices of its bodies, and of the parts from it to those that are attached inside.
     pub(crate) bodies: Range<usize>,
@@ -169,7 +169,7 @@ struct Context<'a> {
     is_first: bool,
 }
 
-/// All bodies of a model, with these flags. What `leave_out` has is left out.
+/// All bodies of a model, with these flags. Elements in `leave_out` are left out.
 pub(crate) fn tree<'a>(
     documents: &'a Documents,
     (flags, is_weightless): (Flags, bool),
@@ -252,7 +252,7 @@ impl<'a> Build<'a> {
         self.bodies.len() - 1
     }
 
-    /// Whether there is room for one more of anything; an error where there is none.
+    /// Whether there is room for one more item; an error if not.
     fn has_room(&mut self, element: &Element, log: &mut Diagnostics) -> bool {
         self.items += 1;
         if self.items == MOST_ITEMS {
@@ -261,7 +261,7 @@ impl<'a> Build<'a> {
         self.items < MOST_ITEMS && self.letters <= MOST_LETTERS
     }
 
-    /// Counts the bytes of a name; an error, and no more room, where there are too many.
+    /// Counts the bytes of a name; an error, and no more room, if there are too many.
     fn spell(&mut self, letters: usize, element: &Element, log: &mut Diagnostics) {
         let had_room = self.letters <= MOST_LETTERS;
         self.letters += letters;
@@ -271,7 +271,7 @@ impl<'a> Build<'a> {
         }
     }
 
-    /// The name of what a tag makes.
+    /// The name of a tag's item.
     fn name(&mut self, element: &Element, context: &Context<'a>, log: &mut Diagnostics) -> Option<String> {
         let name = element.text("name").filter(|name| !name.is_empty())?;
         let full = format!("{}{name}{}", context.prefix, context.suffix);
@@ -422,7 +422,7 @@ impl<'a> Build<'a> {
             Some(name) => match self.documents.model(context.document, name) {
                 Some(document) => document,
                 None => {
-                    // A file that cannot be read has an error already.
+                    // An unreadable file has an error already.
                     if !context.settings.models.contains_key(name) {
                         element.error(
                             (&Subject::Document, "model"),
@@ -476,7 +476,7 @@ impl<'a> Build<'a> {
     }
 }
 
-/// The body or frame of a name, and the default class of what is around it.
+/// The body or frame of a name, and the default class that surrounds it.
 fn find<'a>(root: &'a Element, tag: &str, name: &str, settings: &Settings<'a>, log: &mut Diagnostics) -> Option<(&'a Element, usize)> {
     let mut next: Vec<(&Element, usize)> = root.all("worldbody").map(|section| (section, 0)).collect();
     while let Some((element, class)) = next.pop() {
@@ -518,13 +518,13 @@ fn joint<'a>(name: Option<String>, values: &Values<'a>, context: &Context<'a>, f
             values.error("axis", Code::ZeroAxis, format!("({x:?} {y:?} {z:?})"), "a vector that is not zero", log);
             return None;
         };
-        // As written, where it is a multiple of a unit vector already.
+        // As written, if it is a multiple of a unit vector already.
         axis = rotate(context.frame.rotation, if is_of_length_one(given) { given } else { unit });
     }
     let (is_limited, limit, force_range) = limits(values, kind, context, flags, log);
-    // A number that the kind does not have is not parsed.
+    // A number that does not exist for the kind is not parsed.
     let scalar = |name: &str, log: &mut Diagnostics| if is_scalar { values.number(name, log).map_or(0.0, angle) } else { 0.0 };
-    // Mistakes in these are reported above and below.
+    // Errors in these are reported above and below.
     let mut reported = log.apart();
     Some(Joint {
         name,
@@ -562,7 +562,7 @@ fn is_bound(values: &Values<'_>, (flag, field): (&str, &str), range: [f64; 2], a
     }
 }
 
-/// Whether the range is a bound, the bounds, and those of the force of all actuators.
+/// Whether the range is a bound, the bounds, and the bounds on the force of all actuators.
 fn limits(
     values: &Values<'_>,
     kind: Kind,
@@ -632,7 +632,7 @@ fn dynamics(values: &Values<'_>, kind: Kind, flags: Flags, angle: &dyn Fn(f64) -
         values.element.warning((&values.subject, "springyield"), Code::LostDynamics, "a spring that yields", expected, log);
     }
     if kind != Kind::Free {
-        // A ball joint is slack where its coordinate is the identity.
+        // A ball joint is relaxed at the identity.
         let rest = if kind == Kind::Ball { None } else { values.number("springref", log).map(angle) };
         return JointDynamics { damping, friction, armature, stiffness, rest: rest.filter(|_| stiffness.is_some()) };
     }
@@ -645,7 +645,7 @@ fn dynamics(values: &Values<'_>, kind: Kind, flags: Flags, angle: &dyn Fn(f64) -
 }
 
 /// The pose of a joint in the body's frame, turned or moved back by its reference, so that the
-/// coordinate is the file's.
+/// coordinate equals the file's.
 pub(crate) fn at_reference(joint: &Joint<'_>, before: Pose) -> Pose {
     match joint.kind {
         _ if joint.reference == 0.0 => before,

@@ -9,7 +9,7 @@ use super::element::{Element, Loader};
 use super::grammar;
 use crate::Input;
 
-/// A file may attach so many models.
+/// Maximum number of models that a file attaches.
 const MOST_MODELS: usize = 100;
 
 pub(crate) struct Documents {
@@ -86,7 +86,7 @@ impl Documents {
         &self.all[index].root
     }
 
-    /// The document that is called so in another one.
+    /// The document with this name in another one.
     pub(crate) fn model(&self, document: usize, name: &str) -> Option<usize> {
         self.all[document].models.get(name).copied()
     }

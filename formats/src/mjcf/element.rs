@@ -12,9 +12,9 @@ use crate::xml::element::Tag;
 use crate::xml::lines::Lines;
 pub(crate) use crate::xml::tree::{Attribute, Element, File};
 
-/// Tags may be nested so deeply, included ones in those that include them.
+/// Maximum depth of nested tags; included ones count inside those that include them.
 const MOST_DEPTH: usize = 256;
-/// A file may include so many files, and so many tags altogether.
+/// Maximum number of included files, and of all their tags.
 const MOST_FILES: usize = 1000;
 const MOST_TAGS: usize = 2 << 20;
 
@@ -33,7 +33,7 @@ impl<'a> Loader<'a> {
         Self { sources, folder, included: BTreeSet::from([PathBuf::from(file)]), tags: 0 }
     }
 
-    /// The root of a document, with the included files in the place of their tags.
+    /// The root of a document, with the included files in place of their tags.
     pub(crate) fn root(&mut self, bytes: &[u8], file: &str, log: &mut Diagnostics) -> Option<Element> {
         let mut own = Diagnostics::new(file);
         let root = self.document(bytes, &Rc::new(File { name: file.to_owned(), ..File::default() }), 0, &mut own);
@@ -79,7 +79,7 @@ impl<'a> Loader<'a> {
         let Some((name, at)) = tag.required_attribute("file", log) else { return Vec::new() };
         let place = Place { at, ..tag.place("include file") };
         let beside = Path::new(&from.name).parent().unwrap_or(Path::new(""));
-        // From the main file's folder, or else from that of the file that includes it.
+        // From the main file's folder, or else from the folder of the including file.
         let paths = [self.folder.join(name), beside.join(name)];
         if self.included.len() >= MOST_FILES {
             log.error(place, Code::TooLarge, format!("more than {MOST_FILES} files"), format!("at most {MOST_FILES}"));

@@ -36,7 +36,7 @@ pub(crate) fn equalities(scope: &mut Scope<'_>, tendons: &[Tendon], is_off: bool
             let place = scope.place(element);
             match linear(element, &found, polynomial, scope, tendons) {
                 Ok(coupling) => {
-                    // The field is that of the option, which withdraws the warning.
+                    // The field is the name of the option that withdraws the warning.
                     scope.warn(element, "coupling", ("an equation of joints", APPLY), log);
                     world.couplings.push((coupling, place));
                 }
@@ -77,7 +77,7 @@ fn references<'a>(element: &'a Element, log: &mut Diagnostics) -> References<'a>
     .collect()
 }
 
-/// Solves Σ aᵢ (qᵢ − refᵢ) = c₀ for the first coordinate. The error says why that cannot be done.
+/// Solves Σ aᵢ (qᵢ − refᵢ) = c₀ for the first coordinate. The error states why it has no solution.
 fn linear(
     element: &Element,
     found: &[usize],

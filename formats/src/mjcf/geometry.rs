@@ -40,7 +40,7 @@ pub(crate) struct Geom<'a> {
     kind: Kind,
     /// Of the shape; for a mesh, of the frame of its file.
     pose: Pose,
-    /// Half of what the shape measures along its axes, m.
+    /// Half the extent of the shape along its axes, m.
     size: Vector,
     mesh: Option<&'a Element>,
     mass: Option<f64>,
@@ -81,7 +81,7 @@ pub(crate) fn between(values: &Values<'_>, log: &mut Diagnostics) -> Option<(Pos
     Some((Pose { position: scale(add(from, to), 0.5), rotation }, length / 2.0))
 }
 
-/// A geom, of which meshes are not read yet.
+/// A geom; its mesh is not read yet.
 pub(crate) fn geom<'a>(
     values: &Values<'a>,
     settings: &Rc<Settings<'a>>,
@@ -174,7 +174,7 @@ fn asset<'a>(
     Some(found)
 }
 
-/// How many numbers the size of a shape has.
+/// Number of size parameters of a shape.
 fn sizes(kind: Kind) -> usize {
     match kind {
         Kind::Sphere => 1,
@@ -184,7 +184,7 @@ fn sizes(kind: Kind) -> usize {
     }
 }
 
-/// Half of what a shape measures along its axes, m; `None` after an error.
+/// Half the extent of a shape along its axes, m; `None` after an error.
 fn size(values: &Values<'_>, kind: Kind, has_mesh: bool, settings: &Settings<'_>, log: &mut Diagnostics) -> Option<Vector> {
     let field = asset(values, ("hfield", &settings.height_fields), log)?;
     match (kind, field, has_mesh) {
@@ -202,7 +202,7 @@ fn size(values: &Values<'_>, kind: Kind, has_mesh: bool, settings: &Settings<'_>
                 field.error("size", Code::Number, quote(field.text("size").unwrap_or_default()), "4 numbers above zero, m", log);
                 return None;
             };
-            // As if it was half as high everywhere; its base is below.
+            // As with half the height everywhere; its base is below.
             Some([x, y, 0.25 * elevation + 0.5 * base])
         }
         (_, Some(_), _) => {
@@ -215,7 +215,7 @@ fn size(values: &Values<'_>, kind: Kind, has_mesh: bool, settings: &Settings<'_>
 }
 
 impl Geom<'_> {
-    /// Its mass, centre and inertia; `None` if it has no mass, or an error was reported.
+    /// Its mass, centre and inertia; `None` if it has no mass, or after an error.
     pub(crate) fn mass(&self, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Option<Mass> {
         if self.mass == Some(0.0) || (self.mass.is_none() && self.density == 0.0) {
             return None;
@@ -259,7 +259,7 @@ impl Geom<'_> {
         (mass > TINY).then(|| Mass { mass, pose, inertia: inertia.map(|x| mass * x), axes: Some(axes) })
     }
 
-    /// Moves it, as the frame of its body moves the other way.
+    /// Moves it when the frame of its body moves the other way.
     pub(crate) fn move_by(&mut self, pose: &Pose) {
         self.pose = pose.then(&self.pose);
     }
@@ -295,7 +295,7 @@ impl Geom<'_> {
         self.mask != ContactMask::default()
     }
 
-    /// The frame of a plane for contact: its z axis is the normal.
+    /// The frame of a contact plane: its z axis is the normal.
     pub(crate) fn plane(&self) -> Option<Pose> {
         (self.kind == Kind::Plane && self.mesh.is_none() && self.collides()).then_some(self.pose)
     }
@@ -316,8 +316,7 @@ impl Geom<'_> {
     }
 }
 
-/// Half the size of a shape that is fitted to a mesh, and its centre, in the principal axes of the
-/// mesh.
+/// Half the size of a shape fitted to a mesh, and its centre, in the principal axes of the mesh.
 fn fitted(body: &mesh::Body, kind: Kind, to_corners: bool) -> (Vector, Vector) {
     let principal = body.principal();
     let [a, b, c] = principal.inertia_box;
@@ -377,7 +376,7 @@ fn capsule(radius: f64, height: f64, is_shell: bool) -> (f64, Vector) {
         let (ball, tube) = (4.0 * PI * r2, 2.0 * PI * radius * height);
         let total = ball + tube;
         let (ball, tube) = (ball / total, tube / total);
-        // Of a hemisphere, from the middle of the ball and from that of the capsule
+        // For a hemisphere, from the middle of the ball and from the middle of the capsule
         let (own, from) = (radius / 2.0, height / 2.0 + radius / 2.0);
         let across = tube * (6.0 * r2 + height * height) / 12.0 + ball * (2.0 * r2 / 3.0 + from * from - own * own);
         return (total, [across, across, tube * r2 + 2.0 * ball * r2 / 3.0]);

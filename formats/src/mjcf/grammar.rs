@@ -1,7 +1,7 @@
-//! The tags and attributes of the format: which are used, and why the others are not.
+//! The tags and attributes of the format: which are used, and why others are not.
 //!
-//! One pass over the document reports what is not used and what does not exist. It does not look
-//! inside tags that are not used as a whole.
+//! One pass over the document reports unused and unknown content. It does not look inside tags that
+//! are unused as a whole.
 
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 use articulated_core::suggest::Suggester;
@@ -55,7 +55,7 @@ macro_rules! of_actuators {
     };
 }
 
-/// All tags that are used. A tag of two rows is the first that fits what it is in.
+/// All tags that are used. A tag with two rows uses the first one whose parent matches.
 const ROWS: &[Row] = &[
     Row {
         name: "mujoco",
@@ -358,7 +358,7 @@ fn row_of(name: &str, within: &str) -> Option<&'static Row> {
     ROWS.iter().find(|row| row.name == name && (row.within.is_empty() || has(row.within, within)))
 }
 
-/// Reports all that is not used and all that the format does not have.
+/// Reports all unused and all unknown content.
 pub(crate) fn check(root: &Element, log: &mut Diagnostics) {
     let mut suggester = Suggester::default();
     let mut next = vec![(root, "")];
@@ -380,7 +380,7 @@ pub(crate) fn check(root: &Element, log: &mut Diagnostics) {
                 continue;
             }
             match reason(row.unused_tags, &child.name) {
-                // Each of the tags in a section, or the section where there are none.
+                // Each of the tags in a section, or the section if it has no tags.
                 Some(why) if row.name == "mujoco" && !child.children.is_empty() => {
                     child.children.iter().for_each(|inner| inner.unused(&subject, None, why, log));
                 }
@@ -424,7 +424,7 @@ fn attributes(element: &Element, row: &Row, subject: &Subject, suggester: &mut S
     }
 }
 
-/// What messages about a tag name.
+/// The subject of messages about a tag.
 pub(crate) fn subject(element: &Element) -> Subject {
     let name = || element.text("name").map(|name| name.chars().take(256).collect::<String>());
     match element.name.as_str() {

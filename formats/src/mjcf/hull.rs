@@ -10,7 +10,7 @@ use crate::pose::{Vector, cross, dot, norm, scale, subtract};
 /// More points are refused.
 pub(crate) const MOST_POINTS: usize = 1 << 20;
 
-/// A point is outside of a face from this part of the size of all points on.
+/// A point is outside a face above this distance, relative to the size of all points.
 const OUTSIDE: f64 = 1e-13;
 
 struct Face {
@@ -42,8 +42,8 @@ impl Face {
     }
 }
 
-/// The faces of the hull; `None` where the points lie in a plane, or rounding leaves no closed
-/// surface.
+/// The faces of the hull; `None` if the points lie in a plane, or if rounding leaves the surface
+/// open.
 pub(crate) fn hull(points: &[Vector]) -> Option<Vec<[u32; 3]>> {
     if points.len() > MOST_POINTS {
         return None;
@@ -104,7 +104,7 @@ fn first(points: &[Vector]) -> Option<Vec<Face>> {
     [[a, b, c], [b, a, d], [c, b, d], [a, c, d]].into_iter().map(|corners| Face::of(points, corners)).collect()
 }
 
-/// Gives a point to the first face from number `from` on that it sees.
+/// Assigns a point to the first visible face from number `from` on.
 fn assign(points: &[Vector], point: u32, faces: &mut [Face], from: usize, least: f64) {
     let position = points[point as usize];
     if let Some(face) = faces[from..].iter_mut().find(|face| face.height(position) > least) {
@@ -112,11 +112,11 @@ fn assign(points: &[Vector], point: u32, faces: &mut [Face], from: usize, least:
     }
 }
 
-/// Edges around faces, and points that were outside of them.
+/// Edges around removed faces, and the points that were outside them.
 type Removed = (Vec<(u32, u32)>, Vec<u32>);
 
-/// Removes all faces that a point sees, from one of them on; also those in whose plane it is, so
-/// that no triangle without area is made at their edges.
+/// Removes all faces that a point sees, starting from one; also coplanar ones, so that no triangle
+/// without area is made at their edges.
 fn remove_seen(
     (point, least): (Vector, f64),
     start: usize,

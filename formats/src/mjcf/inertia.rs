@@ -12,7 +12,7 @@ use super::settings::{Compiler, InertiaFromGeom};
 use crate::mass::beyond_any_mass;
 use crate::pose::{IDENTITY, Pose, Symmetric, add, diagonal, of_point, scale, subtract, turned};
 
-/// The masses of all bodies; `None` for bodies without.
+/// The masses of all bodies; `None` for bodies without mass.
 pub(crate) fn of_bodies(bodies: &[Body<'_>], meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Vec<Option<Mass>> {
     let mut all: Vec<Option<Mass>> = Vec::with_capacity(bodies.len());
     // Without its inertia
@@ -29,7 +29,7 @@ pub(crate) fn of_bodies(bodies: &[Body<'_>], meshes: &mut Meshes<'_>, log: &mut 
     all
 }
 
-/// Warns of masses that no body has.
+/// Warns of implausible masses.
 fn warn_of_masses(bodies: &[Body<'_>], all: &[Option<Mass>], log: &mut Diagnostics) {
     for (body, own) in bodies.iter().zip(all) {
         if let Some((found, expected)) = own.and_then(|own| beyond_any_mass(own.mass)) {
@@ -38,7 +38,7 @@ fn warn_of_masses(bodies: &[Body<'_>], all: &[Option<Mass>], log: &mut Diagnosti
     }
 }
 
-/// Refuses masses without inertia of what moves as one, unless another body of it has inertia.
+/// Refuses masses without inertia that move, unless a body fixed to them has inertia.
 fn refuse_points(bodies: &[Body<'_>], all: &[Option<Mass>], points: &[Option<&Explicit<'_>>], log: &mut Diagnostics) {
     // The body with joints that carries each body; the world carries the rest
     let mut carriers = vec![0; bodies.len()];
@@ -69,8 +69,7 @@ fn set_total_mass(bodies: &[Body<'_>], all: &mut [Option<Mass>]) {
     }
 }
 
-/// The mass of a body, bounds included, and the `<inertial>` that gives it; `None` for a body
-/// without.
+/// The mass of a body, bounds included, and its `<inertial>`; `None` for a body without mass.
 fn of_body<'b>(body: &'b Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> (Option<Mass>, Option<&'b Explicit<'b>>) {
     let compiler = &body.settings.compiler;
     let from_geoms = match compiler.inertia_from_geom {
@@ -90,7 +89,7 @@ fn of_body<'b>(body: &'b Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostic
     ((own.mass != 0.0 || own.inertia != [0.0; 6]).then_some(own), given)
 }
 
-/// The masses of all geoms of the groups that count, as one.
+/// The total mass of all geoms in the groups that count.
 fn of_geoms(body: &Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Option<Mass> {
     let [first, last] = body.settings.compiler.groups;
     let counted = body.geoms.iter().filter(|geom| (first..=last).contains(&geom.group));
@@ -113,7 +112,7 @@ fn of_geoms(body: &Body<'_>, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> 
     Some(Mass { pose: Pose::at(center), mass, inertia, axes: None })
 }
 
-/// The inertia with `boundinertia` and `balanceinertia`, and what is wrong with it.
+/// The inertia with `boundinertia` and `balanceinertia`; reports its errors.
 fn bounded(body: &Body<'_>, compiler: &Compiler, own: Mass, log: &mut Diagnostics) -> Mass {
     let Mass { pose, inertia, .. } = own;
     let is_diagonal = inertia[1] == 0.0 && inertia[2] == 0.0 && inertia[4] == 0.0;

@@ -9,7 +9,7 @@ use super::element::Element;
 use super::grammar::subject;
 use crate::LeaveOut;
 
-/// What the options leave out, and what has been reported.
+/// The elements that the options leave out, and the reported ones.
 pub(crate) struct Gate<'a> {
     leave_out: &'a BTreeSet<LeaveOut>,
     /// By the addresses of the tags: a document may be in the tree several times.
@@ -39,7 +39,7 @@ impl<'a> Gate<'a> {
         }
     }
 
-    /// Reports the plugin of a geom or of its mesh, if there is one, and returns whether there is.
+    /// Reports the plugin of a geom or of its mesh, and returns whether there is one.
     pub(crate) fn has_plugin(&mut self, element: &Element, what: &str, log: &mut Diagnostics) -> bool {
         let plugins: Vec<&Element> = element.all("plugin").collect();
         for plugin in &plugins {
@@ -55,13 +55,13 @@ impl<'a> Gate<'a> {
         }
     }
 
-    /// Reports what of a body is not read.
+    /// Reports unread elements of a body.
     pub(crate) fn body(&mut self, element: &Element, log: &mut Diagnostics) {
         match element.name.as_str() {
             "flexcomp" => self.report(element, LeaveOut::Flex, "a flexible body", log),
             "composite" => self.report(element, LeaveOut::Composite, "a composite of bodies", log),
             "plugin" => self.report(element, LeaveOut::Plugin, "a plugin of a body", log),
-            // What else is not used has been reported.
+            // Other unused tags have been reported.
             _ => {}
         }
     }

@@ -22,7 +22,7 @@ pub(crate) struct Lowered {
     pub(crate) description: Description,
     /// Names of joints, in the order of the bodies.
     pub(crate) joints: Vec<String>,
-    /// For each link, what its collision geometry makes contact with.
+    /// For each link, the contact masks of its collision geometry.
     pub(crate) masks: BTreeMap<String, Vec<ContactMask>>,
 }
 
@@ -58,7 +58,7 @@ struct Lower {
     links: Taken,
     joints: Taken,
     link_of: Vec<LinkId>,
-    /// Whether nothing moves the body.
+    /// Whether the body cannot move.
     is_fixed: Vec<bool>,
     /// Names of joints of the file, or made for them.
     names: Vec<String>,
@@ -67,7 +67,7 @@ struct Lower {
 
 pub(crate) const KEPT: &str = "kept for scenes that turn on such forces; no part of the rigid-body dynamics";
 
-/// Reports the numbers of a joint that only effects use, under the names by which those take them.
+/// Reports the numbers of a joint that only effects use, under the effects' names for them.
 fn keep_dynamics(joint: &bodies::Joint<'_>, name: &str, log: &mut Diagnostics) {
     let own = joint.dynamics;
     let numbers = [
@@ -84,7 +84,7 @@ fn keep_dynamics(joint: &bodies::Joint<'_>, name: &str, log: &mut Diagnostics) {
 }
 
 impl Lower {
-    /// Takes the names that the file gives, which are stronger than those made here.
+    /// Reserves the names of the file, which have precedence over generated ones.
     fn reserve(&mut self, bodies: &[Body<'_>], log: &mut Diagnostics) {
         for (index, body) in bodies.iter().enumerate() {
             if let Some(name) = body.name.as_ref().filter(|_| index > 0)
@@ -146,7 +146,7 @@ impl Lower {
             joint.element.error((&subject, "type"), Code::Misplaced, found, "it alone, in a body directly inside the world", log);
         }
         let name = joint.name.clone().unwrap_or_else(|| self.joints.free(format!("{}_free", link.name)));
-        // One beside others is an error.
+        // A free joint with others is an error.
         self.names.extend(body.joints.iter().map(|_| name.clone()));
         let child = self.add_link(link);
         self.add_joint(Joint { name, kind: JointKind::Floating, parent: LinkId(0), child, ..Joint::default() });

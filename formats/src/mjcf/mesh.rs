@@ -2,7 +2,7 @@
 //!
 //! Three small readers, of binary STL, of the vertices and faces of OBJ, and of MuJoCo's MSH: a
 //! library for meshes would have to keep the order of faces and the single precision of MuJoCo, and
-//! none reads MSH.
+//! no library reads MSH.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -90,7 +90,7 @@ impl<'a> Meshes<'a> {
         Self { sources, known: BTreeMap::new() }
     }
 
-    /// The body of a mesh; an error where it has none, once.
+    /// The body of a mesh; an error, once, if it has none.
     pub(crate) fn body(&mut self, element: &Element, settings: &Settings<'_>, log: &mut Diagnostics) -> Option<Rc<Body>> {
         let key = std::ptr::from_ref(element) as usize;
         if let Some(known) = self.known.get(&key) {
@@ -197,8 +197,8 @@ impl<'a> Meshes<'a> {
     }
 }
 
-/// Where the file of a mesh may be: from the main file's folder, or from that of the file that
-/// names it.
+/// Possible paths of a mesh's file: from the main file's folder, or from the folder of the file
+/// that names it.
 pub(crate) fn paths(element: &Element, file: &str, settings: &Settings<'_>) -> [PathBuf; 3] {
     let stripped = file.rsplit(['/', '\\']).next().unwrap_or_default();
     let file = Path::new(if settings.compiler.strip_path { stripped } else { file });
@@ -304,7 +304,7 @@ fn split(polygon: &[u32], into: &mut Triangles) -> Option<()> {
     Some(())
 }
 
-/// Volume, centre and inertia of what the faces enclose, or of the faces.
+/// Volume, centre and inertia of the solid enclosed by the faces, or of the faces.
 fn body(triangles: Triangles, mode: Mode) -> Option<Body> {
     const LEAST: f64 = 1e-15;
     let Triangles { vertices, faces, .. } = triangles;

@@ -32,7 +32,7 @@ pub(crate) enum Unknown {
 }
 
 impl Unknown {
-    /// What is said of something that needs the mass.
+    /// The message about an element that needs the mass.
     pub(crate) fn found(self, what: &str) -> String {
         match self {
             Self::Armature => format!("{what} beside a spatial tendon with armature"),
@@ -52,7 +52,7 @@ pub(crate) struct Inertia {
 }
 
 impl Inertia {
-    /// For so many actuators. `armatures`: each with the lengths that it is on.
+    /// For `count` actuators. `armatures`: each with the lengths that it acts on.
     pub(crate) fn at_reference(
         count: usize,
         description: &Description,
@@ -103,7 +103,7 @@ impl Inertia {
         Some(Self { size: n, factor: cholesky(matrix, n)?, starts })
     }
 
-    /// (J M⁻¹ Jᵀ)⁻¹ for the row J of an actuator; `None` where it moves nothing.
+    /// (J M⁻¹ Jᵀ)⁻¹ for the row J of an actuator; `None` if it moves no joint.
     pub(crate) fn reflected(&self, drives: &Drives) -> Option<f64> {
         let mut x = vec![0.0; self.size];
         entries(drives, &self.starts).iter().for_each(|(k, gear)| x[*k] += gear);
@@ -129,8 +129,8 @@ fn is_one_branch(scope: &Scope<'_>, one: usize, other: usize) -> bool {
     body == upper
 }
 
-/// Gives joints the stiffness and the damping of `springdamper`: k = m/(T ζ)² and d = 2 m/T, with
-/// the mass m of the joint at the reference state, the time constant T and the ratio ζ.
+/// Sets the stiffness and the damping of joints with `springdamper`: k = m/(T ζ)² and d = 2 m/T,
+/// with the mass m of the joint at the reference state, the time constant T and the ratio ζ.
 pub(crate) fn spring_dampers(
     scope: &Scope<'_>,
     flags: Flags,
@@ -157,7 +157,7 @@ pub(crate) fn spring_dampers(
         let found = match mass {
             _ if joint.kind == Kind::Free => Err("a springdamper of a free joint".to_owned()),
             Ok(mass) => Ok(mass),
-            // What the mistakes are is reported.
+            // These errors are already reported.
             Err(Unknown::Mistakes) => continue,
             Err(why) => Err(why.found("a springdamper")),
         };

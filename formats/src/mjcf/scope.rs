@@ -9,15 +9,15 @@ use super::bodies::{Extent, Joint, Kind, Part, Tree};
 use super::element::Element;
 use crate::pose::{IDENTITY, scalar_last};
 
-/// Actuators, tendons and equations may have so many references, those of copies among them. A name
-/// counts by its length.
+/// Maximum number of references of actuators, tendons and equations, including those of copies. A
+/// name counts by its length.
 const MOST: usize = 250_000;
-/// So many bytes of a name count as one reference.
+/// Bytes of a name that count as one reference.
 const LETTERS: usize = 64;
-/// So many mistakes have hints.
+/// Maximum number of errors with hints.
 const HINTS: usize = 100;
 
-/// What a name is of.
+/// Kinds of named items.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Sort {
     Joint,
@@ -55,16 +55,16 @@ pub(crate) struct Scope<'a> {
     names: BTreeMap<(Sort, String), (usize, usize)>,
     /// Names as the documents have them.
     own: BTreeSet<(Sort, &'a str)>,
-    /// Whether all joints are known: else a name that is not may be one with a mistake.
+    /// Whether all joints are known: otherwise an unknown name may be that of an invalid joint.
     is_complete: bool,
-    /// What has been reported, by the address of the tag: a document may be in several parts.
+    /// Reported warnings, by the address of the tag: a document may be in several parts.
     reported: BTreeSet<(*const Element, String)>,
     looked_up: usize,
     /// The name of the main file.
     main: &'a str,
 }
 
-/// References of a tag: what of, the attribute, and the name.
+/// References of a tag: kind, attribute, and name.
 pub(crate) type References<'a> = Vec<(Sort, &'static str, &'a str)>;
 
 impl<'a> Scope<'a> {
@@ -87,7 +87,7 @@ impl<'a> Scope<'a> {
         scope
     }
 
-    /// Adds the full name of what a tag of a part makes, with its index.
+    /// Adds the full name of the item of a part's tag, with its index.
     pub(crate) fn add(&mut self, sort: Sort, element: &'a Element, full: Option<&String>, (index, part): (usize, usize)) {
         if let (Some(full), Some(own)) = (full, element.text("name")) {
             self.names.entry((sort, full.clone())).or_insert((index, part));
@@ -95,7 +95,7 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// Whether there have been so many references that no more are looked up.
+    /// Whether the maximum number of references was looked up.
     pub(crate) fn is_full(&self) -> bool {
         self.looked_up >= MOST
     }
@@ -105,7 +105,7 @@ impl<'a> Scope<'a> {
         &self.tree.parts[part]
     }
 
-    /// The index of what a name in a part is of, and whether it is inside the part.
+    /// The index of the item with this name in a part, and whether it is inside the part.
     fn find(&self, part: usize, sort: Sort, own: &str) -> Option<(usize, bool)> {
         let mut at = part;
         loop {
@@ -119,8 +119,8 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// The indices of what the references of a tag of a part are of; `None` if the tag is not about
-    /// this part. An error if it is about none.
+    /// The indices of the items that a tag of a part refers to; `None` if the tag does not refer to
+    /// this part. An error if it refers to no part.
     pub(crate) fn resolve(
         &mut self,
         part: usize,
@@ -150,7 +150,7 @@ impl<'a> Scope<'a> {
             let unknown =
                 |(sort, _, own): &&(Sort, &'static str, &str)| !self.own.contains(&(*sort, *own)) && self.find(part, *sort, own).is_none();
             if let Some((sort, field, own)) = references.iter().find(unknown) {
-                // A search for the nearest name of each of very many mistakes takes too long.
+                // Searching the nearest name for very many errors takes too long.
                 let names = self.names.keys().filter(|(known, _)| known == sort && log.errors.len() < HINTS).map(|(_, name)| name.as_str());
                 let hint = nearest(own, names).map(|near| format!(" (did you mean {near:?}?)")).unwrap_or_default();
                 let expected = format!("the name of a {}{hint}", sort.name());
@@ -160,7 +160,7 @@ impl<'a> Scope<'a> {
         all.filter(|_| is_inside)
     }
 
-    /// Reports once that a tag is not used; a warning if the motion is another without it.
+    /// Reports once that a tag is not used; a warning if the motion differs without it.
     pub(crate) fn unread(&mut self, element: &Element, why: &str, lost: Option<(&str, &str)>, log: &mut Diagnostics) {
         if self.reported.insert((std::ptr::from_ref(element), String::new())) {
             element.unused(&Subject::Document, None, why, log);
@@ -170,7 +170,7 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// Warns once of what a tag says: `found`, behind which its name comes, and `expected`.
+    /// Warns once about a tag: `found`, followed by its name, and `expected`.
     pub(crate) fn warn(&mut self, element: &Element, field: &str, (found, expected): (&str, &str), log: &mut Diagnostics) {
         if self.reported.insert((std::ptr::from_ref(element), format!("{field} {found}"))) {
             let field = if field.is_empty() { element.name.as_str() } else { field };
@@ -184,7 +184,7 @@ impl<'a> Scope<'a> {
         if element.file.name == self.main { element.at } else { At::Nowhere }
     }
 
-    /// The name of a tag in a part; `None` where the file has none.
+    /// The full name of a tag in a part; `None` if it has no name in the file.
     pub(crate) fn full(&self, part: usize, element: &Element) -> Option<String> {
         let own = element.text("name").filter(|name| !name.is_empty())?;
         let Part { prefix, suffix, .. } = self.part(part);
@@ -206,7 +206,7 @@ pub(crate) fn coordinates(kind: Kind) -> usize {
     freedoms(kind) + usize::from(matches!(kind, Kind::Free | Kind::Ball))
 }
 
-/// The coordinates of a joint at which its body is where its `pos` says.
+/// The coordinates of a joint at which its body has its `pos`.
 pub(crate) fn reference(scope: &Scope<'_>, known: &Known<'_>) -> Vec<f64> {
     let pose = scope.tree.bodies[known.body].pose;
     match known.joint.kind {

@@ -18,7 +18,7 @@ pub(crate) enum InertiaFromGeom {
     Auto,
 }
 
-/// What `<compiler>` says.
+/// The settings of `<compiler>`.
 #[derive(Clone, Debug)]
 pub(crate) struct Compiler {
     pub(crate) auto_limits: bool,
@@ -80,7 +80,7 @@ impl Compiler {
                 _ => values.error("eulerseq", Code::Word, quote(sequence), "three letters out of x, y, z, X, Y and Z", log),
             }
         }
-        // In one section, the folder for meshes is stronger than that for all.
+        // In one section, the folder for meshes has precedence over that for all.
         for name in ["assetdir", "meshdir"] {
             self.mesh_folder = values.text(name).map_or_else(|| std::mem::take(&mut self.mesh_folder), str::to_owned);
         }
@@ -99,7 +99,7 @@ struct Class<'a> {
     tags: Vec<&'a Element>,
 }
 
-/// All default classes; the first is the one of everything without a class.
+/// All default classes; the first applies to everything without a class.
 #[derive(Debug)]
 pub(crate) struct Classes<'a> {
     classes: Vec<Class<'a>>,
@@ -147,7 +147,7 @@ impl<'a> Classes<'a> {
         }
     }
 
-    /// The class of a name; an error if there is none.
+    /// The class of a name; an error if it does not exist.
     pub(crate) fn find(&self, element: &Element, attribute: &str, log: &mut Diagnostics) -> Option<usize> {
         let name = element.text(attribute)?;
         let found = self.names.get(name).copied();
@@ -183,7 +183,7 @@ impl<'a> Classes<'a> {
     }
 }
 
-/// What one document says beside its bodies.
+/// The settings of one document, without its bodies.
 #[derive(Debug)]
 pub(crate) struct Settings<'a> {
     /// The folder of the document.
@@ -195,7 +195,7 @@ pub(crate) struct Settings<'a> {
     pub(crate) height_fields: BTreeMap<String, &'a Element>,
     /// Other documents by their names.
     pub(crate) models: BTreeMap<String, &'a Element>,
-    /// What is in the sections of these names.
+    /// Tags in the sections of these names.
     pub(crate) tendons: Vec<&'a Element>,
     pub(crate) actuators: Vec<&'a Element>,
     pub(crate) equations: Vec<&'a Element>,

@@ -26,25 +26,25 @@ pub(crate) struct Flags {
 }
 
 impl Flags {
-    /// Without springs and dampers MuJoCo computes no passive force, of the medium and of
-    /// `gravcomp` neither.
+    /// Without springs and dampers MuJoCo computes no passive force, so also none of the medium or
+    /// `gravcomp`.
     pub(crate) fn no_passive_force(self) -> bool {
         self.no_spring && self.no_damper
     }
 }
 
-/// What holds for all bodies, of the main file.
+/// Rules for all bodies, from the main file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rules {
     pub(crate) flags: Flags,
     /// Whether shapes are fitted to the corners of meshes, rather than to their inertia.
     pub(crate) fit_corners: bool,
-    /// Whether there is no gravity.
+    /// Whether gravity is off.
     pub(crate) is_weightless: bool,
 }
 
-/// The flags that are read, with what is lost without a word where one is disabled; empty: it is
-/// reported elsewhere.
+/// The flags that are read, each with the effect if it is disabled; empty: that is reported
+/// elsewhere.
 const FLAGS: [(&str, &str); 10] = [
     ("gravity", ""),
     ("actuation", ""),
@@ -58,19 +58,19 @@ const FLAGS: [(&str, &str); 10] = [
     ("damper", "it turns dampers off, as in MuJoCo: those of this file do nothing"),
 ];
 
-/// What an attached model changes in the options of the document that attaches it.
+/// Changes by an attached model to the options of the document that attaches it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Conflict {
-    /// Nothing.
+    /// No change.
     #[default]
     Warning,
-    /// What the document does not say; the smaller step and all flags that disable.
+    /// Missing options; the smaller step and all flags that disable.
     Merge,
-    /// Nothing, and two values are an error.
+    /// No change, and two different values are an error.
     Error,
 }
 
-/// What `<option>` says of a simulation.
+/// The settings of `<option>`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Simulation<'a> {
     /// m/s².
@@ -81,7 +81,7 @@ pub(crate) struct Simulation<'a> {
     /// kg/m³ and Pa·s.
     density: Option<f64>,
     viscosity: Option<f64>,
-    /// Groups of actuators that give no force.
+    /// Groups of actuators without force.
     pub(crate) disabled_groups: BTreeSet<i64>,
     /// Flags as the file has them: whether each is disabled.
     flags: BTreeMap<&'static str, bool>,
@@ -90,7 +90,7 @@ pub(crate) struct Simulation<'a> {
 }
 
 impl<'a> Simulation<'a> {
-    /// Of the main document, with what the models that it attaches change. A medium is a warning.
+    /// For the main document, with the changes by attached models. A medium is a warning.
     pub(crate) fn of(documents: &'a Documents, log: &mut Diagnostics) -> Self {
         let all = Self::with_attached(0, documents, &mut BTreeSet::new(), log);
         for (flag, why) in FLAGS.iter().filter(|(flag, why)| !why.is_empty() && all.is_off(flag)) {
@@ -132,7 +132,7 @@ impl<'a> Simulation<'a> {
         if self.is_off("gravity") { Some([0.0; 3]) } else { self.gravity }
     }
 
-    /// Of a document alone.
+    /// For a document alone.
     fn alone(root: &'a Element, log: &mut Diagnostics) -> Self {
         let mut all = Self::default();
         for section in root.all("option") {
@@ -159,7 +159,7 @@ impl<'a> Simulation<'a> {
                 for (name, _) in FLAGS {
                     if let Some(disabled) = values.word(name, &[("disable", true), ("enable", false)], log) {
                         all.flags.insert(name, disabled);
-                        // The gravity of the section is another number.
+                        // The gravity of the section is another value.
                         all.places.insert(if name == "gravity" { "gravity flag" } else { name }, flag);
                     }
                 }
@@ -168,7 +168,7 @@ impl<'a> Simulation<'a> {
         all
     }
 
-    /// Of a document and of what it attaches, one after the other. `above`: the documents that
+    /// For a document and its attached ones, one after the other. `above`: the documents that
     /// attach it.
     fn with_attached(document: usize, documents: &'a Documents, above: &mut BTreeSet<usize>, log: &mut Diagnostics) -> Self {
         let root = documents.root(document);
@@ -184,7 +184,7 @@ impl<'a> Simulation<'a> {
             if !known.insert(other) {
                 continue;
             }
-            // Mistakes in numbers that nothing takes are none.
+            // Errors in unused numbers do not count.
             let mut own = log.apart();
             let model = Self::with_attached(other, documents, above, &mut own);
             if policy == Conflict::Merge {
@@ -196,7 +196,7 @@ impl<'a> Simulation<'a> {
         all
     }
 
-    /// Takes what an attached model says of the simulation, as far as the policy lets it.
+    /// Applies the options of an attached model, as far as the policy permits.
     fn merge(&mut self, other: &Self, policy: Conflict, attach: &Element, log: &mut Diagnostics) {
         let mut merge = Merge { policy, attach, log };
         let texts = |number: Option<f64>| number.map(|number| number.to_string());
@@ -254,7 +254,7 @@ impl<'a> Simulation<'a> {
     }
 }
 
-/// The options of one attached model beside those of the document that attaches it.
+/// The options of one attached model, compared with those of the document that attaches it.
 struct Merge<'a, 'l> {
     policy: Conflict,
     attach: &'a Element,
@@ -295,7 +295,7 @@ impl Merge<'_, '_> {
     }
 }
 
-/// The policy of a document; the last word counts.
+/// The policy of a document; the last one counts.
 fn conflict(root: &Element, log: &mut Diagnostics) -> Conflict {
     let words = [("warning", Conflict::Warning), ("merge", Conflict::Merge), ("error", Conflict::Error)];
     let of = |section: &Element, log: &mut Diagnostics| Values::alone(section, &Subject::Document).word("conflict", &words, log);

@@ -12,7 +12,7 @@ use super::values::Values;
 use crate::pose::{IDENTITY, conjugate, rotate, scalar_last};
 use crate::world::{Keyframe, World};
 
-/// The state in which MuJoCo starts, where it is not that of joints at rest.
+/// The initial state in MuJoCo, if it differs from that of joints at rest.
 pub(crate) fn home(scope: &Scope<'_>) -> Option<Keyframe> {
     let at_rest = |known: &Known<'_>, q: &[f64]| match known.joint.kind {
         Kind::Free => q[..6] == [0.0; 6] && q[6] == 1.0,
@@ -57,7 +57,7 @@ pub(crate) fn keyframes(scope: &mut Scope<'_>, controls: &[Control], has_unread_
     }
 }
 
-/// A keyframe, with what its vectors are of.
+/// A keyframe, with the bodies and parts that its vectors contain.
 struct Key<'a> {
     element: &'a Element,
     bodies: Range<usize>,
@@ -66,7 +66,8 @@ struct Key<'a> {
 }
 
 impl Key<'_> {
-    /// The numbers of an attribute, or none; fewer than in `rest` are completed with those.
+    /// The numbers of an attribute, if it has any; if there are too few, those of `rest` complete
+    /// them.
     fn numbers(&self, name: &str, rest: &[f64], log: &mut Diagnostics) -> Option<Vec<f64>> {
         let subject = Subject::Document;
         let mut numbers = Values::alone(self.element, &subject).list(name, log).filter(|numbers| !numbers.is_empty())?;
@@ -118,7 +119,7 @@ impl Key<'_> {
         Keyframe { q, v, control: self.control(controls, world, log), ..Keyframe::default() }
     }
 
-    /// The controls of the actuators that are read; none if all are zero.
+    /// The controls of the actuators that are read; empty if all are zero.
     fn control(&self, controls: &[Control], world: &World, log: &mut Diagnostics) -> Vec<f64> {
         let own: Vec<&Control> = controls.iter().filter(|control| self.parts.contains(&control.part)).collect();
         let Some(numbers) = self.numbers("ctrl", &vec![0.0; own.len()], log) else { return Vec::new() };

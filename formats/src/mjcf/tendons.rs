@@ -13,8 +13,8 @@ use crate::world::Actuator;
 /// A tendon of one copy of a tag.
 pub(crate) struct Tendon {
     pub(crate) name: String,
-    /// Joints by their indices, each once, with the lengths for a unit of their coordinates; empty
-    /// where it is no sum of coordinates.
+    /// Joints by index, each once, with the lengths for a unit of their coordinates; empty if the
+    /// length is not a sum of coordinates.
     pub(crate) terms: Vec<(usize, f64)>,
     /// Bound or not, m.
     pub(crate) range: [f64; 2],
@@ -49,7 +49,7 @@ pub(crate) fn tendons(scope: &mut Scope<'_>, flags: Flags, passive: &mut Vec<Act
     all
 }
 
-/// What a tendon is made of.
+/// Elements of a tendon.
 fn references<'a>(element: &'a Element, log: &mut Diagnostics) -> References<'a> {
     let mut all = Vec::new();
     for inner in &element.children {
@@ -74,8 +74,8 @@ struct Own<'a> {
     element: &'a Element,
     stiffness: f64,
     damping: f64,
-    /// Lengths at which the spring is at rest, between which it gives no force; `None`: that of the
-    /// rest of the joints.
+    /// Rest lengths of the spring, without force between them; `None`: the length with the joints
+    /// at rest.
     rest: Option<[f64; 2]>,
     range: [f64; 2],
     is_limited: bool,
@@ -127,7 +127,7 @@ impl<'a> Own<'a> {
         }
     }
 
-    /// Without what the flags turn off.
+    /// Without the forces that the flags turn off.
     fn with(mut self, flags: Flags) -> Self {
         if flags.no_spring {
             (self.stiffness, self.higher_stiffness, self.yields) = (0.0, [0.0; 2], false);
@@ -146,7 +146,8 @@ impl<'a> Own<'a> {
         self.higher_stiffness != [0.0; 2] || self.higher_damping != [0.0; 2]
     }
 
-    /// The joints of these indices with their factors; none where it is no sum of coordinates.
+    /// The joints of these indices with their factors; empty if the length is not a sum of
+    /// coordinates.
     fn terms(&self, scope: &Scope<'_>, found: &[usize], log: &mut Diagnostics) -> Vec<(usize, f64)> {
         let mut terms: Vec<(usize, f64)> = Vec::new();
         if !self.element.is("fixed") {

@@ -23,7 +23,7 @@ impl<'a> Values<'a> {
         Self { element, layers, subject: subject.clone() }
     }
 
-    /// Of a tag without a default class.
+    /// The values of a tag without a default class.
     pub(crate) fn alone(element: &'a Element, subject: &Subject) -> Self {
         Self::new(element, Vec::new(), subject)
     }
@@ -32,7 +32,7 @@ impl<'a> Values<'a> {
         self.layers.iter().find_map(|layer| Some((*layer, layer.attribute(name)?)))
     }
 
-    /// As [`Self::nearest`], of lists of numbers: an empty one is an absent one.
+    /// As [`Self::nearest`], for lists of numbers: an empty one counts as missing.
     fn nearest_list(&self, name: &str) -> Option<(&'a Element, &'a Attribute)> {
         self.layers.iter().find_map(|layer| Some((*layer, list(layer, name)?)))
     }
@@ -67,7 +67,7 @@ impl<'a> Values<'a> {
         exact
     }
 
-    /// At most `N` numbers: those that a tag leaves out are those of the next class, and of `base`.
+    /// At most `N` numbers: missing numbers of a tag come from the next class, and from `base`.
     pub(crate) fn at_most<const N: usize>(&self, name: &str, base: [f64; N], log: &mut Diagnostics) -> [f64; N] {
         let mut all = base;
         for layer in self.layers.iter().rev() {
@@ -119,7 +119,7 @@ impl<'a> Values<'a> {
         self.word(name, &[("true", true), ("false", false)], log)
     }
 
-    /// True, false, or `None` for `auto` and for nothing.
+    /// True, false, or `None` for `auto` and if it is missing.
     pub(crate) fn yes_or_auto(&self, name: &str, log: &mut Diagnostics) -> Option<bool> {
         self.word(name, &[("true", Some(true)), ("false", Some(false)), ("auto", None)], log)?
     }
@@ -181,7 +181,7 @@ fn numbers(element: &Element, attribute: &Attribute, subject: &Subject, log: &mu
     for word in attribute.value.split_ascii_whitespace() {
         match number::parse(word) {
             Ok(number) => all.push(number),
-            // What is too small for a double is zero.
+            // Numbers too small for a double are zero.
             Err(number::Fault::Vanishes) => all.push(0.0),
             Err(fault) => {
                 let expected = if fault == number::Fault::NotFinite { "a finite number" } else { "a decimal number" };

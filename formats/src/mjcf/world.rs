@@ -1,4 +1,4 @@
-//! What a document says beside its bodies, as a [`World`].
+//! The rest of a document besides its bodies, as a [`World`].
 
 use articulated_core::diagnostic::{Code, Diagnostics};
 

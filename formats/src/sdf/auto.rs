@@ -1,4 +1,4 @@
-//! Mass properties that are computed of the shapes of a link: `<inertial auto="true">`.
+//! Mass properties that are computed from the shapes of a link: `<inertial auto="true">`.
 //!
 //! The rules are those of sdformat 15: the density of a shape, or else that of the link, or else
 //! 1000 kg/m³; a mass in the file scales the result. Shapes overlap without notice.
@@ -17,7 +17,7 @@ use crate::Options;
 use crate::pose::{Pose, Symmetric, Vector, add, diagonal, of_point, rotate, scale, subtract, turned};
 use crate::xml::tree::Element;
 
-/// Of a shape that does not say its own, kg/m³.
+/// Density of a shape without its own, kg/m³.
 const DENSITY: f64 = 1000.0;
 
 const SHAPES: &str = "a box, capsule, cone, cylinder, ellipsoid or sphere, or <mass> and <inertia> without `auto`";
@@ -32,8 +32,8 @@ struct Solid {
     centre: f64,
 }
 
-/// The inertia of a link that asks for it; `None` for other links, and with an error. That of a
-/// link that does not move is of no use: nothing is reported of it.
+/// The inertia of a link that requests it; `None` for other links, and with an error. A link that
+/// does not move needs no inertia: no error is reported.
 pub(crate) fn inertial(link: &Link<'_>, graph: &Graph<'_>, options: &Options, log: &mut Diagnostics) -> Option<Inertial> {
     let about = &subject(link.element);
     let mut own = log.apart();

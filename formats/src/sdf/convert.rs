@@ -1,4 +1,4 @@
-//! A URDF in an `<include>`, as the tags of a model: each number is the one of the URDF.
+//! A URDF in an `<include>`, as the tags of a model with the numbers of the URDF.
 //!
 //! As in Gazebo, a link `world` without a parent is the world, and the root of another robot
 //! floats. A floating joint leaves its child free.
@@ -19,8 +19,8 @@ struct Maker<'a> {
     file: &'a Rc<File>,
 }
 
-/// The root element of a document with this robot as its model. What a model cannot have is an
-/// error.
+/// The root element of a document with this robot as its model. Content that a model cannot have is
+/// an error.
 pub(crate) fn document(robot: &Description, file: &Rc<File>, log: &mut Diagnostics) -> Element {
     let maker = Maker { robot, file };
     let root = robot.root();
@@ -90,7 +90,7 @@ impl Maker<'_> {
         self.tag("link", &[("name", link.name.clone())], parts)
     }
 
-    /// A link without an inertia has none, where the format's default would be 1 kg.
+    /// A link without an inertia gets zero, since the format's default would be 1 kg.
     fn inertial(&self, own: Option<&Inertial>) -> Element {
         let names = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
         let inertia = own.map_or([0.0; 6], |own| own.inertia);
@@ -182,7 +182,7 @@ impl Maker<'_> {
     }
 }
 
-/// Each number with as many digits as it takes to read it back.
+/// Each number with enough digits to read it back exactly.
 fn spelled(numbers: &[f64]) -> String {
     numbers.iter().map(|number| format!("{number:?}")).collect::<Vec<_>>().join(" ")
 }

@@ -1,7 +1,7 @@
-//! The tags and attributes of the format: which are used, and why the others are not.
+//! The tags and attributes of the format: which are used, and why others are not.
 //!
-//! One pass over the document reports what is not used and what does not exist. It does not look
-//! inside tags that are not used as a whole.
+//! One pass over the document reports unused and unknown content. It does not look inside tags that
+//! are unused as a whole.
 
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 use articulated_core::suggest::Suggester;
@@ -49,7 +49,7 @@ const MESHES: &str = "parameters for meshes, of which no inertia is computed";
 const MEDIUM: &str = "forces of the medium are given by the scene";
 const FOREIGN: &str = "an extension of another program";
 
-/// All tags that are used. A tag of two rows is the first that fits what it is in.
+/// All tags that are used. A tag with two rows uses the first one whose parent matches.
 const ROWS: &[Row] = &[
     Row { names: ROOT, within: "", attributes: "version", tags: "model world include", unused: &[("actor light", WORLD)] },
     Row {
@@ -178,7 +178,7 @@ fn reason(row: &Row, name: &str) -> Option<&'static str> {
     row.unused.iter().find(|(names, _)| has(names, name)).map(|(_, why)| *why)
 }
 
-/// Reports all that is not used and all that the format does not have.
+/// Reports all unused and all unknown content.
 pub(crate) fn check(root: &Element, log: &mut Diagnostics) {
     let mut suggester = Suggester::default();
     let mut next = vec![(root, "", Subject::Document)];
@@ -234,8 +234,7 @@ fn tag(child: &Element, element: &Element, row: &Row, subject: &Subject, suggest
     child.unused(subject, None, "not known", log);
 }
 
-/// Reports an attribute or a tag of `<mimic>` that the format does not have: it may stand for
-/// another law.
+/// Reports an unknown attribute or tag of `<mimic>`: it may define another law.
 fn law(element: &Element, attribute: Option<&Attribute>, subject: &Subject, log: &mut Diagnostics) {
     let found = match attribute {
         Some(own) => format!("the attribute {} = {} of <mimic>", own.name, quote(&own.value)),
@@ -273,12 +272,12 @@ fn expected<'a>(
 fn attributes(element: &Element, row: &Row, subject: &Subject, suggester: &mut Suggester, log: &mut Diagnostics) {
     for attribute in &element.attributes {
         let name = attribute.name.as_str();
-        // Declarations of prefixes say nothing about the robot.
+        // Declarations of prefixes do not concern the robot.
         if has(row.attributes, name) || name.starts_with("xmlns") {
             continue;
         }
         match reason(row, name) {
-            // The name of what is not used says nothing more.
+            // The name of an unused tag is not listed again.
             Some("") => {}
             Some(why) => element.unused(subject, Some(attribute), why, log),
             None if element.is("mimic") => law(element, Some(attribute), subject, log),
@@ -296,7 +295,7 @@ fn attributes(element: &Element, row: &Row, subject: &Subject, suggester: &mut S
     }
 }
 
-/// What messages about a tag name.
+/// The subject of messages about a tag.
 pub(crate) fn subject(element: &Element) -> Subject {
     let name = || element.text("name").map(|name| name.chars().take(256).collect::<String>());
     match element.name.as_str() {

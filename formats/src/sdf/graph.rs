@@ -20,13 +20,13 @@ use crate::cycles::{around, cycles};
 use crate::pose::{Pose, conjugate, rotate, scale};
 use crate::xml::tree::Element;
 
-/// A document may have so many models, links, joints and frames.
+/// Maximum number of models, links, joints and frames of a document.
 const MOST_NODES: usize = 200_000;
-/// A name may have so many bytes, those of the models around included.
+/// Maximum length of a name, bytes, with those of the surrounding models.
 const MOST_NAME: usize = 1024;
-/// All names together may have so many bytes.
+/// Maximum total length of all names, bytes.
 const MOST_LETTERS: usize = 32 << 20;
-/// So many steps from frame to frame are made altogether, so that no document takes hours.
+/// Maximum total number of steps from frame to frame, so that no document takes hours.
 const MOST_STEPS: u64 = 200_000_000;
 
 /// The node of the world, and its body.
@@ -34,9 +34,9 @@ pub(crate) const WORLD: usize = 0;
 
 /// Where names are looked up.
 pub(crate) struct Scope {
-    /// What the keys of its names begin with.
+    /// Prefix of the keys of its names.
     prefix: String,
-    /// What the names in the description begin with.
+    /// Prefix of the names in the description.
     shown: String,
     /// The node of the model; the world outside of all.
     pub(crate) model: usize,
@@ -44,7 +44,7 @@ pub(crate) struct Scope {
     is_static: bool,
 }
 
-/// What a node refers to.
+/// Target of a node's reference.
 #[derive(Clone, Copy)]
 pub(crate) enum To<'a> {
     Node(usize),
@@ -81,13 +81,13 @@ pub(crate) struct Node<'a> {
     pose: Pose,
     relative_to: To<'a>,
     attached_to: To<'a>,
-    /// Of a model: the frame that its pose places.
+    /// For a model: the frame that its pose places.
     placement: Option<Reference<'a>>,
 }
 
 pub(crate) struct Graph<'a> {
     pub(crate) name: String,
-    /// Gravity of the world, m/s², if the file says one.
+    /// Gravity of the world, m/s², if the file contains it.
     pub(crate) gravity: Option<[f64; 3]>,
     pub(crate) nodes: Vec<Node<'a>>,
     pub(crate) scopes: Vec<Scope>,
@@ -95,7 +95,7 @@ pub(crate) struct Graph<'a> {
     pub(crate) joints: Vec<Joint<'a>>,
     /// Nodes by their names with the models around them.
     keys: HashMap<String, usize>,
-    /// Nodes of joints with the name of a link, which is what the name means elsewhere.
+    /// Nodes of joints with the name of a link; elsewhere the name means the link.
     shadowed: HashMap<String, usize>,
     /// For each node, the node that it is placed in, and its pose there.
     edges: Vec<(usize, Pose)>,
@@ -107,8 +107,7 @@ pub(crate) struct Graph<'a> {
 }
 
 impl<'a> Graph<'a> {
-    /// The graph of a model, or of all models of a world; `None` where an error leaves no sense in
-    /// it.
+    /// The graph of a model, or of all models of a world; `None` if errors make it meaningless.
     pub(crate) fn of(root: &'a Element, options: &Options, log: &mut Diagnostics) -> Option<Self> {
         let version = version(root, log);
         let worlds: Vec<&Element> = root.children.iter().filter(|child| child.is(WORLD_NAME)).collect();
@@ -129,7 +128,7 @@ impl<'a> Graph<'a> {
             }
         };
         let mut build = Build { graph: Graph::empty(root, version), options, suggester: Suggester::default(), letters: 0 };
-        // A model alone gives no prefix to names.
+        // A single model adds no prefix to names.
         name.unwrap_or_default().clone_into(&mut build.graph.name);
         for model in &all {
             build.any_model(model, WORLD, &Over::default(), log);
@@ -173,7 +172,7 @@ impl<'a> Graph<'a> {
         }
     }
 
-    /// The node of a name; reported where there is none.
+    /// The node of a name; a missing one is reported.
     pub(crate) fn resolve(&self, reference: &Reference<'_>, log: &mut Diagnostics) -> Option<usize> {
         let Reference { element, field, name, scope } = *reference;
         let scope = &self.scopes[scope];
@@ -193,7 +192,7 @@ impl<'a> Graph<'a> {
         found
     }
 
-    /// Finds the parents of joints and the frames of their axes; false where one is missing.
+    /// Finds the parents of joints and the frames of their axes; false if one is missing.
     fn resolve_joints(&mut self, log: &mut Diagnostics) -> bool {
         let mut is_good = true;
         let mut joints = std::mem::take(&mut self.joints);
@@ -225,13 +224,13 @@ impl<'a> Graph<'a> {
         }
     }
 
-    /// Resolves all references of nodes; false where that is not possible.
+    /// Resolves all references of nodes; false if that is impossible.
     fn connect(&mut self, log: &mut Diagnostics) -> bool {
         let all = |log: &mut Diagnostics, of: &dyn Fn(&Node<'a>) -> To<'a>| -> Vec<Option<usize>> {
             self.nodes.iter().map(|node| self.to(&of(node), log)).collect()
         };
         let above = all(log, &|node| node.relative_to);
-        // Where both are one name, it is reported once.
+        // If both are one name, it is reported once.
         let mut again = log.apart();
         let attached = all(&mut again, &|node| node.attached_to);
         let is_reported = |error: &articulated_core::diagnostic::Diagnostic| {
@@ -240,8 +239,8 @@ impl<'a> Graph<'a> {
         let new: Vec<_> = again.errors.into_iter().filter(|error| !is_reported(error)).collect();
         log.extend(new);
         let (Some(above), Some(attached)) = (complete(above), complete(attached)) else { return false };
-        // The world is in no other frame. A link, and a model without links, move with nothing
-        // else.
+        // The world is in no other frame. A link, and a model without links, are attached to
+        // themselves.
         let moves_alone = |node: usize| node == WORLD || matches!(self.nodes[node].attached_to, To::Node(own) if own == node);
         let in_poses = self.report_rings("poses that are relative to each other", |node| (node != WORLD).then(|| above[node]), log);
         let in_frames =
@@ -255,7 +254,7 @@ impl<'a> Graph<'a> {
         self.place_models(log)
     }
 
-    /// Whether there are nodes that depend on themselves, which is reported.
+    /// Reports nodes that depend on themselves, and returns whether there are any.
     fn report_rings(&self, what: &str, on: impl Fn(usize) -> Option<usize>, log: &mut Diagnostics) -> bool {
         let rings = cycles(self.nodes.len(), &on);
         for node in &rings {
@@ -304,8 +303,8 @@ impl<'a> Graph<'a> {
         is_good
     }
 
-    /// The pose of a node in another one. Frames that both are in play no part, so that no digit is
-    /// lost there.
+    /// The pose of a node in another one. Frames that contain both are not used, so that they add
+    /// no rounding errors.
     pub(crate) fn relative(&self, frame: usize, node: usize) -> Pose {
         let (mut a, mut b) = (frame, node);
         let (mut to_a, mut to_b) = (Pose::default(), Pose::default());
@@ -358,8 +357,8 @@ pub(crate) fn inverse(pose: &Pose) -> Pose {
     Pose { position: scale(rotate(rotation, pose.position), -1.0), rotation }
 }
 
-/// The pose without components that only rounding makes: what is far below the last digit of the
-/// numbers that it is computed from.
+/// The pose without components due to rounding: those far below the last digit of the numbers that
+/// it is computed from.
 fn without_dust(pose: Pose, parts: &[Pose]) -> Pose {
     const DUST: f64 = 4.0 * f64::EPSILON;
     let largest = parts.iter().flat_map(|part| part.position).fold(0.0_f64, |most, x| most.max(x.abs()));
@@ -405,7 +404,7 @@ fn gravity(world: &Element, log: &mut Diagnostics) -> Option<[f64; 3]> {
     values::exactly::<3>(only(world, "gravity", &Subject::Document, log)?, &Subject::Document, log)
 }
 
-/// What an `<include>` says instead of the model in the file.
+/// Elements of an `<include>` that replace those of the model in the file.
 #[derive(Clone, Copy, Default)]
 struct Over<'a> {
     name: Option<&'a str>,
@@ -424,7 +423,7 @@ struct Build<'a, 'o> {
 }
 
 impl<'a> Build<'a, '_> {
-    /// A new node with a name of its own; `None`, with an error, where it cannot have it.
+    /// A new node with a name of its own; `None`, with an error, if the name is not available.
     fn add(&mut self, node: Node<'a>, key: Option<String>, log: &mut Diagnostics) -> Option<usize> {
         let element = node.element;
         let about = subject(element);
@@ -461,7 +460,7 @@ impl<'a> Build<'a, '_> {
                 None => {
                     self.graph.keys.insert(key, index);
                 }
-                // Older versions let a joint have the name of a link.
+                // In older versions a joint may have the name of a link.
                 Some(first) if is_joint(first) != is_joint(&node) => {
                     let (line, [a, b]) = (first.element.at.line().unwrap_or_default(), [first.what, node.what].map(What::word));
                     let found = format!("a {b} with the name of the {a} of line {line}, {}", quote(&node.name));
@@ -484,7 +483,7 @@ impl<'a> Build<'a, '_> {
         Some(index)
     }
 
-    /// The name that a tag gives itself.
+    /// The own name of a tag.
     fn own_name(&self, element: &'a Element, log: &mut Diagnostics) -> Option<&'a str> {
         let about = subject(element);
         let Some(name) = element.text("name") else {
@@ -509,7 +508,7 @@ impl<'a> Build<'a, '_> {
         Some(name)
     }
 
-    /// The pose of a tag and what it is relative to; `otherwise` where it does not say.
+    /// The pose of a tag and the frame that it is relative to; `otherwise` by default.
     pub(crate) fn pose(&self, element: &'a Element, scope: usize, otherwise: To<'a>, log: &mut Diagnostics) -> (Pose, To<'a>) {
         let about = subject(element);
         let Some(tag) = only(element, "pose", &about, log) else { return (Pose::default(), otherwise) };
@@ -522,7 +521,7 @@ impl<'a> Build<'a, '_> {
             return self.model(element, scope, over, log);
         }
         let none = &Subject::Document;
-        // What is wrong with the file has been reported.
+        // Errors of the file have been reported.
         let Some(root) = element.children.iter().find(|child| child.is(ROOT)) else {
             if !element.children.iter().any(|child| child.is("uri")) {
                 element.error((none, "uri"), Code::MissingTag, "none", "<uri> inside <include>", log);
@@ -582,7 +581,7 @@ impl<'a> Build<'a, '_> {
         let placement = placement.map(|(element, name)| Reference { element, field: "placement_frame", name, scope: own_scope });
         let shown = format!("{around_shown}{name}");
         let node = self.graph.nodes.len();
-        // Where nothing else is said below, it is attached to itself: the world.
+        // By default it is attached to itself: the world.
         let model = Node { what: What::Model, element, name: shown.clone(), pose, relative_to, attached_to: To::Node(node), placement };
         let key = (!over.merge).then(|| format!("{around_prefix}{name}"));
         self.add(model, key, log)?;

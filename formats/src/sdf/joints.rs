@@ -42,7 +42,7 @@ impl Type {
     /// How many axes it has.
     pub(crate) fn axes(self) -> usize {
         match self {
-            // A gearbox is read where it is cut.
+            // A gearbox is read only if it is cut.
             Self::Fixed | Self::Ball | Self::Gearbox => 0,
             Self::Universal | Self::Revolute2 => 2,
             Self::Revolute | Self::Continuous | Self::Prismatic | Self::Screw => 1,
@@ -59,13 +59,13 @@ pub(crate) struct Joint<'a> {
     pub(crate) parent_node: usize,
     pub(crate) child: Reference<'a>,
     pub(crate) axes: Vec<Axis<'a>>,
-    /// Of a screw, m per revolution.
+    /// For a screw, m per revolution.
     pub(crate) pitch: f64,
     /// Whether the file cuts the tree here.
     pub(crate) is_cut: bool,
 }
 
-/// What a joint has for each of its axes.
+/// Data of each axis of a joint.
 pub(crate) struct Axis<'a> {
     pub(crate) element: &'a Element,
     /// In the frame of `expressed_in`, or of the joint.
@@ -80,7 +80,7 @@ pub(crate) struct Axis<'a> {
 }
 
 impl Axis<'_> {
-    /// Whether it says nothing beside its direction.
+    /// Whether it has only a direction.
     pub(crate) fn is_plain(&self) -> bool {
         self.limit.is_none() && self.dynamics == JointDynamics::default() && self.mimic.is_none()
     }
@@ -89,13 +89,13 @@ impl Axis<'_> {
 #[derive(Clone, Copy)]
 pub(crate) struct Mimic<'a> {
     pub(crate) leader: Reference<'a>,
-    /// Which axis of the leader, from 0.
+    /// Index of the leader's axis, from 0.
     pub(crate) axis: usize,
     pub(crate) multiplier: f64,
     pub(crate) offset: f64,
 }
 
-/// A joint; `None` where too much of it is wrong.
+/// A joint; `None` if it has too many errors.
 pub(crate) fn joint<'a>(
     element: &'a Element,
     scope: usize,
@@ -226,7 +226,7 @@ fn pitch(element: &Element, kind: Type, about: &Subject, log: &mut Diagnostics) 
     pitch
 }
 
-/// Sizes of axes that can be squared: nothing is left of a smaller one, and a larger one overflows.
+/// Sizes of axes that can be squared: a smaller one underflows, and a larger one overflows.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-150..=1e150;
 
 fn axis<'a>(tag: &'a Element, kind: Type, scope: usize, version: Version, about: &Subject, log: &mut Diagnostics) -> Option<Axis<'a>> {
@@ -307,7 +307,7 @@ fn limit(axis: &Element, kind: Type, about: &Subject, log: &mut Diagnostics) -> 
         let expected = "lower below upper: such a joint cannot move; used as written";
         tag.warning((about, "limit"), Code::LimitEqual, format!("lower and upper both {}", limit.lower), expected, log);
     }
-    // Below zero stands for none.
+    // A negative bound means no bound.
     let mut most = |name: &str| bound(tag, name, about, log).filter(|most| *most >= 0.0).unwrap_or(f64::INFINITY);
     (limit.effort, limit.velocity) = (most("effort"), most("velocity"));
     for (name, value) in [("effort", limit.effort), ("velocity", limit.velocity)] {

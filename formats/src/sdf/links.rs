@@ -21,15 +21,15 @@ pub(crate) struct Link<'a> {
     pub(crate) is_static: bool,
 }
 
-/// What a link without `<inertial>`, `<mass>` or `<inertia>` has, kg and kg·m².
+/// Default of a link without `<inertial>`, `<mass>` or `<inertia>`, kg and kg·m².
 const DEFAULT: f64 = 1.0;
 
-/// The mass properties of a link; `None` for zero, and where they are wrong.
+/// The mass properties of a link; `None` for zero, and if they are invalid.
 pub(crate) fn inertial(link: &Element, is_static: bool, options: &Options, log: &mut Diagnostics) -> Option<Inertial> {
     let about = &subject(link);
     lost(link, about, log);
     let of_default = |element: &Element, name: &str, what: &str, log: &mut Diagnostics| {
-        // Nothing depends on the mass of what does not move.
+        // The mass of a link that does not move has no effect.
         if is_static {
             return;
         }
@@ -78,7 +78,7 @@ pub(crate) fn inertial(link: &Element, is_static: bool, options: &Options, log: 
     (mass != 0.0 || inertia != [0.0; 6]).then_some(Inertial { origin: pose.origin(), mass, inertia })
 }
 
-/// Reports the mass of a medium.
+/// Reports the added mass of a medium.
 fn medium(inertial: &Element, about: &Subject, log: &mut Diagnostics) {
     if let Some(added) = only(inertial, "fluid_added_mass", about, log) {
         let expected = "no added mass: the dynamics are those without the medium";
@@ -114,7 +114,7 @@ fn check(tag: &Element, mass: f64, inertia: [f64; 6], options: &Options, about: 
     }
 }
 
-/// Reports what changes the motion of a link and is not read.
+/// Reports unread content that changes the motion of a link.
 fn lost(link: &Element, about: &Subject, log: &mut Diagnostics) {
     let warn = |name: &str, found: &str, expected: &str, log: &mut Diagnostics| {
         let element = link.children.iter().find(|child| child.is(name)).unwrap_or(link);

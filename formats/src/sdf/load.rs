@@ -17,9 +17,9 @@ use crate::xml::markup;
 use crate::xml::tree::{Element, File};
 use crate::{Format, Input, Options};
 
-/// Tags may be nested so deeply, included ones in those that include them.
+/// Maximum depth of nested tags; included ones count inside those that include them.
 const MOST_DEPTH: usize = 256;
-/// A file may include so many files, and so many tags altogether.
+/// Maximum number of included files, and of all their tags.
 const MOST_FILES: usize = 1000;
 const MOST_TAGS: usize = 2 << 20;
 
@@ -146,7 +146,8 @@ impl<'a> Loader<'a> {
     /// A URDF, as the root of a document with its model.
     fn urdf(&mut self, bytes: &[u8], file: &Rc<File>, log: &mut Diagnostics) -> Option<Element> {
         let asked = self.input.options.clone();
-        // What its base carries is said of the whole model; arguments are those of the main file.
+        // The mass on its base is reported for the whole model; arguments are those of the main
+        // file.
         let options = Options { file: file.name.clone(), base: Base::Floating, arguments: BTreeMap::new(), ..asked };
         let mut own = Diagnostics::new(&file.name);
         let read = Urdf.read(&Input { bytes, options: &options, sources: self.input.sources }, &mut own);
@@ -157,7 +158,7 @@ impl<'a> Loader<'a> {
         root
     }
 
-    /// The file of this path, or that of the model in the folder of this path.
+    /// The file of this path, or the model file in the folder of this path.
     fn find(&self, path: &Path) -> std::io::Result<(PathBuf, Vec<u8>)> {
         let error = match self.input.sources.read(path) {
             Ok(bytes) => return Ok((path.to_owned(), bytes)),

@@ -19,12 +19,12 @@ use crate::reading::HELD;
 use crate::taken::Taken;
 use crate::world::{Document, Keyframe, Plane, World};
 
-/// So many loops are described, and so many joints of each.
+/// Maximum number of described loops, and of listed joints of each.
 const MOST_LOOPS: usize = 100;
 const MOST_LISTED: usize = 20;
 
-/// The description of all links, with planes and the state in which free models start; `None` where
-/// an error leaves no sense in it.
+/// The description of all links, with planes and the initial state of free models; `None` if errors
+/// make it meaningless.
 pub(crate) fn lower(graph: &Graph<'_>, options: &Options, log: &mut Diagnostics) -> Option<Document> {
     let tree = Tree::of(graph, log)?;
     let mut lower = Lower {
@@ -58,12 +58,12 @@ pub(crate) fn lower(graph: &Graph<'_>, options: &Options, log: &mut Diagnostics)
     Some(Document { description, world: World { gravity: graph.gravity, home, planes, ..World::default() } })
 }
 
-/// What a body hangs on.
+/// Connection of a body to its parent.
 #[derive(Clone, Copy)]
 struct Hangs {
     /// The body before it.
     on: usize,
-    /// Its joint; `None` for a body that hangs on the world without one.
+    /// Its joint; `None` for a body on the world without a joint.
     joint: Option<usize>,
     /// Whether it is the parent of the joint.
     is_reversed: bool,
@@ -118,7 +118,7 @@ impl Tree {
         };
         let mut is_reached = vec![false; count];
         let statics = (1..count).filter(|body| tree.is_static[*body]);
-        // The first of each group that is no child, or else the first.
+        // The first body of each group that is not a child, or else the first one.
         let roots = (1..count).filter(|body| !has_joint_above[*body]).chain(1..count);
         for root in std::iter::once(WORLD).chain(statics.collect::<Vec<_>>()).chain(roots) {
             let mut next = VecDeque::from([root]);
@@ -199,7 +199,7 @@ struct Motion {
     second_axis: Vector,
     limit: Option<Limit>,
     dynamics: articulated_core::description::JointDynamics,
-    /// Which axis of the joint it is.
+    /// Index of the joint's axis.
     of: usize,
 }
 
@@ -209,11 +209,11 @@ struct Lower<'a, 'g> {
     /// Names of links and frames, and of joints, that are taken.
     links: Taken,
     joints: Taken,
-    /// For each joint, the one of the description of its first axis and of its second.
+    /// For each joint, the description's joints of its first axis and of its second.
     first: Vec<Option<[JointId; 2]>>,
     /// Names of `<frame>`s, in their order.
     frames: Vec<String>,
-    /// The coordinates of free joints at the poses of the file, where they are not zero.
+    /// The non-zero coordinates of free joints at the poses of the file.
     start: Vec<(String, Vec<f64>)>,
     /// Planes of links that do not move.
     planes: Vec<Plane>,
@@ -313,14 +313,14 @@ impl Lower<'_, '_> {
         }
     }
 
-    /// What a joint lets move, in the order from the link before it.
+    /// The motions of a joint, in the order from the parent link.
     fn motions(&mut self, joint: &joints::Joint<'_>, name: &str, own: usize, is_reversed: bool, log: &mut Diagnostics) -> Vec<Motion> {
         let about = subject(joint.element);
         let axis_of = |axis: &Axis<'_>| {
             let turn = self.graph.relative(own, axis.frame.unwrap_or(joint.node)).rotation;
             let turned = rotate(turn, axis.direction);
             let largest = turned.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-            // What only rounding makes is zero.
+            // Rounding errors are set to zero.
             turned.map(|x| if x.abs() <= 4.0 * f64::EPSILON * largest { 0.0 } else { x }).map(|x| if is_reversed { -x + 0.0 } else { x })
         };
         let plain = |name: String, kind: JointKind| Motion {
@@ -436,7 +436,7 @@ impl Lower<'_, '_> {
     }
 }
 
-/// The link of a body of the graph: the world is the first of both.
+/// The link of a body of the graph: the world is the first one of both.
 fn link_id(body: usize) -> LinkId {
     LinkId(body)
 }

@@ -1,4 +1,4 @@
-//! Names that tags use for others, and the version that says how they are meant.
+//! Other names for tags, and the version, which defines their meaning.
 
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
@@ -55,7 +55,7 @@ pub(crate) struct Reference<'a> {
     pub(crate) scope: usize,
 }
 
-/// What a `<pose>` says that it is relative to.
+/// The frame that a `<pose>` is relative to.
 pub(crate) fn relative_to(tag: &Element, scope: usize) -> Option<Reference<'_>> {
     // Up to 1.6 the attribute is called frame.
     let (field, attribute) = ["relative_to", "frame"].into_iter().find_map(|field| Some((field, tag.attribute(field)?)))?;

@@ -14,8 +14,8 @@ use crate::pose::{Pose, rotate};
 use crate::world::Plane;
 use crate::xml::tree::Element;
 
-/// All collision geometry of a link. What is wrong with it is a warning. Planes of links that do
-/// not move are put into `planes`.
+/// All collision geometry of a link. Its errors are warnings. Planes of links that do not move are
+/// put into `planes`.
 pub(crate) fn collisions(
     link: &Link<'_>,
     graph: &Graph<'_>,
@@ -34,7 +34,7 @@ pub(crate) fn collisions(
         }
         let (pose, shape) = placed_shape(tag, link, graph, options, &mut own);
         let why = own.errors.first().map(ToString::to_string).unwrap_or_default();
-        // The reader of another format has told it.
+        // The reader of the other format has reported it.
         if !tag.file.converted {
             log.take_as_warnings(own, "; the shape makes no contact");
         }
@@ -43,7 +43,7 @@ pub(crate) fn collisions(
     all
 }
 
-/// The plane that is the one shape of a `<collision>`.
+/// The plane, if it is the only shape of a `<collision>`.
 fn plane(tag: &Element) -> Option<&Element> {
     let geometry = tag.children.iter().find(|child| child.is("geometry"))?;
     let [shape] = geometry.children.as_slice() else { return None };
@@ -78,7 +78,7 @@ fn placed_plane(
     Some(Plane { name, point, normal, mask: None, place })
 }
 
-/// The whole appearance of a link: the dynamics need none of it, so that nothing here is a finding.
+/// The whole appearance of a link: the dynamics do not use it, so it causes no findings.
 pub(crate) fn visuals(link: &Link<'_>, graph: &Graph<'_>, options: &Options, log: &Diagnostics) -> Vec<Visual> {
     let tags = link.element.children.iter().filter(|child| child.is("visual"));
     let visual = |tag: &Element| {
@@ -123,7 +123,7 @@ pub(crate) fn pose(tag: &Element, link: &Link<'_>, graph: &Graph<'_>, options: &
     frame.map_or(pose, |frame| graph.relative(link.node, frame).then(&pose))
 }
 
-/// The one shape of a `<geometry>`.
+/// The only shape of a `<geometry>`.
 fn shape(geometry: &Element, about: &Subject, log: &mut Diagnostics) -> Option<CollisionShape> {
     const EXPECTED: &str = "one of <box>, <cylinder>, <sphere>, <capsule> and <mesh>";
     let [tag] = geometry.children.as_slice() else {

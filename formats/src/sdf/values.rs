@@ -8,10 +8,10 @@ use crate::xml::element::FIRST_OF_DUPLICATES;
 use crate::xml::number::{self, Fault};
 use crate::xml::tree::Element;
 
-/// A limit of so much, or more, is none: the default of older versions.
+/// Limits of this size or more mean no limit: the default of older versions.
 const UNLIMITED: f64 = 1e16;
 
-/// The one child of this name. A second one is an error, or a warning where it says the same.
+/// The only child of this name. A second one is an error, or a warning if it has the same content.
 pub(crate) fn only<'a>(parent: &'a Element, name: &str, subject: &Subject, log: &mut Diagnostics) -> Option<&'a Element> {
     let mut all = parent.children.iter().filter(|child| child.is(name));
     let first = all.next()?;
@@ -32,12 +32,12 @@ pub(crate) fn only<'a>(parent: &'a Element, name: &str, subject: &Subject, log: 
     Some(first)
 }
 
-/// The text of a tag; empty if there is none.
+/// The text of a tag; empty if it has none.
 pub(crate) fn text(element: &Element) -> &str {
     element.content.as_deref().unwrap_or_default()
 }
 
-/// A name that a child tag gives: there, and not empty.
+/// A required, non-empty name in a child tag.
 pub(crate) fn name<'a>(parent: &'a Element, tag: &str, subject: &Subject, log: &mut Diagnostics) -> Option<(&'a Element, &'a str)> {
     let Some(element) = only(parent, tag, subject, log) else {
         parent.error((subject, tag), Code::MissingTag, "none", format!("<{tag}> inside <{}>", parent.name), log);
@@ -56,7 +56,7 @@ fn numbers(element: &Element, may_be_infinite: bool, subject: &Subject, log: &mu
     for word in text(element).split_ascii_whitespace() {
         match number::parse(word) {
             Ok(number) => all.push(number),
-            // What is too small for a double is zero.
+            // Numbers too small for a double are zero.
             Err(Fault::Vanishes) => all.push(0.0),
             Err(Fault::NotFinite) if may_be_infinite && !word.to_ascii_lowercase().contains("nan") => {
                 all.push(if word.starts_with('-') { f64::NEG_INFINITY } else { f64::INFINITY });
@@ -90,12 +90,12 @@ pub(crate) fn exactly<const N: usize>(element: &Element, subject: &Subject, log:
     counted(element, false, subject, log)
 }
 
-/// The number in a child, if it is there and right.
+/// The number in a child, if there is a valid one.
 pub(crate) fn number(parent: &Element, name: &str, subject: &Subject, log: &mut Diagnostics) -> Option<f64> {
     counted::<1>(only(parent, name, subject, log)?, false, subject, log).map(|[number]| number)
 }
 
-/// As [`number`], where it is a bound; infinite where the format's default for none is written.
+/// As [`number`], for a bound; infinite if it is the format's default for no bound.
 pub(crate) fn bound(parent: &Element, name: &str, subject: &Subject, log: &mut Diagnostics) -> Option<f64> {
     let [number] = counted::<1>(only(parent, name, subject, log)?, true, subject, log)?;
     Some(if number.abs() >= UNLIMITED { f64::INFINITY.copysign(number) } else { number })
@@ -109,7 +109,7 @@ fn truth(word: &str) -> Option<bool> {
     }
 }
 
-/// Whether a child says true; `None` if there is none.
+/// The truth value of a child; `None` if there is none.
 pub(crate) fn yes(parent: &Element, name: &str, subject: &Subject, log: &mut Diagnostics) -> Option<bool> {
     let element = only(parent, name, subject, log)?;
     let found = truth(text(element));
@@ -119,7 +119,7 @@ pub(crate) fn yes(parent: &Element, name: &str, subject: &Subject, log: &mut Dia
     found
 }
 
-/// Whether an attribute says true; false without it.
+/// The truth value of an attribute; false without it.
 pub(crate) fn flag(element: &Element, name: &str, subject: &Subject, log: &mut Diagnostics) -> bool {
     let Some(word) = element.text(name) else { return false };
     let found = truth(word.trim());
@@ -129,10 +129,10 @@ pub(crate) fn flag(element: &Element, name: &str, subject: &Subject, log: &mut D
     found.unwrap_or(false)
 }
 
-/// A quaternion whose norm is off 1 by more is a warning.
+/// A quaternion with a norm further from 1 is a warning.
 const ROUNDED: f64 = 1e-3;
 
-/// What a `<pose>` says: no text stands for zero.
+/// The pose in a `<pose>`; an empty text means zero.
 pub(crate) fn pose(element: &Element, snap: Option<f64>, subject: &Subject, log: &mut Diagnostics) -> Pose {
     let degrees = flag(element, "degrees", subject, log);
     if text(element).is_empty() {

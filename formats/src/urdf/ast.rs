@@ -1,9 +1,9 @@
-//! What was found in the file, before names are looked up.
+//! Contents of the file, before names are looked up.
 
 use articulated_core::description::{Collision, Inertial, JointDynamics, JointKind, Limit, Origin, Visual};
 use articulated_core::diagnostic::{At, Subject};
 
-/// The joint that Drake has for types that the format does not know.
+/// Drake's joint for types that the format does not have.
 pub(crate) const DRAKE_JOINT: &str = "drake:joint";
 
 #[derive(Default)]
@@ -19,12 +19,12 @@ pub(crate) struct Draft {
 pub(crate) struct PassedOver {
     pub(crate) at: At,
     pub(crate) tag: String,
-    /// Empty where it has none.
+    /// Empty if it has no name.
     pub(crate) name: String,
 }
 
 pub(crate) struct DraftLink {
-    /// `None` where it is missing, which has been reported.
+    /// `None` if it is missing, which has been reported.
     pub(crate) name: Option<String>,
     pub(crate) at: At,
     pub(crate) inertial: Option<Inertial>,
@@ -33,18 +33,18 @@ pub(crate) struct DraftLink {
 }
 
 pub(crate) struct DraftJoint {
-    /// `None` where it is missing, which has been reported.
+    /// `None` if it is missing, which has been reported.
     pub(crate) name: Option<String>,
     pub(crate) at: At,
-    /// `None` where it is missing or unknown, which has been reported.
+    /// `None` if it is missing or unknown, which has been reported.
     pub(crate) kind: Option<JointKind>,
     pub(crate) parent: Option<Reference>,
     pub(crate) child: Option<Reference>,
     pub(crate) origin: Origin,
     pub(crate) axis: [f64; 3],
-    /// Of a universal joint; zero otherwise.
+    /// For a universal joint; zero otherwise.
     pub(crate) second_axis: [f64; 3],
-    /// Of a helical joint, m per revolution; zero otherwise.
+    /// For a helical joint, m per revolution; zero otherwise.
     pub(crate) pitch: f64,
     pub(crate) mimic: Option<DraftMimic>,
     /// Further joints that it follows.
@@ -53,7 +53,7 @@ pub(crate) struct DraftJoint {
     pub(crate) dynamics: JointDynamics,
 }
 
-/// The name of a link or joint where it is referred to.
+/// A reference to the name of a link or joint.
 pub(crate) struct Reference {
     pub(crate) name: String,
     pub(crate) at: At,

@@ -1,4 +1,4 @@
-//! What a fixed base holds: mass there plays no part in the dynamics.
+//! Links that a fixed base holds: their mass has no effect on the dynamics.
 
 use articulated_core::description::JointKind;
 use articulated_core::diagnostic::Diagnostics;
@@ -9,8 +9,8 @@ use crate::reading::HELD;
 
 const TAG: &str = "inertial";
 
-/// Reports the mass of the root link and of the links that are fixed to it. Any robot's base has
-/// some: that is nothing to be warned of.
+/// Reports the mass of the root link and of the links fixed to it. This is common, so it is no
+/// warning.
 pub(crate) fn report(draft: &Draft, tree: &Tree, log: &mut Diagnostics) {
     for link in held(draft, tree).into_iter().filter(|link| has_mass(draft, *link)) {
         log.unused_at(draft.links[link].at, &draft.links[link].subject(), TAG.to_owned(), HELD);

@@ -1,4 +1,4 @@
-//! From `urdf-rs`'s robot to a [`Description`], which has to be what this crate found itself.
+//! From `urdf-rs`'s robot to a [`Description`], which must equal this crate's own result.
 
 use articulated_core::description::{
     Description, Inertial, Joint, JointDynamics, JointId, JointKind, Limit, Link, LinkId, Mimic, Origin, Rotation,
@@ -10,8 +10,8 @@ use super::ast::Draft;
 use super::plain::{self, Piece};
 use super::tree::Tree;
 
-/// An internal error, if the robot that `urdf-rs` reads from the plain documents is not the one
-/// that was `found`.
+/// An internal error, if the robot that `urdf-rs` reads from the plain documents differs from
+/// `found`.
 pub(crate) fn compare(found: &Description, draft: &Draft, tree: &Tree, leaders: &[Option<usize>], log: &mut Diagnostics) {
     let mut description = Description { name: draft.name.clone(), ..Description::default() };
     for piece in plain::pieces(draft, tree, leaders) {
@@ -23,7 +23,7 @@ pub(crate) fn compare(found: &Description, draft: &Draft, tree: &Tree, leaders: 
             return internal("a robot of another shape read by urdf-rs".to_owned(), log);
         }
     }
-    // It reads one leader of a joint.
+    // It reads only one leader of a joint.
     let mut found = found.clone();
     found.joints.iter_mut().for_each(|joint| joint.also.clear());
     if with_angles(description) != with_angles(found) {
@@ -45,8 +45,8 @@ fn internal(found: String, log: &mut Diagnostics) {
     log.error(Place::DOCUMENT, Code::Internal, found, expected);
 }
 
-/// Adds what `urdf-rs` read from a piece. The names are the draft's: the piece has indices in their
-/// place.
+/// Adds the links and joints that `urdf-rs` read from a piece. The names are the draft's: the piece
+/// has indices instead.
 fn read_back(robot: &Robot, piece: &Piece, draft: &Draft, into: &mut Description) -> Option<()> {
     if robot.links.len() != piece.links || robot.joints.len() != piece.joints {
         return None;
@@ -63,7 +63,7 @@ fn read_back(robot: &Robot, piece: &Piece, draft: &Draft, into: &mut Description
 fn read_link(link: &urdf_rs::Link, index: usize, draft: &Draft) -> Option<Link> {
     let found = draft.links.get(read_index(&link.name)?)?;
     let name = found.name.clone()?;
-    // urdf-rs does not tell a missing inertial from zeros.
+    // urdf-rs does not distinguish a missing inertial from zeros.
     let inertial = found.inertial.is_some().then(|| read_inertial(&link.inertial));
     // The plain documents have neither collision geometry nor appearance.
     let (collision, visual) = (found.collision.clone(), found.visual.clone());
@@ -84,7 +84,7 @@ fn read_joint(joint: &urdf_rs::Joint, index: usize, draft: &Draft) -> Option<Joi
         child: LinkId(read_index(&joint.child.link)?),
         origin: read_origin(&joint.origin),
         axis: *joint.axis.xyz,
-        // What urdf-rs does not know has nobody to agree with.
+        // urdf-rs does not read these: there is nothing to compare.
         second_axis: found.second_axis,
         pitch: found.pitch,
         locked: None,
@@ -104,8 +104,8 @@ fn read_index(name: &str) -> Option<usize> {
     name.parse().ok()
 }
 
-/// The kind that was read; `drafted`, if that is one that only this crate knows and [`plain`] wrote
-/// its stand-in.
+/// The kind that was read; `drafted`, if only this crate knows that kind and [`plain`] wrote its
+/// stand-in.
 fn read_kind(kind: &JointType, drafted: JointKind) -> JointKind {
     match kind {
         JointType::Fixed if plain::is_unknown_to_urdf_rs(drafted) => drafted,

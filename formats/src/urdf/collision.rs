@@ -1,5 +1,5 @@
-//! The tag `<collision>`: the dynamics need none of it, so that what is wrong with it is a warning
-//! here, and an error where a scene asks for it.
+//! The tag `<collision>`: the dynamics do not use it, so its errors are warnings here, and errors
+//! if a scene requests contact of it.
 
 use articulated_core::description::{Collision, CollisionShape};
 use articulated_core::diagnostic::{Code, Diagnostics, quote};
@@ -43,7 +43,7 @@ fn collision(tag: &Tag<'_>, context: &Context<'_>, log: &mut Diagnostics) -> Col
     Collision { origin, shape }
 }
 
-/// The one shape of a `<geometry>`.
+/// The only shape of a `<geometry>`.
 pub(crate) fn shape(geometry: &Tag<'_>, log: &mut Diagnostics) -> Option<CollisionShape> {
     unused::beside_tags(geometry, &[], log);
     let mut children = geometry.children();
@@ -65,7 +65,7 @@ pub(crate) fn shape(geometry: &Tag<'_>, log: &mut Diagnostics) -> Option<Collisi
         "box" => Some(CollisionShape::Box { size: sizes(&tag, "size", log)? }),
         "mesh" => Some(CollisionShape::Mesh {
             file: tag.required_attribute("filename", log)?.0.to_owned(),
-            // Contact needs no mesh: what is wrong with its scale plays no part.
+            // Contact does not use meshes: errors of their scale have no effect.
             scale: number::silently(&tag, "scale").unwrap_or([1.0; 3]),
         }),
         "sphere" => sizes(&tag, "radius", log).map(|[radius]| CollisionShape::Sphere { radius }),
@@ -77,7 +77,7 @@ pub(crate) fn shape(geometry: &Tag<'_>, log: &mut Diagnostics) -> Option<Collisi
     }
 }
 
-/// The sizes in an attribute that has to be there, m: none is below zero.
+/// The sizes in a required attribute, m: not below zero.
 fn sizes<const N: usize>(tag: &Tag<'_>, name: &str, log: &mut Diagnostics) -> Option<[f64; N]> {
     let (text, _) = tag.required_attribute(name, log)?;
     let sizes = number::attribute_list(tag, name, log)?;

@@ -13,7 +13,7 @@ use crate::{Options, Reading, read};
 /// Why a robot cannot be converted.
 #[derive(Debug)]
 pub enum ConversionError {
-    /// The robot of `urdf-rs` has mistakes, all of them.
+    /// All errors of the robot of `urdf-rs`.
     Diagnostics(Diagnostics),
     /// `urdf-rs` has no word for this, as for helical and universal joints.
     UrdfRs(UrdfError),
@@ -30,17 +30,17 @@ impl fmt::Display for ConversionError {
 
 impl std::error::Error for ConversionError {}
 
-/// The robot that `urdf-rs` has read, checked as a file would be. `urdf-rs` does not tell a link
-/// without `<inertial>` from one whose mass and inertia are zero.
+/// The robot that `urdf-rs` has read, checked like a file. `urdf-rs` does not distinguish a link
+/// without `<inertial>` from one with zero mass and inertia.
 ///
 /// # Errors
-/// Every mistake of the robot.
+/// All errors of the robot.
 pub fn from_urdf_rs(robot: &Robot, options: &Options) -> Result<Reading, ConversionError> {
     let text = write_to_string(robot).map_err(ConversionError::UrdfRs)?;
     read(text.as_bytes(), options).map_err(ConversionError::Diagnostics)
 }
 
-/// The robot as `urdf-rs` has it, without collision geometry and appearance.
+/// The robot in the form of `urdf-rs`, without collision geometry and appearance.
 ///
 /// # Errors
 /// Joints of a type that `urdf-rs` does not know.

@@ -9,16 +9,16 @@ use crate::xml::element::Tag;
 use crate::xml::markup;
 use crate::xml::number::{parse, silently};
 
-/// What is lost, and what is expected in its place.
+/// Lost content, and the expected replacement.
 pub(crate) struct Loss {
     pub(crate) what: String,
     pub(crate) expected: String,
 }
 
-/// What is expected in the place of a closed loop.
+/// Expected instead of a closed loop.
 pub(crate) const LOOP: &str = "a tree of joints: it is not closed, and the dynamics are those of the tree without it";
 
-/// What the robot itself has: its links, and how its joints follow others.
+/// The robot's own content: its links, and the laws of its followers.
 #[derive(Default)]
 pub(crate) struct Parts<'a> {
     links: HashSet<&'a str>,
@@ -44,7 +44,7 @@ impl<'a> Parts<'a> {
         parts
     }
 
-    /// What a tag couples or closes that is lost.
+    /// The coupling or loop of a tag that is lost.
     pub(crate) fn loss(&self, tag: &Tag<'_>) -> Option<Loss> {
         if tag.is("plugin") {
             return self.plugin(tag);
@@ -86,7 +86,7 @@ impl<'a> Parts<'a> {
         self.coupling(text("joint"), text("mimicjoint"), numbers, "the plugin")
     }
 
-    /// That a joint follows another, unless the robot's own `<mimic>` says it.
+    /// The loss of a coupling of joints, unless the robot's own `<mimic>` defines it.
     fn coupling(&self, follower: Option<&str>, leader: Option<&str>, [multiplier, offset]: [Option<f64>; 2], by: &str) -> Option<Loss> {
         let (Some(follower), Some(leader)) = (follower, leader) else {
             let expected = "<mimic> inside <joint>: it is not read, and the joint moves by itself";
@@ -129,7 +129,7 @@ pub(crate) fn says_loop(name: &str) -> bool {
     ["loopjoint", "closedloop", "kinematicloop"].iter().any(|word| name.contains(word))
 }
 
-/// Whether a tag other than `<joint>` joins two links: a joint of another program.
+/// Whether a tag other than `<joint>` joins two links: a joint for another program.
 pub(crate) fn is_joint(tag: &Tag<'_>) -> bool {
     let has = |name: &str| tag.children().any(|child| child.is(name));
     letters(&tag.name()).ends_with("joint") && has("parent") && has("child")

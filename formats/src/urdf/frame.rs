@@ -10,7 +10,7 @@ use super::unused;
 use crate::xml::element::Tag;
 use crate::xml::number::{attribute_list, silently};
 
-/// The `<origin>` inside a tag; no tag or attribute stands for zero.
+/// The `<origin>` inside a tag; a missing tag or attribute means zero.
 pub(crate) fn origin(parent: &Tag<'_>, context: &Context<'_>, log: &mut Diagnostics) -> Origin {
     let Some(tag) = parent.only("origin", log) else {
         return Origin::default();
@@ -39,12 +39,12 @@ pub(crate) fn longest(robot: &Tag<'_>) -> f64 {
     if longest == 0.0 { 1.0 } else { longest.min(1.0) }
 }
 
-/// A quaternion whose norm is off 1 by more is an error.
+/// A quaternion with a norm further from 1 is an error.
 const NORM: f64 = 1e-3;
-/// A quaternion whose norm is off 1 by more is a warning.
+/// A quaternion with a norm further from 1 is a warning.
 const ROUNDED: f64 = 1e-6;
 
-/// The quaternion (x, y, z, w) that `quat_xyzw` gives, if it is right. It may be off unit length by
+/// The quaternion (x, y, z, w) of `quat_xyzw`, if it is valid. Its norm may differ from 1 by
 /// rounding.
 fn quaternion(tag: &Tag<'_>, version: Version, log: &mut Diagnostics) -> Option<[f64; 4]> {
     let quaternion = attribute_list::<4>(tag, "quat_xyzw", log);
@@ -73,7 +73,7 @@ fn quaternion(tag: &Tag<'_>, version: Version, log: &mut Diagnostics) -> Option<
     Some(quaternion)
 }
 
-/// So many rad and more are written by mistake: degrees, most often.
+/// Larger angles, rad, are usually errors: degrees, most often.
 const TURN: f64 = 1.001 * TAU;
 
 fn warn_of_turns(tag: &Tag<'_>, rpy: [f64; 3], log: &mut Diagnostics) {
@@ -83,8 +83,7 @@ fn warn_of_turns(tag: &Tag<'_>, rpy: [f64; 3], log: &mut Diagnostics) {
     }
 }
 
-/// So many metres and more from one frame to the next are written by mistake: millimetres, most
-/// often.
+/// Lengths from one frame to the next from here on, m, are usually errors: millimetres, most often.
 const FAR: f64 = 100.0;
 
 fn warn_of_lengths(tag: &Tag<'_>, xyz: [f64; 3], log: &mut Diagnostics) {
@@ -137,7 +136,7 @@ mod tests {
         assert_eq!(right_angle(0.0, 1e-5), None);
         assert_eq!(right_angle(FRAC_PI_2 + 4e-6, f64::NAN), None);
         assert_eq!(right_angle(1e300, 1.0), None);
-        // Beyond 250 turns an angle is a mistake of another sort.
+        // Beyond 250 turns an angle is an error of another kind.
         assert_eq!(right_angle(1000.0 * FRAC_PI_2 + 1e-6, 1e-5), Some((1000.0, 1000.0 * FRAC_PI_2)));
         assert_eq!(right_angle(1001.0 * FRAC_PI_2 + 1e-6, 1e-5), None);
     }

@@ -1,4 +1,4 @@
-//! Whether a mass and its inertia can be: the inertia by its principal moments.
+//! Checks of a mass and its inertia: of the inertia by its principal moments.
 
 use articulated_core::description::PrincipalMoments;
 use articulated_core::diagnostic::{Code, Diagnostics, Place};
@@ -6,7 +6,7 @@ use articulated_core::diagnostic::{Code, Diagnostics, Place};
 use super::robot::Context;
 use crate::mass::beyond_any_mass;
 
-/// Reports a mass or an inertia that is impossible or looks wrong.
+/// Reports an impossible or suspicious mass or inertia.
 pub(crate) fn check(mass: Option<f64>, inertia: Option<[f64; 6]>, context: &Context<'_>, place: &Place<'_>, log: &mut Diagnostics) {
     let place = |field| Place { field, ..*place };
     if let Some(mass) = mass.filter(|mass| *mass < 0.0) {
@@ -24,8 +24,7 @@ pub(crate) fn check(mass: Option<f64>, inertia: Option<[f64; 6]>, context: &Cont
     check_units(mass, inertia, &place("inertia"), log);
 }
 
-/// A radius of gyration of so many metres and more is written by mistake: kg·mm² or g·mm², most
-/// often.
+/// Radii of gyration from here on, m, are usually errors: kg·mm² or g·mm², most often.
 const WIDE: f64 = 10.0;
 
 fn check_units(mass: Option<f64>, inertia: [f64; 6], place: &Place<'_>, log: &mut Diagnostics) {
@@ -38,8 +37,8 @@ fn check_units(mass: Option<f64>, inertia: [f64; 6], place: &Place<'_>, log: &mu
     }
 }
 
-/// A negative moment of at most so many times m·ℓ² is rounding: ℓ is [`Context::length`], from
-/// which the moment was shifted. Shipped files have up to 1e-19·m·(1 m)².
+/// A negative moment up to this multiple of m·ℓ² is rounding: ℓ is [`Context::length`], from which
+/// the moment was shifted. Shipped files have up to 1e-19·m·(1 m)².
 const DUST: f64 = 1e-12;
 
 fn check_moments(mass: Option<f64>, inertia: [f64; 6], context: &Context<'_>, place: &Place<'_>, log: &mut Diagnostics) {

@@ -1,6 +1,6 @@
-//! Numbers of joints outside of `<joint>`: the inertias of rotors in `<transmission>` (ROS, Drake),
+//! Numbers of joints outside `<joint>`: the inertias of rotors in `<transmission>` (ROS, Drake),
 //! and the springs in `<gazebo reference="joint">`. A scene may turn them on: they are kept in the
-//! joint's dynamics. The rigid-body dynamics use none of them, so that nothing here is an error.
+//! joint's dynamics. The rigid-body dynamics do not use them, so they cause no errors.
 
 use std::collections::BTreeMap;
 
@@ -83,7 +83,7 @@ fn warn_of_unknown_joints(tag: &Tag<'_>, index: &BTreeMap<String, usize>, sugges
     }
 }
 
-/// The joint of a transmission, and its rotor. A warning, if the transmission does not state them.
+/// The joint of a transmission, and its rotor. A warning if the transmission does not state them.
 fn rotor(
     tag: &Tag<'_>,
     stated: &Tag<'_>,
@@ -121,8 +121,8 @@ fn rotor(
     Some((joint, Rotor { armature: inertia * gear * gear, at: tag.at() }))
 }
 
-/// The number that all tags of these names state; `Some(None)`, if there are no such tags. `None`
-/// with a warning, if one has no number or two have different ones.
+/// The number that all tags of these names state; `Some(None)` without such tags. `None`, with a
+/// warning, if a number is missing or two differ.
 fn agreed<'a>(holders: impl Iterator<Item = Tag<'a>>, names: &[&str], what: &str, log: &mut Diagnostics) -> Option<Option<f64>> {
     let mut first: Option<(f64, String)> = None;
     for tag in holders.flat_map(|holder| holder.children().collect::<Vec<_>>()).filter(|tag| is_one_of(tag, names)) {
@@ -140,7 +140,7 @@ fn agreed<'a>(holders: impl Iterator<Item = Tag<'a>>, names: &[&str], what: &str
     Some(first.map(|(number, _)| number))
 }
 
-/// The number in `value` or in the text of a tag; `None` with a warning, if it is none.
+/// The number in `value` or in the text of a tag; `None`, with a warning, if it is not a number.
 fn number_of(tag: &Tag<'_>, rest: &str, log: &mut Diagnostics) -> Option<f64> {
     let (text, at) = tag.attribute("value").or_else(|| tag.text()).unwrap_or(("", tag.at()));
     let number = number::parse(text.trim()).ok();

@@ -25,10 +25,10 @@ const DRAKE_PITCH: &str = "drake:screw_thread_pitch";
 const DRAKE_KINDS: [(&str, JointKind); 4] =
     [("ball", JointKind::Spherical), ("planar", JointKind::Planar), ("screw", JointKind::Helical), ("universal", JointKind::Universal)];
 
-/// The axis of a joint that does not give one.
+/// The default axis of a joint.
 const DEFAULT_AXIS: [f64; 3] = [1.0, 0.0, 0.0];
 
-/// Components beyond cannot be squared: nothing is left of such an axis, or it overflows.
+/// Range of components that can be squared without underflow or overflow.
 const AXIS: std::ops::RangeInclusive<f64> = 1e-150..=1e150;
 
 /// A joint as the file writes it.
@@ -63,7 +63,7 @@ pub(crate) fn joint(tag: &Tag<'_>, context: &Context<'_>, log: &mut Diagnostics)
     joint
 }
 
-/// What is wrong with a joint whatever its type should be.
+/// Errors of a joint of any type.
 fn of_any_kind(tag: &Tag<'_>, version: Version, log: &mut Diagnostics) {
     for name in ["axis", "axis2"] {
         if let Some(given) = tag.only(name, log) {
@@ -108,7 +108,7 @@ pub(crate) fn kinds_with(meant: impl Fn(JointKind) -> bool) -> String {
     }
 }
 
-/// What a joint that is called so in other formats is here.
+/// The type here for another format's name of it.
 fn elsewhere(name: &str) -> Option<&'static str> {
     let kind = match name.to_lowercase().as_str() {
         "hinge" | "rotary" | "rotational" | "pin" => JointKind::Revolute,
@@ -142,7 +142,7 @@ fn motion(tag: &Tag<'_>, kind: JointKind, version: Version, joint: &mut DraftJoi
         kind if kind.has_axis() => {
             let given = tag.only("axis", log);
             if kind == JointKind::Planar && given.is_none() {
-                // Others take the joint's own x and y for the plane then.
+                // Other readers then use the joint's own x and y for the plane.
                 log.warning(tag.place("axis"), Code::NoAxis, "none", "the normal of the plane: without one it is x, and the plane y and z");
             }
             joint.axis = given.and_then(|tag| axis(&tag, log)).unwrap_or(DEFAULT_AXIS);
@@ -183,7 +183,7 @@ fn report_useless(joint: &Tag<'_>, name: &str, log: &mut Diagnostics) {
     }
 }
 
-/// The direction that `<axis>` or `<axis2>` gives, if it is right.
+/// The direction of `<axis>` or `<axis2>`, if it is valid.
 fn axis(tag: &Tag<'_>, log: &mut Diagnostics) -> Option<[f64; 3]> {
     unused::rest(tag, &[], &["xyz"], log);
     tag.required_attribute("xyz", log)?;
@@ -214,7 +214,7 @@ fn shown([x, y, z]: [f64; 3]) -> String {
     format!("({x:?} {y:?} {z:?})")
 }
 
-/// The two axes of a universal joint. None has a default: nobody would guess it.
+/// The two axes of a universal joint. Both are required: a default would be arbitrary.
 fn cross(joint: &Tag<'_>, log: &mut Diagnostics) -> ([f64; 3], [f64; 3]) {
     let [first, second] = ["axis", "axis2"].map(|name| joint.required(name, log).and_then(|tag| axis(&tag, log)));
     let (Some(first), Some(second)) = (first, second) else {
@@ -228,7 +228,7 @@ fn cross(joint: &Tag<'_>, log: &mut Diagnostics) -> ([f64; 3], [f64; 3]) {
     (first, second)
 }
 
-/// Axes of a smaller sine of the angle between them count as parallel.
+/// Two axes are parallel below this sine of their angle.
 const PARALLEL: f64 = 1e-6;
 
 /// |a × b| / (|a| |b|) of vectors that are not zero.
@@ -242,8 +242,8 @@ fn sine(a: [f64; 3], b: [f64; 3]) -> f64 {
     [b * z - c * y, c * x - a * z, a * y - b * x].iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// How far a helical joint slides in one turn, m: with a right-handed thread it is positive. Zero
-/// is odd, but means something.
+/// Distance that a helical joint slides in one turn, m; positive for a right-handed thread. Zero is
+/// allowed, with a warning.
 fn pitch(joint: &Tag<'_>, log: &mut Diagnostics) -> Option<f64> {
     let (name, attribute) = if joint.is(DRAKE_JOINT) { (DRAKE_PITCH, "value") } else { ("thread", "pitch") };
     let tag = joint.required(name, log)?;

@@ -14,7 +14,7 @@ use crate::xml::number::attribute;
 
 const BOUNDS: [&str; 2] = ["lower", "upper"];
 
-/// What the joint's `<limit>` says.
+/// The joint's `<limit>`.
 pub(crate) fn limit(joint: &Tag<'_>, kind: JointKind, version: Version, log: &mut Diagnostics) -> Option<Limit> {
     // Bounds that are left out are infinite, not zero.
     let open = version >= Version::V1_2;
@@ -40,13 +40,13 @@ pub(crate) fn limit(joint: &Tag<'_>, kind: JointKind, version: Version, log: &mu
     Some(Limit { lower, upper, effort, velocity, acceleration: acceleration.min(from_drake), deceleration, jerk })
 }
 
-/// Bounds that version 1.2 adds; what is left out is infinite.
+/// Bounds that version 1.2 adds; a missing one is infinite.
 const LATER: [&str; 3] = ["acceleration", "deceleration", "jerk"];
-/// The name of the first of them in Drake, in all versions.
+/// The name of the first one in Drake, in all versions.
 const DRAKE_ACCELERATION: &str = "drake:acceleration";
 
 fn report_missing(joint: &Tag<'_>, kind: JointKind, log: &mut Diagnostics) {
-    // Drake has none for its own types.
+    // Drake does not require it for its own types.
     if kind.has_bounds() && !joint.is(DRAKE_JOINT) {
         let expected = "<limit> for a revolute, helical or prismatic joint; taken as without limits";
         log.warning(joint.place("limit"), Code::LimitMissing, "none", expected);
@@ -79,8 +79,8 @@ fn bounds(tag: &Tag<'_>, open: bool, log: &mut Diagnostics) -> (f64, f64) {
     (lower, upper)
 }
 
-/// Bounds of a joint that turns, from more than three turns in rad to three turns in degrees: the
-/// latter, most often.
+/// Bounds of a joint that turns, from more than three turns in rad to three turns in degrees:
+/// usually degrees.
 const DEGREES: RangeInclusive<f64> = 20.0..=1080.0;
 
 fn warn_of_degrees(tag: &Tag<'_>, kind: JointKind, bound: f64, log: &mut Diagnostics) {

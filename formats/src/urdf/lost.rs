@@ -1,5 +1,4 @@
-//! Dynamics that a file states where they are not read: inside `<gazebo>`, under a prefix, in tags
-//! that the format does not have.
+//! Dynamics in places where they are not read: inside `<gazebo>`, under a prefix, in unknown tags.
 
 use super::coupled::{LOOP, Loss, Parts, is_joint, letters, says_loop};
 use super::joint_forces;
@@ -9,14 +8,14 @@ use articulated_core::diagnostic::{Code, Diagnostics, quote};
 /// Known tags of other programs that may state dynamics.
 const SEARCHED: [&str; 5] = ["gazebo", "mujoco", "plugin", "frame", "ros2_control"];
 
-/// Whether a tag that is known and not used is searched for dynamics.
+/// Whether a known, unused tag is searched for dynamics.
 pub(crate) fn is_searched(name: &str) -> bool {
     SEARCHED.contains(&name)
 }
 
-/// Warns of all dynamics that `tag` and the tags inside it state. Whether there are some.
+/// Warns of all dynamics in `tag` and the tags inside it. Returns whether there are some.
 pub(crate) fn report(tag: &Tag<'_>, parts: &Parts<'_>, log: &mut Diagnostics) -> bool {
-    // What is inside a tag that was reported belongs to it.
+    // Tags inside a reported tag belong to it.
     let (mut end, mut any) = (0, false);
     for inner in tag.descendants() {
         if inner.start() < end {
@@ -43,13 +42,13 @@ fn shown(tag: &Tag<'_>) -> String {
     }
 }
 
-/// What a tag states that is lost.
+/// The lost content of a tag.
 fn loss(tag: &Tag<'_>) -> Option<Loss> {
     let (what, expected) = stated(tag)?;
     Some(Loss { what: what.to_owned(), expected: expected.to_owned() })
 }
 
-/// What a tag states that is lost, and what is expected in its place.
+/// The lost content of a tag, and the expected replacement.
 fn stated(tag: &Tag<'_>) -> Option<(&'static str, &'static str)> {
     let name = letters(&tag.name());
     let has = |words: &[&str]| words.iter().any(|word| name.contains(word));

@@ -6,8 +6,7 @@ use super::ast::{Draft, DraftMimic};
 use super::mimic::Leaders;
 use super::tree::Tree;
 
-/// The description that the draft amounts to; `None` where something of it is missing, which is an
-/// error already.
+/// The description of the draft; `None` if a part is missing, which is already reported.
 pub(crate) fn lower(draft: &Draft, tree: &Tree, leaders: &Leaders) -> Option<Description> {
     let links = draft.links.iter().map(|link| {
         let (name, collision, visual) = (link.name.clone()?, link.collision.clone(), link.visual.clone());

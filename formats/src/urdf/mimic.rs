@@ -15,7 +15,7 @@ use crate::xml::number::is_expression;
 /// For each joint, the joints that it follows.
 pub(crate) struct Leaders {
     pub(crate) first: Vec<Option<usize>>,
-    /// Those of [`DraftJoint::also`]; none where there is no such joint, which has been reported.
+    /// Those of [`DraftJoint::also`]; `None` for a missing joint, which has been reported.
     pub(crate) also: Vec<Vec<Option<usize>>>,
 }
 

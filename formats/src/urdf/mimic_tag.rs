@@ -1,4 +1,4 @@
-//! The tags `<mimic>` of a joint: the joints that it follows, and by which law.
+//! The tags `<mimic>` of a joint: the joints that it follows, and the law.
 
 use std::collections::HashMap;
 
@@ -20,7 +20,7 @@ const ATTRIBUTES: [&str; 3] = ["joint", "multiplier", "offset"];
 /// Other attributes that only label the tag.
 const LABELS: [&str; 4] = ["name", "id", "comment", "description"];
 
-/// The joints that a joint follows. Two tags for one leader are one too many.
+/// The joints that a joint follows. Two tags for one leader are an error.
 pub(crate) fn mimics(joint: &Tag<'_>, log: &mut Diagnostics) -> Vec<DraftMimic> {
     let mut first: HashMap<&str, Tag<'_>> = HashMap::new();
     let mut mimics = Vec::new();
@@ -45,8 +45,8 @@ fn mimic(tag: &Tag<'_>, log: &mut Diagnostics) -> Option<DraftMimic> {
     Some(DraftMimic { leader: Reference { name, at: tag.at() }, multiplier, offset })
 }
 
-/// Reports attributes and tags that the format does not have. They are errors, because they may
-/// stand for another law than the linear one; those that cannot are warnings.
+/// Reports unknown attributes and tags. They are errors, because they may define another law than
+/// the linear one; harmless ones are warnings.
 fn report_laws(tag: &Tag<'_>, log: &mut Diagnostics) {
     for (name, value, at) in tag.attributes_with_lines() {
         let (name, value) = (markup::as_written(name), value.trim());
@@ -80,8 +80,8 @@ fn report_law(tag: &Tag<'_>, (found, name, at): (&str, &str, At), log: &mut Diag
     log.error(Place { at, ..tag.place(&format!("{} {name}", tag.name())) }, code, found.to_owned(), expected);
 }
 
-/// Whether an attribute says nothing of the law: a label, a declaration of a prefix, or nothing,
-/// zero or no. A word that is almost one of the format's own was meant to be that.
+/// Whether an attribute does not concern the law: a label, a declaration of a prefix, or a value
+/// that is empty, zero or false. A misspelt name of the format's own counts as that name.
 fn is_harmless(name: &str, value: &str) -> bool {
     if name.starts_with("xmlns") || LABELS.contains(&name) {
         return true;

@@ -139,7 +139,7 @@ fn draft(input: &Input<'_>, log: &mut Diagnostics) -> Option<ast::Draft> {
         return Some(robot::draft(&robot, input.options, log));
     }
     let expanded = xacro::expand(&document, &lines, input, log)?;
-    // An expression that is left over has an error of its own, or is meant.
+    // A remaining expression has an error of its own, or is intended.
     let lines = Lines::expanded(&expanded.text, expanded.origins, !log.is_ok()).with_first_of_duplicates(first);
     let document = document::parse(&expanded.text, &lines, log)?;
     let robot = robot_tag(&document, &lines, log)?;

@@ -1,10 +1,9 @@
-//! The plain documents that `urdf-rs` is given.
+//! The plain documents for `urdf-rs`.
 //!
-//! They say what was found and nothing else: no appearance, no extensions, links and joints named
-//! by their index. So that reader never meets what it would misread (names with blanks, numbers
-//! with letters behind) or stumble over (meshes, deep nesting), and its time goes into what
-//! matters. A large robot is handed over in pieces, since that reader holds several copies of a
-//! whole document in memory.
+//! They contain only what was found: no appearance, no extensions, links and joints named by their
+//! index. So that reader gets no content that it would misread (names with blanks, numbers with
+//! letters behind) or fail on (meshes, deep nesting), and spends no time on the rest. A large robot
+//! is passed in pieces, since that reader holds several copies of a whole document in memory.
 
 use std::fmt::{self, Write};
 
@@ -52,7 +51,7 @@ pub(crate) fn is_unknown_to_urdf_rs(kind: JointKind) -> bool {
     }
 }
 
-/// `urdf-rs`'s name of a kind; that of a fixed joint stands in for those that it does not know.
+/// `urdf-rs`'s name of a kind; the fixed joint replaces kinds that it does not know.
 fn name(kind: Option<JointKind>) -> &'static str {
     kind.filter(|kind| !is_unknown_to_urdf_rs(*kind)).unwrap_or(JointKind::Fixed).name()
 }
@@ -139,8 +138,7 @@ impl Out {
     }
 }
 
-/// A number in the fewest digits that are read back exactly, with an exponent where that is
-/// shorter.
+/// A number in the fewest digits that are read back exactly, with an exponent if that is shorter.
 struct Number(f64);
 
 impl fmt::Display for Number {

@@ -15,13 +15,13 @@ pub(crate) enum Version {
     V1_0,
     /// Adds `quat_xyzw`.
     V1_1,
-    /// A bound that is left out is infinite; before, it is zero.
+    /// A missing bound is infinite; before, it is zero.
     V1_2,
 }
 
 const VERSIONS: [(&str, Version); 4] = [("1", Version::V1_0), ("1.0", Version::V1_0), ("1.1", Version::V1_1), ("1.2", Version::V1_2)];
 
-/// What decides how a tag is read, beside the tag itself.
+/// The context of reading a tag.
 pub(crate) struct Context<'a> {
     pub(crate) options: &'a Options,
     pub(crate) version: Version,
@@ -32,7 +32,7 @@ pub(crate) struct Context<'a> {
     pub(crate) materials: BTreeMap<String, [f64; 4]>,
 }
 
-/// All links and joints, with everything wrong about each of them reported.
+/// All links and joints; all errors of each are reported.
 pub(crate) fn draft(robot: &Tag<'_>, options: &Options, log: &mut Diagnostics) -> Draft {
     let name = robot.required_name("name", log).unwrap_or_default();
     unused::warn_of_blanks(robot, &name, log);
@@ -61,7 +61,7 @@ pub(crate) fn draft(robot: &Tag<'_>, options: &Options, log: &mut Diagnostics) -
     draft
 }
 
-/// The name of the link that other programs add where a joint hangs on it and no link has it.
+/// The name of the link that other programs add if a joint hangs on it and it is not declared.
 const WORLD: &str = "world";
 
 /// Adds the link `world`, if joints hang on it and the file does not declare it.

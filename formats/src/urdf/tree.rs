@@ -1,5 +1,4 @@
-//! Names become indices, and joints a tree. Nothing here recurses: chains may be as long as they
-//! like.
+//! Names become indices, and joints a tree. There is no recursion: chains may have any length.
 
 use crate::xml::markup::hint;
 use articulated_core::diagnostic::{At, Code, Diagnostics, Place, Subject, quote};
@@ -40,7 +39,7 @@ fn all(ends: &[Option<usize>]) -> Option<Vec<usize>> {
     ends.iter().copied().collect()
 }
 
-/// Index of each name; the first, where there are several.
+/// Index of each name; the first one of duplicates.
 pub(crate) type Names<'a> = HashMap<&'a str, usize>;
 
 fn unique_names<'a>(
@@ -68,7 +67,7 @@ fn unique_names<'a>(
 struct Ends {
     parent: Vec<Option<usize>>,
     child: Vec<Option<usize>>,
-    /// Whether every name stands for one link.
+    /// Whether every name is that of one link.
     complete: bool,
 }
 
@@ -107,7 +106,7 @@ impl LookUp<'_> {
     }
 }
 
-/// For each link, the joint that it hangs on; the first, where there are several.
+/// For each link, the joint that it hangs on; the first one of several.
 fn joints_above(draft: &Draft, ends: &Ends, log: &mut Diagnostics) -> Vec<Option<usize>> {
     let mut above: Vec<Option<usize>> = vec![None; draft.links.len()];
     for (joint, child) in ends.child.iter().enumerate() {
@@ -141,7 +140,7 @@ fn report_rings(draft: &Draft, ends: &Ends, above: &[Option<usize>], log: &mut D
     cycles.len()
 }
 
-/// The tags that look like joints and are not read: what hangs on them is a root.
+/// The tags that look like joints and are not read: links that hang on them are roots.
 fn passed_over(draft: &Draft) -> String {
     let tags = draft.passed_over.iter().map(|tag| {
         let name = if tag.name.is_empty() { String::new() } else { format!(" {}", quote(&tag.name)) };
@@ -156,7 +155,7 @@ fn passed_over(draft: &Draft) -> String {
 
 fn root(draft: &Draft, ends: &Ends, above: &[Option<usize>], cycles: usize, log: &mut Diagnostics) -> Option<usize> {
     let roots: Vec<usize> = (0..above.len()).filter(|link| above[*link].is_none()).collect();
-    // A name that is not known, or not unique, leaves a link without a parent: that has been said.
+    // An unknown or ambiguous name leaves a link without a parent, which has been reported.
     if roots.len() > 1 && ends.complete && cycles == 0 {
         let names = listed(roots.iter().map(|root| draft.links[*root].subject()));
         let subject = draft.links[roots[1]].subject();

@@ -1,4 +1,4 @@
-//! What the file says and the description leaves out.
+//! Content of the file that the description leaves out.
 
 use articulated_core::diagnostic::{Code, Diagnostics, Place, is_invisible, quote};
 
@@ -13,7 +13,7 @@ const APPEARANCE: &str = "appearance plays no part in the dynamics";
 
 const LATER: &str = "a limit that <robot version=\"1.2\"> adds";
 
-/// Tags that are known, by what they stand in, and why they are not used.
+/// Known tags, with their parents, and the reasons why they are not used.
 const KNOWN: &[(&str, &str, &str)] = &[
     ("robot", "material", APPEARANCE),
     ("robot", "gazebo", "settings of a simulator"),
@@ -40,10 +40,10 @@ const KNOWN: &[(&str, &str, &str)] = &[
     ("limit", "jerk", LATER),
 ];
 
-/// Number of characters of a text that a message shows.
+/// Number of characters of a text shown in a message.
 const SHOWN: usize = 40;
 
-/// Reports the tags, the attributes and the text inside `tag` other than those that are used.
+/// Reports unused tags, attributes and text inside `tag`.
 pub(crate) fn rest(tag: &Tag<'_>, tags: &[&str], attributes: &[&str], log: &mut Diagnostics) {
     rest_beside(tag, &Parts::default(), (tags, attributes), log);
 }
@@ -56,12 +56,13 @@ pub(crate) fn rest_beside(tag: &Tag<'_>, parts: &Parts<'_>, (tags, attributes): 
     }
 }
 
-/// Reports a tag inside `tag` that is none of `tags`, which are used.
+/// Reports a tag inside `tag` that is not in `tags`, which are used.
 pub(crate) fn child_of(tag: &Tag<'_>, child: &Tag<'_>, parts: &Parts<'_>, tags: &[&str], log: &mut Diagnostics) {
     let name = child.name();
     let parent = tag.name();
     let why = KNOWN.iter().find(|(within, known, _)| *within == parent && *known == name);
-    // Links may hang on a joint of another program: directly inside the robot it closes no loop.
+    // Links may hang on a joint of another program: directly inside the robot it does not close a
+    // loop.
     match why {
         Some((_, _, why)) => {
             if lost::is_searched(&name) {
@@ -77,7 +78,7 @@ pub(crate) fn child_of(tag: &Tag<'_>, child: &Tag<'_>, parts: &Parts<'_>, tags: 
     }
 }
 
-/// Reports the attributes other than those that are used, and the text.
+/// Reports unused attributes, and the text.
 pub(crate) fn beside_tags(tag: &Tag<'_>, attributes: &[&str], log: &mut Diagnostics) {
     for attribute in tag.attributes().filter(|a| !attributes.contains(&a.name())) {
         attribute_of(tag, &markup::as_written(attribute.name()), attributes, log);
@@ -94,9 +95,9 @@ pub(crate) fn text_of(tag: &Tag<'_>, log: &mut Diagnostics) {
     }
 }
 
-/// Reports an attribute that is none of `used`.
+/// Reports an attribute that is not in `used`.
 pub(crate) fn attribute_of(tag: &Tag<'_>, name: &str, used: &[&str], log: &mut Diagnostics) {
-    // Declarations of prefixes say nothing about the robot.
+    // Declarations of prefixes do not concern the robot.
     if name.starts_with("xmlns") {
         return;
     }
@@ -111,7 +112,7 @@ pub(crate) fn attribute_of(tag: &Tag<'_>, name: &str, used: &[&str], log: &mut D
 fn around_links(tag: &Tag<'_>, name: &str, log: &mut Diagnostics) -> bool {
     let count = |which: &str| tag.descendants().filter(|inner| inner.is(which) && inner.attribute("name").is_some()).count();
     let (links, joints) = (count("link"), count("joint"));
-    // What has a prefix is an extension of another program.
+    // A name with a prefix is an extension of another program.
     if links + joints == 0 || name.contains(':') {
         return false;
     }
@@ -121,8 +122,8 @@ fn around_links(tag: &Tag<'_>, name: &str, log: &mut Diagnostics) -> bool {
     true
 }
 
-/// Warns of a name that looks like another one: with blanks at its ends, or with characters that
-/// are not visible.
+/// Warns of a name that looks like another one: with blanks at its ends, or with invisible
+/// characters.
 pub(crate) fn warn_of_blanks(tag: &Tag<'_>, name: &str, log: &mut Diagnostics) {
     let found = if name.trim() != name {
         "a name with blanks at an end"
@@ -144,7 +145,7 @@ fn misplaced(place: &Place<'_>, name: &str, parent: &str, log: &mut Diagnostics)
 fn unknown(place: &Place<'_>, what: String, name: &str, used: &[&str], log: &mut Diagnostics) {
     const FOUND: &str = "what is not known and not used";
     log.unused_at(place.at, place.subject, what, "not known");
-    // What has a prefix is somebody's extension, and meant for them.
+    // A name with a prefix is an extension of another program, and meant for it.
     let listed = || if used.is_empty() { "nothing of its own".to_owned() } else { format!("nothing but {}", used.join(", ")) };
     match Suggester::default().misspelt(name, used.iter().copied()) {
         Some(near) => log.warning(place, Code::Misspelt, FOUND, format!("{near}, perhaps")),

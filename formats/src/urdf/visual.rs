@@ -1,5 +1,5 @@
-//! The tags `<visual>` and `<material>`: the dynamics need none of them, so that nothing here is an
-//! error or a warning. A drawing says what it cannot show.
+//! The tags `<visual>` and `<material>`: the dynamics do not use them, so they cause no errors or
+//! warnings. A drawing reports what it cannot show.
 
 use std::collections::BTreeMap;
 

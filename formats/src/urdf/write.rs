@@ -5,7 +5,7 @@ use std::fmt::Write;
 use articulated_core::description::{Description, Inertial, Joint, JointKind, LinkId, Origin};
 
 /// The robot as a URDF, without collision geometry and appearance. Every number is printed so that
-/// reading gives the same double.
+/// the same double is read again.
 #[must_use]
 pub fn write(description: &Description) -> String {
     let version = if description.joints.iter().any(needs_version_1_2) { " version=\"1.2\"" } else { "" };
@@ -24,15 +24,14 @@ pub fn write(description: &Description) -> String {
     out + "</robot>\n"
 }
 
-/// Whether a bound is left out that would be zero in older versions, or one is given that they do
-/// not have.
+/// Whether a missing bound would be zero in older versions, or a given bound does not exist there.
 fn needs_version_1_2(joint: &Joint) -> bool {
     let Some(limit) = joint.limit else { return false };
     let is_open = joint.kind.has_bounds() && !(limit.lower.is_finite() && limit.upper.is_finite());
     is_open || [limit.acceleration, limit.deceleration, limit.jerk].iter().any(|limit| limit.is_finite())
 }
 
-/// What a joint has beside its tag: the inertia of a rotor without a gear, and a spring.
+/// Forces of a joint outside its tag: the inertia of a rotor without a gear, and a spring.
 fn forces(out: &mut String, joint: &Joint) {
     let name = escaped(&joint.name);
     if let Some(armature) = joint.dynamics.armature {

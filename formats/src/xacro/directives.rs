@@ -14,7 +14,7 @@ use super::text::{Parameter, parameters};
 use super::value::Value;
 use crate::xml::markup::as_written;
 
-/// A call of a macro takes so many parameters.
+/// Maximum number of parameters of a macro's call.
 const MOST_PARAMETERS: usize = 1000;
 
 impl Expander<'_> {
@@ -47,7 +47,7 @@ impl Expander<'_> {
         }
     }
 
-    /// An attribute that has to be there: without it, something of the robot is missing.
+    /// A required attribute: without it, a part of the robot is missing.
     fn required<'e>(&mut self, element: &'e Element, name: &str) -> Option<&'e Attribute> {
         let found = element.attribute(name);
         if found.is_none() {
@@ -58,7 +58,7 @@ impl Expander<'_> {
         found
     }
 
-    /// Warns of attributes other than these.
+    /// Warns of other attributes.
     fn known(&mut self, element: &Element, names: &[&str]) {
         for attribute in element.attributes.iter().filter(|a| !names.contains(&&*a.name) && !a.name.starts_with("xmlns")) {
             let expected = format!("nothing but {}", names.join(", "));
@@ -66,7 +66,7 @@ impl Expander<'_> {
         }
     }
 
-    /// The text of an attribute that has to be there.
+    /// The text of a required attribute.
     fn required_text(&mut self, element: &Element, name: &str, scope: usize) -> Option<(String, At)> {
         let attribute = self.required(element, name)?;
         self.text_of(element, attribute, scope)
@@ -96,7 +96,7 @@ impl Expander<'_> {
         if self.arguments.contains_key(&name) {
             return;
         }
-        // Without a default, it has to be given where it is used.
+        // Without a default, it must be given at its use.
         let Some(default) = element.attribute("default") else { return };
         match self.evaluated(&default.value, default.at, scope) {
             Ok(value) => {
@@ -158,8 +158,7 @@ impl Expander<'_> {
         }
     }
 
-    /// Warns of a name that every file has, where xacro does: it stands for something else from
-    /// here on.
+    /// Warns, as xacro does, of redefining a built-in name: it has another meaning from here on.
     fn warn_of_redefinition(&mut self, name: &str, at: At, field: &str) {
         if super::functions::is_of_every_file(name) {
             let found = format!("the name {}, which stands for a function or a number in every file", quote(name));
@@ -169,7 +168,7 @@ impl Expander<'_> {
 
     fn set_property(&mut self, element: &Element, name: &str, value: &Attribute, (scope, target): (usize, usize), lazy: bool) {
         let symbol = if lazy {
-            // A text without expressions stands for itself, unless it is in quotation marks.
+            // A text without expressions is its own value, unless it is in quotation marks.
             match literal(&Value::Text(value.value.clone())) {
                 Value::Text(text) => Symbol::Lazy(text, value.at),
                 value => Symbol::Value(value),
@@ -385,7 +384,7 @@ impl Expander<'_> {
         self.push(&own.body, inner, file, Finish::Body { name: name.clone(), at: element.at });
     }
 
-    /// Sets a parameter that a call does not give.
+    /// Sets a parameter that is missing in a call.
     fn default(&mut self, element: &Element, parameter: &Parameter<'_>, (scope, inner): (usize, usize)) {
         self.warn_of_redefinition(parameter.name, element.at, &field(element, parameter.name));
         let forwarded =

@@ -138,7 +138,7 @@ impl Evaluator<'_> {
         operators::binary(operator, &left, &right, self.names.work())
     }
 
-    /// The first value that is true, or false; the last, if there is none.
+    /// The first value with this truth; otherwise the last.
     fn first(&mut self, all: &[Expression], is_true: bool) -> Result<Value> {
         let mut last = Value::None;
         for one in all {

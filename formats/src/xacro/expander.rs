@@ -22,15 +22,14 @@ use crate::Input;
 use crate::xml::document;
 use crate::xml::markup::as_written;
 
-/// Macros, conditions, included files and tags may be nested so deeply altogether.
+/// Maximum total depth of nested macros, conditions, included files and tags.
 const MOST_FRAMES: usize = 2000;
-/// Tags of the expanded document may be nested so deeply.
+/// Maximum depth of nested tags of the expanded document.
 const MOST_DEPTH: usize = 200;
-/// Bounds of the expanded document, with the blocks that macros take: tags and attributes, and
-/// bytes.
+/// Bounds of the expanded document, with the blocks of macros: tags and attributes, and bytes.
 const MOST_NODES: usize = 1 << 20;
 const MOST_BYTES: usize = 32 << 20;
-/// Bounds of what is included: files, each as often as it is, nested, and bytes of their texts.
+/// Bounds of included files: their number, counting repetitions, their nesting, and bytes of text.
 const MOST_FILES: usize = 1000;
 const MOST_NESTED_FILES: usize = 64;
 const MOST_SOURCE: usize = 16 << 20;
@@ -40,7 +39,7 @@ const STEPS: usize = 16;
 /// A file that is expanded.
 pub(super) struct File {
     pub(super) path: PathBuf,
-    /// How many files include each other up to this one.
+    /// Depth of nested included files.
     depth: usize,
 }
 
@@ -52,7 +51,7 @@ pub(super) struct Frame {
     pub(super) file: Rc<File>,
     content: Content,
     finish: Finish,
-    /// How many tags of the expanded document it is in.
+    /// Depth in the expanded document.
     depth: usize,
 }
 
@@ -62,15 +61,15 @@ struct Content {
     children: Vec<Node>,
 }
 
-/// What becomes of the content.
+/// Use of the expanded content.
 pub(super) enum Finish {
     /// A tag of the expanded document.
     Element { name: Rc<str>, at: At },
-    /// It is in the place of a tag of xacro.
+    /// It replaces a tag of xacro.
     Splice,
     /// The blocks of a macro's call; the macro's name.
     Call(Rc<str>),
-    /// The body of a macro: its name, and where it is called.
+    /// The body of a macro: its name, and the place of its call.
     Body { name: Rc<str>, at: At },
 }
 
@@ -85,7 +84,7 @@ pub(super) struct Expander<'a> {
     pub(super) arguments: BTreeMap<String, Rc<str>>,
     /// Names of arguments that the file declares or uses.
     pub(super) declared: BTreeSet<String>,
-    /// Whether something that the robot consists of is missing, which has been reported.
+    /// Whether a part of the robot is missing, which has been reported.
     pub(super) incomplete: bool,
     /// Whether a bound was reached, which has been reported.
     stopped: bool,
@@ -101,7 +100,7 @@ pub(super) struct Expander<'a> {
     included: usize,
     nodes: usize,
     bytes: usize,
-    /// Files and lines that a warning is about.
+    /// Files and lines with a warning.
     warned: BTreeSet<(String, u32)>,
 }
 
@@ -180,7 +179,7 @@ impl<'a> Expander<'a> {
         Subject::Document
     }
 
-    /// The place where the macro is called that is expanded.
+    /// The place of the call of the expanded macro.
     fn caller(&self) -> Option<String> {
         let index = self.frames.iter().rposition(|frame| matches!(frame.finish, Finish::Body { .. }))?;
         let Finish::Body { name, at } = &self.frames[index].finish else { return None };
@@ -204,7 +203,7 @@ impl<'a> Expander<'a> {
         self.log.push(finding.into_warning());
     }
 
-    /// Reports what is wrong with a text that has expressions.
+    /// Reports the errors of a text with expressions.
     pub(super) fn fault(&mut self, at: At, field: &str, text: &str, fault: Fault) {
         match fault {
             Fault::Reported => {}
@@ -274,7 +273,7 @@ impl<'a> Expander<'a> {
         }
         match self.evaluated(&attribute.value, attribute.at, scope) {
             Ok(value) => files::written(&value.written()).into(),
-            // Names of files play no part in the dynamics.
+            // Names of files have no effect on the dynamics.
             Err(Fault::Wrong { found, expected }) if &*attribute.name == "filename" => {
                 let found = format!("the xacro expression {} with {found}", quote(&attribute.value));
                 self.warning(
@@ -309,7 +308,7 @@ impl<'a> Expander<'a> {
         self.frames.push(Frame { source: source.clone(), next: 0, scope, file, content: Content::default(), finish, depth });
     }
 
-    /// Puts the content of a frame in its place. The root, if it is that.
+    /// Puts the content of a frame in its place. Returns the root, if it is the root's.
     fn finish(&mut self, frame: Frame) -> Option<Element> {
         let Frame { source, scope, file, content, finish, .. } = frame;
         let Content { attributes, children } = content;
@@ -445,7 +444,7 @@ impl<'a> Expander<'a> {
         }
     }
 
-    /// The value of a property that is found in a scope.
+    /// The value of a property found in a scope.
     fn symbol(&mut self, scope: usize, name: &str) -> Result<Option<Value>> {
         match self.scopes.get(scope, name) {
             None | Some(Symbol::Block(_)) => Ok(None),
@@ -471,7 +470,7 @@ impl<'a> Expander<'a> {
         }
     }
 
-    /// The condition of a text; `None` where it has none, which is reported.
+    /// The condition of a text; `None` if it is not a condition, which is reported.
     pub(super) fn truth(&mut self, text: &str, at: At, field: &str, scope: usize) -> Option<bool> {
         let value = match self.evaluated(text, at, scope) {
             Ok(value) => value,
@@ -492,7 +491,7 @@ impl<'a> Expander<'a> {
 
     // Files.
 
-    /// The root of a file. `None`: an error says why; the file that is missing, unless that is
+    /// The root of a file. `None`: an error states why; a missing file is an error unless it is
     /// `optional`.
     pub(super) fn include(&mut self, path: &Path, place: (At, &str), optional: bool) -> Option<(Rc<Element>, Rc<File>)> {
         self.included += 1;
@@ -547,7 +546,7 @@ impl<'a> Expander<'a> {
 pub(super) const PACKAGE: &str =
     "a package around the file (a folder with a package.xml), or one that packages give: --package NAME=FOLDER";
 
-/// A value of a property or a parameter: a text may stand for a number or a truth value.
+/// A value of a property or a parameter: a text may spell a number or a truth value.
 pub(super) fn literal(value: &Value) -> Value {
     if let Value::Text(text) = value { read_literal(text) } else { value.clone() }
 }

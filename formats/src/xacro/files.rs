@@ -1,8 +1,8 @@
 //! Names of files and packages.
 //!
-//! `$(find NAME)` stands for a mark and the name of the package, and not for a folder: the expanded
-//! document is the same wherever the package is. The mark becomes a folder where a file is opened,
-//! and `package://NAME` in the expanded document.
+//! `$(find NAME)` becomes a mark and the name of the package, and not a folder: the expanded
+//! document does not depend on the package's location. The mark becomes a folder when a file is
+//! opened, and `package://NAME` in the expanded document.
 
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
@@ -11,7 +11,7 @@ use crate::Input;
 
 /// Around the name of a package.
 const MARKS: [char; 2] = ['\u{f0000}', '\u{f0001}'];
-/// Before a folder, in the place of a package.
+/// Before a folder that replaces a package.
 const FOLDER: char = '=';
 
 /// Folders above the one that names start from, in which packages are looked for.
@@ -62,7 +62,7 @@ fn split(text: &str) -> Option<(&str, &str, &str)> {
 }
 
 impl Packages {
-    /// The path of a file that a file in `beside` names; the package that is not found otherwise.
+    /// The path of a file that a file in `beside` names; otherwise the missing package.
     pub(super) fn path(&mut self, name: &str, beside: &Path, input: &Input<'_>) -> Result<PathBuf, String> {
         let name = name.strip_prefix("file://").unwrap_or(name);
         if let Some(("", inner, rest)) = split(name) {
@@ -79,8 +79,8 @@ impl Packages {
         Ok(tidy(&beside.join(name)))
     }
 
-    /// The folder of a package: as requested, as the sources know it, or one around `beside` with
-    /// a `package.xml`.
+    /// The folder of a package: as requested, as known to the sources, or around `beside` with a
+    /// `package.xml`.
     pub(super) fn folder(&mut self, name: &str, beside: &Path, input: &Input<'_>) -> Option<PathBuf> {
         if let Some(found) = self.found.get(name) {
             return found.clone();
@@ -146,7 +146,7 @@ enum Part {
     /// `?`: any character.
     One,
     Character(char),
-    /// `[…]`: one from these ranges, or where it begins with `!`, none of them.
+    /// `[…]`: one character from these ranges, or with `!`, one outside them.
     Class {
         is_not: bool,
         ranges: Vec<[char; 2]>,
@@ -174,7 +174,7 @@ fn parts(pattern: &str) -> Vec<Part> {
         parts.push(match c {
             '*' => Part::Any,
             '?' => Part::One,
-            // Behind one without its `]` there is none for the next.
+            // After a `[` without its `]`, later ones have none either.
             '[' if is_open => match class(&signs[at..]) {
                 Some((class, length)) => {
                     at += length;
@@ -191,7 +191,7 @@ fn parts(pattern: &str) -> Vec<Part> {
     parts
 }
 
-/// The class whose signs follow a `[`, and how many they are with the `]`.
+/// The class of the characters after a `[`, and their number including the `]`.
 fn class(signs: &[char]) -> Option<(Part, usize)> {
     let is_not = signs.first() == Some(&'!');
     let from = usize::from(is_not);
@@ -206,10 +206,10 @@ fn class(signs: &[char]) -> Option<(Part, usize)> {
     Some((Part::Class { is_not, ranges }, end + 1))
 }
 
-/// Whether a name of a file is of a pattern with `*`, `?` and `[…]`.
+/// Whether a file name matches a pattern with `*`, `?` and `[…]`.
 pub(super) fn fits(pattern: &str, name: &str) -> bool {
     let (parts, name): (Vec<Part>, Vec<char>) = (parts(pattern), name.chars().collect());
-    // Where the last `*` is, and what it was tried with.
+    // Position of the last `*`, and of the character where its match was tried.
     let (mut p, mut n, mut star) = (0, 0, None);
     while n < name.len() {
         match parts.get(p) {

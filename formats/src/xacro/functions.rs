@@ -87,7 +87,7 @@ const MODULES: [&str; 3] = ["math", "python", "xacro"];
 const GLOBAL: [&str; 15] =
     ["list", "dict", "map", "len", "str", "float", "int", "True", "False", "min", "max", "round", "sorted", "range", "python"];
 
-/// Names of the module `math` that are not read, and are taken all the same.
+/// Names of the module `math` that are not implemented, but reserved.
 const MATH_UNREAD: [&str; 23] = [
     "comb",
     "dist",
@@ -114,14 +114,14 @@ const MATH_UNREAD: [&str; 23] = [
     "math",
 ];
 
-/// Whether xacro has this name in every file, so that a property of this name takes its place:
-/// builtins, all of the module `math`, and some of its own.
+/// Whether the name is built in, so that a property of this name replaces it: builtins, all of the
+/// module `math`, and some of xacro's own.
 pub(super) fn is_of_every_file(name: &str) -> bool {
     let own = || name == "xacro" || XACRO[..3].contains(&name);
     GLOBAL.contains(&name) || MATH_UNREAD.contains(&name) || of_module("math", name).is_some() || own()
 }
 
-/// What a name stands for without a property of this name.
+/// The built-in meaning of a name, without a property of this name.
 pub(super) fn global(name: &str) -> Option<Value> {
     let module = MODULES.iter().find(|module| **module == name).map(|module| Value::Builtin(module));
     module.or_else(|| of_module("python", name)).or_else(|| of_module("math", name)).or_else(|| {
@@ -192,7 +192,7 @@ pub(super) fn call(function: &Value, arguments: Arguments, names: &mut dyn Names
         }
         Value::Builtin(name) => {
             let mut arguments = arguments;
-            // The location that a message prints is printed always.
+            // The location in a message is always printed.
             arguments.named.retain(|(key, _)| !(matches!(&**key, "print_location" | "file") && XACRO.contains(name)));
             if *name != "sorted" {
                 no_names(name, &arguments)?;
@@ -203,7 +203,7 @@ pub(super) fn call(function: &Value, arguments: Arguments, names: &mut dyn Names
     }
 }
 
-/// The bytes of a list of the items of a value, at most.
+/// Upper bound on the bytes of a list of a value's items.
 pub(super) fn weight(value: &Value) -> usize {
     match value {
         // Each character is a text of its own.
@@ -269,7 +269,7 @@ fn called(function: &str, values: &[Value]) -> String {
     format!("{function} of {}{more}", if shown.is_empty() { "nothing".to_owned() } else { shown.join(", ") })
 }
 
-/// As in Python, what has no value is an error.
+/// As in Python, undefined results are errors.
 fn result_of_math(name: &str, arguments: &[f64], value: f64) -> Result<Value> {
     if !value.is_finite() && arguments.iter().all(|x| x.is_finite()) {
         let shown: Vec<String> = arguments.iter().map(f64::to_string).collect();
@@ -335,7 +335,7 @@ fn sum(name: &str, values: &[Value], start: Value) -> Result<Value> {
     Ok(total)
 }
 
-/// The integer that a number without digits behind the point is.
+/// The integer equal to a number without a fractional part.
 fn integer_of(name: &str, value: f64) -> Result<Value> {
     const MOST: f64 = 1e36;
     if value.abs() < MOST { Ok(Value::Int(value as i128)) } else { wrong(format!("{name} of {value}"), "a number below 1e36") }
@@ -380,7 +380,7 @@ fn call_python(name: &'static str, arguments: &Arguments, names: &mut dyn Names)
             for item in items(list)? {
                 names.work().steps(1)?;
                 let arguments = Arguments { values: vec![item], named: Vec::new() };
-                // A function that calls others again would nest without an end.
+                // A function that calls others again would nest endlessly.
                 if matches!(function, Value::Builtin("map")) {
                     return wrong("map of map", "a function of one value");
                 }
@@ -470,7 +470,7 @@ fn sorted(all: &[Value], named: &[(Rc<str>, Value)], names: &mut dyn Names) -> R
         }
     }
     names.work().steps(all.iter().map(|one| 1 + one.size()).sum::<usize>() * 20)?;
-    // All orders, before: a comparison that fails has no place in a sort.
+    // All comparisons in advance: a comparison cannot fail inside a sort.
     for pair in all.windows(2) {
         pair[0].order(&pair[1])?;
     }

@@ -2,10 +2,10 @@
 //! expressions.
 //!
 //! A document is expanded into one without them. Each tag and each attribute of the expanded
-//! document has the file, line and column that it comes from, so that what the URDF reader finds is
+//! document has the file, line and column of its source, so that findings of the URDF reader are
 //! reported there. The crate `xacro-rs` (0.2.2) keeps no places, opens files by itself, has no
 //! bound on the work, no `<xacro:element>`, no `… if … else …`, and brings a command line and a
-//! logger: this is a reader of its own.
+//! logger: this is a separate reader.
 //!
 //! # What is read
 //!
@@ -21,10 +21,10 @@
 //!
 //! # Where it differs from the program `xacro`
 //!
-//! * All errors are reported, not the first one alone.
+//! * All errors are reported, not only the first.
 //! * `$(find name)` is `package://name` in the expanded document.
-//! * An expression in the `filename` of a tag that has no value is a warning: names of meshes play
-//!   no part in the dynamics.
+//! * An expression without a value in the `filename` of a tag is a warning: names of meshes do not
+//!   affect the dynamics.
 //! * Integers have 127 bits.
 //!
 //! # Bounds
@@ -56,8 +56,7 @@ use crate::Input;
 use crate::xml::lines::Lines;
 use crate::xml::number::is_expression;
 
-/// Whether a document has to be expanded: it has tags of xacro, or expressions in what the robot
-/// consists of.
+/// Whether a document needs expansion: it has tags of xacro, or expressions in parts of the robot.
 pub(crate) fn is_needed(document: &Document<'_>, file: &str) -> bool {
     let root = document.root_element();
     let has_expression = |node: Node<'_, '_>| node.attributes().any(|a| a.name() != "filename" && is_expression(a.value()));
@@ -68,7 +67,7 @@ pub(crate) fn is_needed(document: &Document<'_>, file: &str) -> bool {
         || root.children().filter(is_part).any(|part| part.descendants().any(has_expression))
 }
 
-/// The expanded document. `None`: something of the robot is missing, and errors say what.
+/// The expanded document. `None`: a part of the robot is missing, and errors name it.
 pub(crate) fn expand(document: &Document<'_>, lines: &Lines<'_>, input: &Input<'_>, log: &mut Diagnostics) -> Option<Expanded> {
     let mut nodes = 0;
     let root = source::tree(document, lines, None, &mut nodes, log)?;

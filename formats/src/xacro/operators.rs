@@ -1,4 +1,4 @@
-//! Operators, with the meaning that Python gives them.
+//! Operators, with their meaning in Python.
 
 use std::cmp::Ordering;
 
@@ -6,7 +6,7 @@ use super::syntax::{Binary, Compare, Unary};
 use super::value::{Result, Value, wrong};
 use super::work::Work;
 
-/// Longer texts and lists are refused, items.
+/// Maximum number of items of texts and lists.
 const MOST_ITEMS: usize = 1 << 20;
 
 pub(super) fn unary(sign: Unary, value: &Value) -> Result<Value> {

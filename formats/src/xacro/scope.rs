@@ -9,11 +9,11 @@ use articulated_core::suggest::Suggester;
 use super::source::Element;
 use super::value::Value;
 
-/// What a name of a scope stands for.
+/// The meaning of a name in a scope.
 #[derive(Clone)]
 pub(super) enum Symbol {
     Value(Value),
-    /// A text that is evaluated where it is used first.
+    /// A text that is evaluated at its first use.
     Lazy(Rc<str>, At),
     /// One that is being evaluated.
     Pending,
@@ -32,13 +32,13 @@ pub(super) struct Macro {
 #[derive(Default)]
 struct Scope {
     parent: Option<usize>,
-    /// Whether it is that of an included file with a name.
+    /// Whether it is the scope of an included file with a namespace.
     is_namespace: bool,
     symbols: BTreeMap<Rc<str>, Symbol>,
     macros: BTreeMap<Rc<str>, Rc<Macro>>,
     /// Scopes of included files by their names.
     namespaces: BTreeMap<Rc<str>, usize>,
-    /// Where macros are looked up next. Those of a namespace see no others.
+    /// The scope where macros are looked up next. Macros of a namespace do not see others.
     macro_parent: Option<usize>,
 }
 
@@ -69,7 +69,7 @@ impl Scopes {
         new
     }
 
-    /// Forgets all of a scope that was left.
+    /// Removes the contents of a scope that was left.
     pub(super) fn clear(&mut self, scope: usize) {
         if scope + 1 == self.all.len() {
             self.all.pop();
@@ -90,7 +90,7 @@ impl Scopes {
         (found, count)
     }
 
-    /// The symbol of a scope itself.
+    /// The symbol in a scope itself.
     pub(super) fn get(&self, scope: usize, name: &str) -> Option<&Symbol> {
         self.all.get(scope)?.symbols.get(name)
     }
@@ -123,8 +123,8 @@ impl Scopes {
         self.all[scope].macros.insert(name.into(), Rc::new(new));
     }
 
-    /// A macro by its name, with the names of namespaces before it, and the scope that its own is
-    /// inside.
+    /// A macro by its name, with the names of namespaces before it, and the parent scope of its
+    /// own.
     pub(super) fn find_macro(&self, scope: usize, name: &str) -> Option<(usize, Rc<Macro>)> {
         if let Some(found) = self.own_macro(scope, name) {
             return Some((scope, found));
@@ -159,5 +159,5 @@ impl Scopes {
     }
 }
 
-/// A suggestion comes from so many names.
+/// Maximum number of names for a suggestion.
 const MOST_NAMES: usize = 2000;

@@ -1,5 +1,5 @@
-//! The tags of a source file, and of the expanded document: a tree whose nodes know the place that
-//! they come from.
+//! The tags of a source file, and of the expanded document: a tree of nodes with the places of
+//! their sources.
 
 use std::rc::Rc;
 
@@ -10,7 +10,7 @@ use crate::xml::document;
 use crate::xml::lines::Lines;
 use crate::xml::markup;
 
-/// A source file, or all of them, may have so many tags and attributes.
+/// Maximum number of tags and attributes of a source file, or of all.
 const MOST_NODES: usize = 1 << 20;
 
 /// A tag with everything inside it. Names have the colon of the prepared text, see [`markup`].
@@ -66,7 +66,7 @@ pub(super) fn read(text: &str, file: Option<u16>, nodes: &mut usize, log: &mut D
     tree(&document, &lines, file, nodes, log)
 }
 
-/// The same of a document that is parsed.
+/// As [`read`], for a parsed document.
 pub(super) fn tree(
     document: &Document<'_>,
     lines: &Lines<'_>,
@@ -119,8 +119,8 @@ impl Reader<'_> {
     }
 }
 
-/// An expanded document, as text, and where it comes from: positions in order, each with the place
-/// of the source that the text from there on comes from.
+/// An expanded document as text, and its sources: positions in order, each with the source place of
+/// the text from there on.
 pub(crate) struct Expanded {
     pub(crate) text: String,
     pub(crate) origins: Vec<(usize, At)>,
@@ -175,7 +175,7 @@ fn escape(text: &str, out: &mut String) {
     }
 }
 
-/// Whether an expanded name may be that of a tag or an attribute.
+/// Whether an expanded name is valid for a tag or an attribute.
 pub(super) fn is_name(name: &str) -> bool {
     let name = markup::as_written(name);
     let mut characters = name.chars();

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::value::{Result, Value, wrong};
 
-/// An expression may be so long, bytes, and nested so deeply.
+/// Maximum length of an expression, bytes, and maximum depth.
 const MOST_BYTES: usize = 64 << 10;
 const MOST_DEPTH: usize = 48;
 
@@ -15,11 +15,11 @@ pub(super) enum Expression {
     List(Vec<Expression>),
     Tuple(Vec<Expression>),
     Table(Vec<(Expression, Expression)>),
-    /// A list of an expression for each value of others.
+    /// A list with an expression for each value of others.
     Each(Box<Each>),
     Unary(Unary, Box<Expression>),
     Binary(Binary, Box<[Expression; 2]>),
-    /// The first, and further ones with how each compares with the one before.
+    /// The first one, and further ones, each with its comparison to the previous one.
     Compare(Box<Expression>, Vec<(Compare, Expression)>),
     And(Vec<Expression>),
     Or(Vec<Expression>),
@@ -36,7 +36,7 @@ pub(super) enum Expression {
 #[derive(Clone, Debug)]
 pub(super) struct Each {
     pub(super) item: Expression,
-    /// In a dictionary, the value; the item is the key.
+    /// In a dictionary the value; the item is the key.
     pub(super) value: Option<Expression>,
     pub(super) names: Vec<Rc<str>>,
     pub(super) source: Expression,
@@ -191,8 +191,8 @@ fn number(word: &str) -> Result<Token> {
     }
 }
 
-/// A text in quotation marks, and how many bytes it takes. In a raw one, backslashes stand for
-/// themselves.
+/// A text in quotation marks, and its number of bytes. In a raw text, backslashes are plain
+/// characters.
 fn string(rest: &str, mark: char, is_raw: bool) -> Result<(String, usize)> {
     let mut out = String::new();
     let mut at = mark.len_utf8();
@@ -213,7 +213,7 @@ fn string(rest: &str, mark: char, is_raw: bool) -> Result<(String, usize)> {
     wrong("a text without its closing quotation mark", format!("the sign {mark}"))
 }
 
-/// What stands behind a backslash, as in Python, and how many bytes of `rest` it takes.
+/// The escape after a backslash, as in Python, and its number of bytes in `rest`.
 fn escape(rest: &str, out: &mut String) -> Result<usize> {
     let Some(first) = rest.chars().next() else { return Ok(0) };
     let plain = match first {
@@ -243,7 +243,7 @@ fn escape(rest: &str, out: &mut String) -> Result<usize> {
     Ok(first.len_utf8())
 }
 
-/// The character of a number of so many digits, behind `before` bytes.
+/// The character of a number of `count` digits, after `before` bytes.
 pub(super) fn coded(rest: &str, before: usize, (count, radix): (usize, u32), out: &mut String) -> Result<usize> {
     let digits = rest.get(before..before + count).filter(|digits| digits.bytes().all(|b| char::from(b).is_digit(radix)));
     match digits.and_then(|digits| char::from_u32(u32::from_str_radix(digits, radix).ok()?)) {
@@ -354,7 +354,7 @@ impl Parser {
             count += 1;
         }
         let mut result = self.comparison()?;
-        // Twice is a truth value, as once is.
+        // Two negations give a truth value, as one does.
         for _ in 0..if count > 2 { 2 - count % 2 } else { count } {
             result = Expression::Unary(Unary::Not, Box::new(result));
         }
@@ -615,10 +615,10 @@ impl Parser {
     }
 }
 
-/// An expression may have so many operators with two operands: each may be one level of the tree.
+/// Maximum number of binary operators of an expression: each may be one level of the tree.
 const MOST_TERMS: usize = 1000;
 
-/// Operators with two operands, those that bind least first.
+/// Binary operators, from the lowest precedence to the highest.
 const LEVELS: [&[(&str, Binary)]; 6] = [
     &[("|", Binary::BitOr)],
     &[("^", Binary::BitXor)],

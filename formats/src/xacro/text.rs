@@ -12,7 +12,7 @@ pub(super) enum Piece<'a> {
     Extension(&'a str),
 }
 
-/// The parts of a text. `$${` and `$$(` stand for `${` and `$(`.
+/// The parts of a text. `$${` and `$$(` mean `${` and `$(`.
 pub(super) fn pieces(text: &str) -> Result<Vec<Piece<'_>>> {
     let mut out = Vec::new();
     let mut rest = text;
@@ -51,9 +51,9 @@ pub(super) fn pieces(text: &str) -> Result<Vec<Piece<'_>>> {
 /// A parameter of a macro.
 #[derive(Debug, PartialEq)]
 pub(super) struct Parameter<'a> {
-    /// With `*` or `**` before it for a block.
+    /// With a prefix `*` or `**` for a block.
     pub(super) name: &'a str,
-    /// Whether the default is the property of the same name where the macro is called: `^`.
+    /// Whether the default is the property of the same name at the call of the macro: `^`.
     pub(super) forwards: bool,
     pub(super) default: Option<&'a str>,
 }
@@ -88,8 +88,7 @@ fn with_default(text: &str) -> Option<(Parameter<'_>, &str)> {
     Some((Parameter { name, forwards, default: Some(default).filter(|default| !default.is_empty()) }, after))
 }
 
-/// The length of a default: one expression, or words and texts in quotation marks without a blank
-/// between them.
+/// The length of a default: one expression, or words and quoted texts without a blank between them.
 fn default_length(text: &str) -> Option<usize> {
     let ends = |at: usize| text[at..].chars().next().is_none_or(char::is_whitespace);
     for (open, close) in [("${", '}'), ("$(", ')')] {

@@ -1,4 +1,4 @@
-//! Values of expressions, with the meaning that Python gives them.
+//! Values of expressions, with their meaning in Python.
 
 use std::cmp::Ordering;
 use std::ops::Deref;
@@ -11,7 +11,7 @@ use articulated_core::diagnostic::quote;
 pub(super) enum Value {
     None,
     Bool(bool),
-    /// Python's have no bound: these are 128 bits, and more is an error.
+    /// Python's integers are unbounded: these have 128 bits, and larger ones are an error.
     Int(i128),
     Float(f64),
     Text(Rc<str>),
@@ -27,7 +27,7 @@ pub(super) enum Value {
     Scope(usize),
 }
 
-/// The items of a list, and how deeply lists are nested in it.
+/// The items of a list, and the depth of nested lists in it.
 #[derive(Debug)]
 pub(super) struct Items<T> {
     all: Box<[T]>,
@@ -42,19 +42,19 @@ impl<T> Deref for Items<T> {
     }
 }
 
-/// Lists are nested so deeply, at most.
+/// Maximum depth of nested lists.
 const MOST_DEPTH: u8 = 32;
-/// Items of two lists that a comparison looks at, at most; beyond, they differ.
+/// Maximum number of compared items of two lists; beyond it they count as different.
 const MOST_COMPARED: usize = 1 << 16;
 
-/// What is wrong with an expression.
+/// Errors of an expression.
 #[derive(Clone, Debug)]
 pub(super) enum Fault {
     /// What was found, and what is expected.
     Wrong { found: String, expected: String },
     /// An error was reported already.
     Reported,
-    /// The work is more than any robot takes: found, and the bound.
+    /// The work exceeds that of any robot: found, and the bound.
     TooLarge { found: &'static str, most: usize },
 }
 
@@ -94,7 +94,7 @@ impl Value {
         }
     }
 
-    /// The number of items, for the work that they make.
+    /// The number of items, as a measure of their work.
     pub(super) fn size(&self) -> usize {
         match self {
             Self::List(items) | Self::Tuple(items) => items.len(),
@@ -177,7 +177,7 @@ impl Value {
     }
 
     fn write(&self, out: &mut String, is_literal: bool, depth: usize) {
-        // A value that holds itself many times over would be written without an end.
+        // A value that contains itself many times over would be written endlessly.
         if depth > 16 || out.len() > MOST_WRITTEN {
             return out.push_str("...");
         }
@@ -269,7 +269,7 @@ impl Value {
         }
     }
 
-    /// The order of two values; `None` where one is not a number. An error where they have none.
+    /// The order of two values; `None` if one is NaN. An error if they are not comparable.
     pub(super) fn order(&self, other: &Self) -> Result<Option<Ordering>> {
         if let (Some(a), Some(b)) = (self.integer(), other.integer()) {
             return Ok(Some(a.cmp(&b)));
@@ -290,7 +290,7 @@ impl Value {
     }
 }
 
-/// Items with how deeply they are nested: `depth` of each, and one more.
+/// Items with their depth: `depth` of each, plus one.
 fn nested<T>(items: Vec<T>, depth: impl Fn(&T) -> u8) -> Result<Rc<Items<T>>> {
     let depth = items.iter().map(depth).max().unwrap_or_default() + 1;
     if depth > MOST_DEPTH {
@@ -302,7 +302,7 @@ fn nested<T>(items: Vec<T>, depth: impl Fn(&T) -> u8) -> Result<Rc<Items<T>>> {
 /// Longer texts of lists and dictionaries are cut off, bytes.
 const MOST_WRITTEN: usize = 1 << 20;
 
-/// A number as Python writes it: the fewest digits that stand for it, in scientific notation below
+/// A number as Python writes it: the fewest digits that identify it, in scientific notation below
 /// 1e-4 and from 1e16 on.
 fn float(value: f64) -> String {
     if !value.is_finite() {
@@ -351,8 +351,8 @@ pub(super) fn read_truth(text: &str) -> Option<bool> {
     }
 }
 
-/// The value that a text of a property or a parameter stands for: a number or a truth value, or
-/// what a single pair of `'` encloses, or the text.
+/// The value of a text of a property or a parameter: a number, a truth value, the text inside a
+/// single pair of `'`, or the text itself.
 pub(super) fn read_literal(text: &str) -> Value {
     if text.len() >= 2 && text.starts_with('\'') && text.ends_with('\'') {
         return Value::text(&text[1..text.len() - 1]);

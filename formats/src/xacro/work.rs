@@ -1,8 +1,8 @@
-//! What expressions refer to, and the work that they may take.
+//! References of expressions, and the bounds of their work.
 
 use super::value::{Fault, Result, Value, wrong};
 
-/// What expressions may take altogether: steps of evaluation, and bytes of texts and lists.
+/// Bounds of all expressions together: steps of evaluation, and bytes of texts and lists.
 const MOST_STEPS: usize = 4 << 20;
 const MOST_BYTES: usize = 64 << 20;
 /// Evaluations inside evaluations: levels of expressions, and of properties that refer to others.
@@ -42,7 +42,7 @@ impl Work {
     }
 }
 
-/// What an expression refers to.
+/// References of an expression.
 pub(super) trait Names {
     /// A property.
     fn property(&mut self, name: &str) -> Result<Option<Value>>;
@@ -56,7 +56,7 @@ pub(super) trait Names {
     /// The value of `$(arg name)`.
     fn argument(&mut self, name: &str) -> Result<Value>;
 
-    /// The name of a file, seen from the file that is expanded.
+    /// The name of a file, relative to the expanded file.
     fn file_name(&self, name: &str) -> String;
 
     /// The content of a YAML file.

@@ -9,11 +9,11 @@ use std::collections::btree_map::Entry;
 use super::syntax::coded;
 use super::value::{Result, Value, wrong};
 
-/// A file may have so many values, nested so deeply.
+/// Maximum number of values of a file, and their maximum depth.
 const MOST_VALUES: usize = 200_000;
 const MOST_DEPTH: usize = 24;
 
-/// What is wrong with a document, and its line.
+/// The error of a document, and its line.
 pub(super) struct Fault {
     pub(super) line: u32,
     pub(super) fault: super::value::Fault,
@@ -22,8 +22,8 @@ pub(super) struct Fault {
 /// A number with a unit: its text, and the factor to SI units.
 pub(super) type Unit<'a> = &'a mut dyn FnMut(&str) -> Result<f64>;
 
-/// The value of a document, and the lines of keys that a mapping has already, with the keys.
-/// `number` evaluates the expression of a number with a unit.
+/// The value of a document, and the lines of duplicate keys of mappings, with the keys. `number`
+/// evaluates the expression of a number with a unit.
 pub(super) fn read(text: &str, number: Unit<'_>) -> std::result::Result<(Value, Vec<(u32, String)>), Fault> {
     let mut reader = Reader { lines: lines(text), at: 0, values: 0, anchors: BTreeMap::new(), number, line: 0, again: Vec::new() };
     let value = reader.document();
@@ -49,7 +49,7 @@ fn lines(text: &str) -> Vec<Line<'_>> {
     out
 }
 
-/// A line up to a `#` that stands first or after a blank, outside quotation marks.
+/// A line up to a `#` that is at its start or after a blank, outside quotation marks.
 fn without_comment(line: &str) -> &str {
     let mut quote = None;
     let mut before = ' ';
@@ -210,7 +210,7 @@ impl<'a> Reader<'a, '_> {
         }
     }
 
-    /// A scalar, or a flow value that may go on in the lines below.
+    /// A scalar, or a flow value that may continue on the lines below.
     fn scalar_or_flow(&mut self, text: &'a str, depth: usize) -> Result<Value> {
         if text.starts_with(['|', '>']) {
             return wrong("a block scalar", "a text in quotation marks");
@@ -349,7 +349,7 @@ fn split_key(text: &str) -> Option<(&str, &str)> {
     (rest.is_empty() || rest.starts_with([' ', '\t'])).then(|| (text[..key].trim_end(), rest.trim()))
 }
 
-/// The length of a text in quotation marks, with them.
+/// The length of a quoted text, with its quotation marks.
 fn quoted_length(text: &str, mark: char) -> Option<usize> {
     let bytes = text.as_bytes();
     let mut at = 1;
@@ -391,7 +391,7 @@ fn unquoted(text: &str, mark: char) -> Result<String> {
     Ok(out)
 }
 
-/// What stands behind a backslash, and its character.
+/// The character after a backslash, and its meaning.
 const ESCAPES: [(char, char); 18] = [
     ('0', '\0'),
     ('a', '\u{7}'),
@@ -413,7 +413,7 @@ const ESCAPES: [(char, char); 18] = [
     ('P', '\u{2029}'),
 ];
 
-/// The brackets and the quotation mark of a flow value that are open.
+/// The open brackets and the open quotation mark of a flow value.
 #[derive(Default)]
 struct Open {
     depth: usize,
@@ -438,7 +438,7 @@ impl Open {
     }
 }
 
-/// A plain scalar, with the type that YAML 1.1 gives it.
+/// A plain scalar, with its type in YAML 1.1.
 fn plain(text: &str) -> Value {
     match text {
         "" | "~" | "null" | "Null" | "NULL" => return Value::None,

@@ -7,8 +7,8 @@ use super::lines::{Lines, line_of};
 use super::markup;
 use crate::files::MOST_BYTES;
 
-/// The text of the file, prepared for a strict XML reader; see [`markup::prepare`]. Lines are where
-/// they were.
+/// The text of the file, prepared for a strict XML reader; see [`markup::prepare`]. Line numbers
+/// are unchanged.
 pub(crate) fn text(bytes: &[u8], log: &mut Diagnostics) -> Option<String> {
     if bytes.len() as u64 > MOST_BYTES {
         let found = format!("{} bytes", bytes.len());
@@ -48,7 +48,7 @@ pub(crate) fn parse<'a>(text: &'a str, lines: &Lines<'_>, log: &mut Diagnostics)
         Err(fault) => fault,
     };
     let place = Place { at: line_of_fault(&fault, lines), field: "XML", ..Place::DOCUMENT };
-    // The column is that of the prepared text: left out.
+    // The column is that of the prepared text, so it is left out.
     let found = fault.to_string().replace(&format!(" at {}", fault.pos()), "");
     log.error(place, Code::Xml, markup::as_written(&found), "a well-formed XML document");
     None

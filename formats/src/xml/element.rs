@@ -1,4 +1,4 @@
-//! A tag of the document with its line and what it belongs to.
+//! A tag of the document with its line and its subject.
 
 use articulated_core::diagnostic::{At, Code, Diagnostics, Place, Subject};
 use roxmltree::{Attribute, Node};
@@ -16,8 +16,8 @@ pub(crate) struct Tag<'a> {
     subject: &'a Subject,
 }
 
-/// The option that takes the first of tags that should be there once, as the command, scenes and
-/// macro, and build scripts spell it.
+/// The option that takes the first one of repeated unique tags, as the command, scenes and macro,
+/// and build scripts spell it.
 pub(crate) const FIRST_OF_DUPLICATES: &str = "`--first-of-duplicates` (key `first_of_duplicates`, method `Build::first_of_duplicates`)";
 
 impl<'a> Tag<'a> {
@@ -66,7 +66,7 @@ impl<'a> Tag<'a> {
         node.children().filter(Node::is_element).map(move |node| Tag { node, lines, subject })
     }
 
-    /// The first text that stands in it, and its line.
+    /// The first text in it, and its line.
     pub(crate) fn text(&self) -> Option<(&'a str, At)> {
         let text = |node: Node<'a, 'a>| Some((node.text()?.trim(), self.lines.at(node.range().start)));
         self.node.children().filter(Node::is_text).filter_map(text).find(|(text, _)| !text.is_empty())
@@ -88,12 +88,12 @@ impl<'a> Tag<'a> {
         node.attributes().map(move |a| (a.name(), a.value(), lines.at(a.range().start)))
     }
 
-    /// Where the tag ends in the text.
+    /// End of the tag in the text.
     pub(crate) fn end(&self) -> usize {
         self.node.range().end
     }
 
-    /// Where the tag begins in the text.
+    /// Start of the tag in the text.
     pub(crate) fn start(&self) -> usize {
         self.node.range().start
     }
@@ -111,8 +111,8 @@ impl<'a> Tag<'a> {
         Place { at: self.at(), subject: self.subject, field }
     }
 
-    /// The one tag of this name, if there is one. A second one is an error, or a warning where it
-    /// says the same.
+    /// The only tag of this name, if there is one. A second one is an error, or a warning if it has
+    /// the same content.
     pub(crate) fn only(&self, name: &str, log: &mut Diagnostics) -> Option<Tag<'a>> {
         let mut all = self.children().filter(|tag| tag.is(name));
         let first = all.next()?;
@@ -121,8 +121,8 @@ impl<'a> Tag<'a> {
         Some(first)
     }
 
-    /// Reports this tag, a second one of which `first` is the one that counts: an error, or a
-    /// warning where it says the same. `of`: what follows the tag's name in the message.
+    /// Reports this tag, which repeats `first`; the first one counts. An error, or a warning if it
+    /// has the same content. `of`: the text after the tag's name in the message.
     pub(crate) fn report_again(&self, first: &Tag<'a>, name: &str, (of, expected): (&str, &str), log: &mut Diagnostics) {
         let (place, kind, line) = (self.place(name), Code::DuplicateTag, first.at().line().unwrap_or_default());
         if self.says_the_same(first) {
@@ -152,7 +152,7 @@ impl<'a> Tag<'a> {
             && own.iter().zip(&others).all(|(a, b)| a.says_the_same(b))
     }
 
-    /// The one tag of this name, which has to be there.
+    /// The only tag of this name, which is required.
     pub(crate) fn required(&self, name: &str, log: &mut Diagnostics) -> Option<Tag<'a>> {
         let tag = self.only(name, log);
         if tag.is_none() {
@@ -162,7 +162,7 @@ impl<'a> Tag<'a> {
         tag
     }
 
-    /// An attribute that has to be there.
+    /// A required attribute.
     pub(crate) fn required_attribute(&self, name: &str, log: &mut Diagnostics) -> Option<(&'a str, At)> {
         let value = self.attribute(name);
         if value.is_none() {
@@ -172,7 +172,7 @@ impl<'a> Tag<'a> {
         value
     }
 
-    /// An attribute that names something: there, and not empty.
+    /// A required, non-empty attribute with a name.
     pub(crate) fn required_name(&self, attribute: &str, log: &mut Diagnostics) -> Option<String> {
         let (name, at) = self.required_attribute(attribute, log)?;
         if name.trim().is_empty() {
@@ -189,7 +189,7 @@ impl<'a> Tag<'a> {
         Some(name.to_owned())
     }
 
-    /// The tag's name for messages: as much of it as there is, and as is sensible.
+    /// The tag's name for messages, shortened if it is too long.
     pub(crate) fn name_for_messages(&self) -> String {
         let name = self.attribute("name").map_or("", |(name, _)| name);
         name.chars().take(MOST_NAME / 4).collect()

@@ -2,13 +2,13 @@
 
 use articulated_core::diagnostic::At;
 
-/// Where the lines of a text begin.
+/// Starts of the lines of a text.
 pub(crate) struct Lines<'a> {
     text: &'a str,
     starts: Vec<usize>,
     /// Whether expressions of xacro in this text have errors of their own.
     pub(super) expressions_reported: bool,
-    /// Whether the first counts of tags that should be there once.
+    /// Whether the first one of repeated unique tags counts.
     pub(super) first_of_duplicates: bool,
     /// Of an expanded text: positions, in order, and the places that the text from there on comes
     /// from.
@@ -21,14 +21,14 @@ impl<'a> Lines<'a> {
         Self { text, starts, expressions_reported: false, first_of_duplicates: false, origins: Vec::new() }
     }
 
-    /// Of a text that was expanded from others: places are those of the source.
-    /// `expressions_reported`: expressions that are left over have errors of their own, and are no
-    /// second error as numbers.
+    /// For a text that was expanded from others: places are those of the source.
+    /// `expressions_reported`: remaining expressions have errors of their own, and are not reported
+    /// again as numbers.
     pub(crate) fn expanded(text: &'a str, origins: Vec<(usize, At)>, expressions_reported: bool) -> Self {
         Self { text, starts: vec![0], expressions_reported, first_of_duplicates: false, origins }
     }
 
-    /// Whether the first counts of tags that should be there once.
+    /// Sets whether the first one of repeated unique tags counts.
     pub(crate) fn with_first_of_duplicates(self, first_of_duplicates: bool) -> Self {
         Self { first_of_duplicates, ..self }
     }

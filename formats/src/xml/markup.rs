@@ -1,8 +1,8 @@
 //! A look at the bare markup, before the XML reader.
 //!
-//! It makes up for where a strict XML reader refuses what the common URDF readers accept (blank
-//! lines before the declaration, prefixes that nobody declared, `--` in a comment), and it bounds
-//! what an XML reader allocates.
+//! It accepts what a strict XML reader refuses and the common URDF readers accept (blank lines
+//! before the declaration, undeclared prefixes, `--` in a comment), and it bounds what an XML
+//! reader allocates.
 
 use articulated_core::diagnostic::{Code, quote};
 const MOST_DEPTH: usize = 256;
@@ -10,7 +10,7 @@ const MOST_ATTRIBUTES: usize = 256;
 const MOST_TAGS: usize = 4 << 20;
 const MOST_EQUAL_SIGNS: usize = 8 << 20;
 
-/// Stands for the colon of a prefix: as in the common readers, prefixes are part of the name.
+/// Replaces the colon of a prefix: as in the common readers, prefixes are part of the name.
 const COLON: char = '\u{b7}';
 
 /// A name of the prepared text as the file writes it.
@@ -23,7 +23,7 @@ pub(crate) fn is_name(prepared: &str, name: &str) -> bool {
     prepared == name || name.contains(':') && as_written(prepared) == name
 }
 
-/// ` (did you mean "upper"?)`, or nothing.
+/// ` (did you mean "upper"?)`, or empty.
 pub(crate) fn hint(meant: Option<&str>) -> String {
     meant.map(|name| format!(" (did you mean {}?)", quote(name))).unwrap_or_default()
 }
@@ -46,7 +46,7 @@ pub(crate) fn root(bytes: &[u8]) -> Option<&[u8]> {
     }
 }
 
-/// Why a text is refused at first sight.
+/// Reason why a text is refused before parsing.
 pub(crate) struct Fault {
     pub(crate) position: usize,
     pub(crate) kind: Code,
@@ -54,8 +54,8 @@ pub(crate) struct Fault {
     pub(crate) expected: String,
 }
 
-/// `text` without comments, declarations and prefixes, line by line as before. What is not
-/// well-formed passes as it is: the XML reader says it better.
+/// `text` without comments, declarations and prefixes, with the same lines. Malformed content stays
+/// unchanged: the XML reader reports it better.
 pub(crate) fn prepare(text: &str) -> Result<String, Fault> {
     let mut look = Look { text, at: 0, out: String::with_capacity(text.len()), depth: 0, tags: 0 };
     look.bound('=', MOST_EQUAL_SIGNS)?;
@@ -68,7 +68,7 @@ pub(crate) fn prepare(text: &str) -> Result<String, Fault> {
 
 struct Look<'a> {
     text: &'a str,
-    /// All before is done; always between two characters.
+    /// All text before it is done; always between two characters.
     at: usize,
     out: String,
     depth: usize,
@@ -140,7 +140,8 @@ impl<'a> Look<'a> {
         self.at += length;
     }
 
-    /// Copies blanks in the place of characters, and line ends; all, if there is no end.
+    /// Replaces characters by blanks, and keeps line ends; up to the end of the text, if there is
+    /// no `end`.
     fn drop_through(&mut self, after: usize, end: &str) {
         let rest = self.rest();
         match rest[after..].find(end) {
@@ -153,7 +154,7 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// Copies names, with another sign for the colon.
+    /// Copies names, and replaces the colon.
     fn names(&mut self, length: usize) {
         for piece in self.rest()[..length].split_inclusive(':') {
             match piece.strip_suffix(':') {

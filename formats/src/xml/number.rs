@@ -1,4 +1,4 @@
-//! Decimal numbers, and nothing else.
+//! Decimal numbers only.
 //!
 //! `[+-] digits [. digits] [e [+-] digits]`, with digits before or after the point. No `nan`,
 //! `inf`, hexadecimal digits, decimal commas or letters behind; the value is the double nearest to
@@ -12,7 +12,7 @@ pub(crate) fn is_expression(value: &str) -> bool {
     value.contains("${") || value.contains("$(")
 }
 
-/// Why a word is not a number that can be used.
+/// Reason why a word is not a usable number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fault {
     NotANumber,
@@ -22,7 +22,7 @@ pub(crate) enum Fault {
 
 /// The number that a word without blanks spells.
 pub(crate) fn parse(word: &str) -> Result<f64, Fault> {
-    // With these signs alone, Rust's own grammar is the one above.
+    // With these characters only, Rust's grammar is the one above.
     let plain = word.bytes().all(|b| matches!(b, b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E'));
     if !plain {
         return Err(if names_infinity(word) { Fault::NotFinite } else { Fault::NotANumber });
@@ -44,18 +44,18 @@ fn spells_zero(word: &str) -> bool {
     !mantissa.bytes().any(|b| (b'1'..=b'9').contains(&b))
 }
 
-/// The number in an attribute, if the attribute is there and right.
+/// The number in an attribute, if it is there and valid.
 pub(crate) fn attribute(tag: &Tag<'_>, name: &str, log: &mut Diagnostics) -> Option<f64> {
     attribute_list::<1>(tag, name, log).map(|[number]| number)
 }
 
-/// The `N` numbers in an attribute, if it is there and right.
+/// The `N` numbers in an attribute, if it is there and valid.
 pub(crate) fn attribute_list<const N: usize>(tag: &Tag<'_>, name: &str, log: &mut Diagnostics) -> Option<[f64; N]> {
     let (value, at) = tag.attribute(name)?;
     checked(value, at, tag, name, log)
 }
 
-/// The number in an attribute that has to be there.
+/// The number in a required attribute.
 pub(crate) fn required(tag: &Tag<'_>, name: &str, log: &mut Diagnostics) -> Option<f64> {
     let (value, at) = tag.required_attribute(name, log)?;
     checked(value, at, tag, name, log).map(|[number]| number)
@@ -81,13 +81,13 @@ fn checked<const N: usize>(value: &str, at: At, tag: &Tag<'_>, name: &str, log: 
     None
 }
 
-/// What is wrong with a list of numbers: its first bad word, or else how many there are.
+/// The error of a list of numbers: its first invalid word, or else its length.
 enum Wrong<'a> {
     Word(&'a str, Fault),
     Count(usize),
 }
 
-/// The `N` numbers in an attribute, if it is there and right; no error is reported.
+/// The `N` numbers in an attribute, if it is there and valid; no error is reported.
 pub(crate) fn silently<const N: usize>(tag: &Tag<'_>, name: &str) -> Option<[f64; N]> {
     list(tag.attribute(name)?.0).ok()
 }

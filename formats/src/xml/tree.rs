@@ -34,14 +34,15 @@ pub(crate) struct File {
     pub(crate) name: String,
     /// Whether another file includes it.
     pub(crate) included: bool,
-    /// Whether the first counts of tags that should be there once.
+    /// Whether the first one of repeated unique tags counts.
     pub(crate) first_of_duplicates: bool,
-    /// Whether its tags are made from a file of another format, of which the warnings are told.
+    /// Whether its tags are made from a file of another format, whose warnings are already
+    /// reported.
     pub(crate) converted: bool,
 }
 
 impl Element {
-    /// Of a tag of a file, without its children.
+    /// From a tag of a file, without its children.
     pub(crate) fn of(tag: &Tag<'_>, file: &Rc<File>) -> Self {
         let attributes = tag
             .attributes_with_lines()
@@ -87,7 +88,7 @@ impl Element {
         Diagnostic::error(&self.file.name, Place { at, subject, field }, code, found, expected)
     }
 
-    /// Reports an error at one of the attributes, or at the tag where it has none of this name.
+    /// Reports an error at an attribute, or at the tag if it has no such attribute.
     pub(crate) fn error(
         &self,
         (subject, field): (&Subject, &str),
@@ -118,13 +119,13 @@ impl Element {
         self.attribute(field).map_or(self.at, |attribute| attribute.at)
     }
 
-    /// Reports what of it is not used: an attribute, or the tag.
+    /// Reports unused content: an attribute, or the tag.
     pub(crate) fn unused(&self, subject: &Subject, attribute: Option<&Attribute>, why: &str, log: &mut Diagnostics) {
         let what = attribute.map_or_else(|| self.name.clone(), |attribute| format!("{} {}", self.name, attribute.name));
         self.unused_part(subject, (attribute, what), why, log);
     }
 
-    /// As [`Self::unused`], under a name of its own.
+    /// As [`Self::unused`], under another name.
     pub(crate) fn unused_part(&self, subject: &Subject, (attribute, what): (Option<&Attribute>, String), why: &str, log: &mut Diagnostics) {
         if self.file.converted {
             return;

@@ -22,7 +22,7 @@ const IN_ROOT: &[&str] = &["compiler", "option", "default", "asset", "worldbody"
 const IN_DEFAULT: &[&str] = &["default", "joint", "geom", "site", "mesh", "motor", "position", "tendon", "equality"];
 const IN_ACTUATOR: &[&str] = &["motor", "position", "velocity", "damper", "general", "intvelocity", "muscle", "pid"];
 const IN_EQUALITY: &[&str] = &["joint", "tendon", "connect", "weld"];
-/// Attributes of tags that are beside the bodies.
+/// Attributes of tags outside the bodies.
 const BESIDE: &[&str] = &[
     "name",
     "class",
@@ -215,7 +215,7 @@ impl Writer<'_> {
     }
 }
 
-/// The document that bytes stand for.
+/// The document for these bytes.
 pub(crate) fn document(bytes: &[u8]) -> String {
     let mut writer = Writer { bytes, out: "<mujoco>".to_owned() };
     while !writer.bytes.is_empty() {

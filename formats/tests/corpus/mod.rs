@@ -1,4 +1,4 @@
-//! A sound robot, and ways to spoil it.
+//! A valid robot, and ways to make it invalid.
 #![allow(dead_code, reason = "each test file uses a part")]
 
 use std::path::Path;
@@ -47,8 +47,8 @@ pub(crate) fn only_error(text: &str) -> Diagnostic {
     problems.errors[0].clone()
 }
 
-/// Holds messages to those in a file of this folder, word by word; `UPDATE_GOLDEN=1` writes it
-/// anew.
+/// Compares messages with those in a file of this folder, word by word; `UPDATE_GOLDEN=1` renews
+/// it.
 pub(crate) fn as_kept(file: &str, messages: &[String]) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(file);
     if env::var_os("UPDATE_GOLDEN").is_some() {

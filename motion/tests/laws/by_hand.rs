@@ -100,7 +100,7 @@ fn a_table_out_of_order_is_refused() {
     }
 }
 
-/// At a row the next kink is the next row, and behind the last there is none.
+/// At a row the next kink is the next row, and after the last there is none.
 #[test]
 fn every_row_of_a_table_is_a_kink() {
     let session = session("", CART);
@@ -142,7 +142,7 @@ fn a_sampled_controller_holds_its_torques() {
     assert!(r.tau[3] < 12.0 && r.tau[3] == r.tau[4] && r.tau[5] < r.tau[4], "{:?}", r.tau);
 }
 
-/// The law of the scene's control by hand, sampled as that is; its events and its end are the
+/// The law of the scene's control by hand, with the same sampling; its events and its end are the
 /// scene's.
 #[test]
 fn a_control_of_ones_own_moves_the_scene() {
@@ -155,13 +155,13 @@ fn a_control_of_ones_own_moves_the_scene() {
     let expected = moved(&of_scene);
     assert_eq!((&own.recording, super::words(&own)), (&expected.recording, super::words(&expected)));
     assert_eq!(super::words(&own)[0], "slide reaches its upper limit");
-    // It stands in place of the scene's.
+    // It replaces the scene's control.
     let instead =
         of_scene.run_with(&of_scene.model, &of_scene.frame_names(), &mut |_: f64, _: &[f64], _: &[f64], _: &mut [f64]| {}).unwrap();
     assert!(instead.recording.tau.iter().all(|tau| *tau == 0.0));
 }
 
-/// Drive and detectors are for a simulation of one's own too, which may look for more.
+/// Drive and detectors also serve a user's own simulation, which may have more events.
 #[test]
 fn the_parts_put_together_move_as_the_whole() {
     let session = session(include_str!("arm.toml").replace("restitution", "stop = true\nrestitution").as_str(), ARM);

@@ -48,7 +48,7 @@ fn a_body_at_rest_sinks_in_by_its_weight_over_the_stiffness_of_what_it_stands_on
         (shape("<cylinder radius='0.1' length='0.2'/>"), "xyz = [0, 0, 0.15]", 0.1 - sunk(8.0)),
         (shape("<capsule radius='0.05' length='0.3'/>"), "xyz = [0, 0, 0.1], rpy = [0, 1.5707963267948966, 0]", 0.05 - sunk(2.0)),
         (shape("<cylinder radius='0.1' length='0.3'/>"), "xyz = [0, 0, 0.15], rpy = [0, 1.5707963267948966, 0]", 0.1 - sunk(2.0)),
-        // A box that stands on its side, and is set off in the link.
+        // A box that rests on its side, with an offset in the link.
         (
             "<collision><origin xyz='0 0 -0.2' rpy='0 1.5707963267948966 0'/><geometry><box size='0.4 0.3 0.2'/></geometry></collision>"
                 .to_owned(),
@@ -116,8 +116,8 @@ fn a_generated_robot_touches_the_ground_as_the_generic_one_does() {
     assert!(scale > 100.0 && apart(&of_model, &taken) < 1e-11 * scale, "{:e} of {scale:e}", apart(&of_model, &taken));
 }
 
-/// A point that stands on the plane is below it, by no more than its weight presses it in; then it
-/// is not told.
+/// A point that rests on the plane is below it by no more than the depth due to its weight; then
+/// there is no warning.
 #[test]
 fn a_point_that_rests_in_the_plane_is_not_odd() {
     let plate = body("<collision><geometry><box size='0.4 0.3 0.2'/></geometry></collision>");
@@ -129,8 +129,8 @@ fn a_point_that_rests_in_the_plane_is_not_odd() {
     assert_eq!((sunk(0.1 - 0.25 * one), sunk(0.1 - 0.99 * one), sunk(0.1 - 1.01 * one)), (0, 0, 4));
 }
 
-/// A leg whose foot alone has contact, under a trunk that nothing but springs would hold: a trunk
-/// of 0.4 m, a foot of 0.2 m, a shin of 0.5 m.
+/// A leg whose foot alone has contact, under a trunk held only by springs: a trunk of 0.4 m, a foot
+/// of 0.2 m, a shin of 0.5 m.
 fn hopper(trunk: &str) -> String {
     format!(
         "<robot name='r'><link name='trunk'><inertial><mass value='5'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/></inertial>
@@ -181,7 +181,7 @@ fn a_link_that_falls_through_is_named_with_its_depth_and_time() {
     }
 }
 
-/// With contact of all geometry nothing goes through, and nothing is told.
+/// With contact of all geometry no link penetrates a plane, and there is no warning.
 #[test]
 fn with_contact_of_its_geometry_nothing_falls_through() {
     let scene = fall("xyz = [0, 0, 0.545], rpy = [0.2, 0, 0]", CONTACT).replace("end = 4.0", "end = 1.5");
@@ -199,12 +199,12 @@ fn told_at(session: &Session) -> Option<String> {
 #[test]
 fn a_start_below_the_plane_is_told() {
     let at = |z: f64, effects: &str| told_at(&session(&fall(&format!("xyz = [0, 0, {z}]"), effects), &hopper(BOX)));
-    // The foot stands on the plane; its shin ends 0.01 m above the foot's sole.
+    // The foot rests on the plane; its shin ends 0.01 m above the foot's sole.
     assert_eq!(at(0.54, FEET), None);
     assert_eq!(at(0.539, FEET), None);
-    // Without contact nothing is a plane.
+    // Without contact there are no planes.
     assert_eq!(at(-3.0, ""), None);
-    // Deep below, contacts explain what the foot does and no more of its body than that.
+    // Deep below, contacts explain the depth of the foot, but not of other parts of its body.
     let told = at(-1.0, FEET).unwrap();
     assert!(told.starts_with("s.toml: effects.contact: found 1 link below a contact plane at the start where no contact holds it: \"trunk\" (1.1 m deep), expected"), "{told}");
     let told = at(-1.0, &FEET.replace("effects.contact.foot", "effects.contact.trunk").replace("-0.04", "-0.1")).unwrap();
@@ -214,7 +214,7 @@ fn a_start_below_the_plane_is_told() {
     );
 }
 
-/// What the base holds does not fall.
+/// Links fixed to the base do not fall.
 #[test]
 fn what_does_not_move_is_not_told() {
     // The trunk is the base, which reaches 0.1 m below the world frame; the plane is above all of

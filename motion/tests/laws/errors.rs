@@ -1,4 +1,4 @@
-//! What keeps a scene from moving is told, all of it at once.
+//! All errors that keep a scene from moving are reported at once.
 
 use articulated::simulate::{Settings, StateError, TableError};
 use articulated::{Dynamics, FunctionError};
@@ -41,8 +41,8 @@ fn frames_that_events_need_and_the_robot_has_not_are_told_together() {
     assert!(session.run(&robot, &["upper", "hand", "fore"]).is_ok());
 }
 
-/// A robot of the same joints that was made from the URDF alone, or under other gravity; who wants
-/// it so takes it in parts.
+/// A robot of the same joints, made from the URDF alone or with other gravity. It runs with
+/// `Session::motion`.
 #[test]
 fn a_robot_without_the_effects_or_the_gravity_of_the_scene_is_another() {
     let pull = "gravity = [0, 0, -1.62]\n";
@@ -67,8 +67,8 @@ fn a_robot_without_the_effects_or_the_gravity_of_the_scene_is_another() {
     }
 }
 
-/// More than any level of accuracy leaves of a torque, a thousandth, is another mass; less than
-/// that is not told.
+/// A torque difference above a thousandth, more than the error of any level of accuracy, means
+/// another mass; a smaller one is not reported.
 #[test]
 fn a_robot_of_another_mass_is_another() {
     let session = session("simulation = { end = 0.01 }", CART);
@@ -81,7 +81,8 @@ fn a_robot_of_another_mass_is_another() {
     assert!(["2.02", "1.98"].into_iter().all(|mass| matches!(fault(mass), Some(Fault::Dynamics { .. }))));
 }
 
-/// A gain may be one for all that a joint has; a torque is not the same about every axis by chance.
+/// One gain may apply to all degrees of freedom of a joint; a torque rarely has the same number
+/// about every axis.
 #[test]
 fn torques_of_a_ball_are_three() {
     let arm = session("simulation = { end = 0.1 }", ARM);
@@ -125,7 +126,7 @@ fn functions_that_the_robot_has_not_are_told_together() {
     assert_eq!(told[1], "s.toml: this robot was generated without difference: add it to `functions`");
 }
 
-/// The scene's control may be another than that which the motion is begun with.
+/// The control may differ from the one that the motion starts with.
 #[test]
 fn a_controller_that_the_robot_has_not_the_functions_for_is_refused() {
     let session = session("simulation = { end = 0.1 }", articulated_models::robot("panda_like").unwrap().urdf);
@@ -151,7 +152,7 @@ fn another_robot_than_the_scenes_is_refused() {
 fn all_that_is_wrong_with_a_scene_is_told_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let scene = "initial = { q = { sholder = 1 }, v = { elbow = [1, 2] } }\ncontrol = { kind = 'table', file = 'no.csv' }";
-    // Nobody has held the scene against its robot yet.
+    // The scene was not checked against its robot yet.
     let Session { description, model, .. } = session("", ARM);
     let unheld = Session::new(Scene::read("s.toml", scene).unwrap(), description, model.clone(), Vec::new());
     let told = lines(&unheld.in_folder(folder.path()).run::<_, &str>(&model, &[]).unwrap_err());
@@ -180,7 +181,7 @@ fn tables_that_are_no_text_are_not_read() {
     assert!(begun("hole.csv").starts_with("hole.csv:1: found more than 1048576 bytes without an end of line, expected "));
 }
 
-/// Nothing writes to the pipe: a program that opens it waits forever.
+/// The pipe has no writer: a program that opens it waits forever.
 #[cfg(unix)]
 #[test]
 fn tables_are_regular_files() {
@@ -262,7 +263,7 @@ fn a_start_beyond_its_limits_is_odd_and_used() {
     assert_eq!((beyond.joint.as_str(), beyond.found, beyond.lower, beyond.upper), ("shoulder", 1.75, -1.5, 1.5));
     let told = "s.toml: initial.q.shoulder: found 1.75, beyond its limits, expected -1.5 to 1.5; used as given";
     assert_eq!((beyond.to_string().as_str(), initial.q[0]), (told, 1.75));
-    // At a bound nothing is.
+    // A joint at its bound is not beyond it.
     let beyond = |shoulder: f64, elbow: f64| session.beyond(&[shoulder, elbow, 0.0, 0.0, 0.0, 1.0]).len();
     assert_eq!([beyond(1.5, 0.3), beyond(-1.5, -2.0), beyond(1.5, 0.301), beyond(-1.501, -2.0)], [0, 0, 1, 1]);
 }

@@ -1,4 +1,4 @@
-//! What happens on the way, and how it reads.
+//! Events of a motion and their texts.
 
 use articulated::simulate::Ended;
 use articulated_motion::{Detectors, Ending, EventKind, Outcome, SceneEvent, UnavailableEvent};
@@ -6,7 +6,7 @@ use articulated_scene::EventClass;
 
 use super::{ARM, CART, moved, session, words};
 
-/// What the first two events are, for programs.
+/// The first two events, as data.
 fn about(outcome: &Outcome) -> [Option<SceneEvent>; 2] {
     [0, 1].map(|k| outcome.occurrences.get(k).and_then(|h| h.about.clone()))
 }
@@ -72,7 +72,7 @@ fn a_motion_runs_again_as_it_ran_before() {
     let [mut first, mut again] = [(); 2].map(|()| motion.run(&initial, &mut |_, _| true).unwrap());
     (first.wall, again.wall) = Default::default();
     assert_eq!(first, again);
-    // Who goes the other way never meets the ball: nothing is left of the blow before.
+    // A cart in the other direction never meets the ball: no state is left from the blow before.
     let away = articulated_motion::InitialState { v: vec![-1.0], ..initial };
     let outcome = motion.run(&away, &mut |_, _| true).unwrap();
     assert_eq!((outcome.ball, outcome.ending, words(&outcome)), (None, Ending::AtEnd, vec!["slide reaches its lower limit"]));
@@ -98,7 +98,7 @@ fn a_ball_that_nothing_moves_towards_keeps_its_speed() {
     let outcome = moved(&session(&scene, CART));
     assert_eq!(words(&outcome)[0], "cart is not moving towards the ball, which keeps 7.5000 m/s");
     assert!(outcome.ball.is_none() && (outcome.occurrences[0].t - 0.25).abs() < 1e-9, "{outcome:?}");
-    // That hits nothing, and so ends nothing.
+    // There is no hit, so the motion does not end.
     assert_eq!((outcome.ending, outcome.reached), (Ending::AtEnd, 1.0));
 }
 
@@ -107,7 +107,7 @@ fn who_is_as_fast_as_the_ball_does_not_hit_it() {
     let scene = |speed: &str| BLOW.replace("ball = [0.6, 0.0, 0.0]", &format!("time = 0.25\nball_speed = {speed}"));
     let [missed, hit] = ["3.0", "2.0"].map(|speed| moved(&session(&scene(speed), CART)));
     assert_eq!(words(&missed)[0], "cart is not moving towards the ball, which keeps 3.0000 m/s");
-    // What it gets is on top of what it had: ½ m_b (v² − 2²), v = 2 + (1 + e) m/(m + m_b).
+    // Its gain is relative to its initial energy: ½ m_b (v² − 2²), v = 2 + (1 + e) m/(m + m_b).
     let after: f64 = 2.0 + 1.8 * 2.0 / 2.5;
     let gets = 0.25 * (after * after - 4.0);
     assert!(missed.ball.is_none() && hit.ball.is_some_and(|energy| (energy - gets).abs() < 1e-8), "{missed:?} {hit:?}");
@@ -156,7 +156,7 @@ fn a_joint_that_follows_has_bounds_of_its_own() {
     assert_eq!((told(0.25).len(), told(1.0).len()), (0, 2));
 }
 
-/// With the bound of the effect, or else that of an MJCF file; of the angle of the rotation.
+/// With the bound of the effect, or else that of an MJCF file, on the angle of the rotation.
 #[test]
 fn a_ball_joint_comes_to_the_bound_of_its_angle() {
     let urdf = "<robot name='r'><link name='base'/><joint name='hip' type='spherical'><parent link='base'/><child link='rod'/></joint>
@@ -177,8 +177,8 @@ fn a_ball_joint_comes_to_the_bound_of_its_angle() {
     assert!(told(0.2).is_empty());
 }
 
-/// A joint that follows another zero times does not move: of its bounds and its friction there is
-/// nothing to look for, wherever it stands.
+/// A joint that follows another with multiplier 0 does not move: its bounds and its friction have
+/// no events, at any position.
 #[test]
 fn a_joint_that_follows_and_stands_still_has_no_events() {
     let follower = "<link name='b'/><joint name='y' type='prismatic'><parent link='rail'/><child link='b'/><axis xyz='1 0 0'/>
@@ -248,7 +248,7 @@ fn sorts_of_events_that_cannot_happen_are_told() {
     assert_eq!(motion.unavailable_events()[0].to_string(), told);
 }
 
-/// A `<limit>` of effort and velocity alone, which says 0 and 0.
+/// A `<limit>` with effort and velocity alone: its bounds are 0 and 0.
 #[test]
 fn joints_whose_bounds_nothing_is_between_are_told_and_left_out() {
     let urdf = CART.replace("lower=\"-0.5\" upper=\"0.9\" ", "");
@@ -266,7 +266,7 @@ fn contacts_of_one_link_are_told_apart() {
         "gravity = [0, 0, 0]\ninitial = {{ v = {{ slide = 1.0 }} }}\nsimulation = {{ end = 0.5, events = ['contacts'] }}
         effects.contact.cart = [{{ {ball}, height = -0.3 }}, {{ {ball}, height = -0.4 }}]"
     );
-    // Those of another link do not count.
+    // Contacts of another link do not count.
     let bumper = "<link name='bumper'/><joint name='glue' type='fixed'><parent link='cart'/><child link='bumper'/></joint></robot>";
     let scene =
         scene.replace("effects.contact.cart", &format!("effects.contact.bumper = {{ {ball}, height = -9 }}\n        effects.contact.cart"));

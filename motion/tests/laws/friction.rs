@@ -1,11 +1,11 @@
-//! Smoothed friction: what it holds, how far it creeps, and what is refused.
+//! Smoothed friction: holding, creep and errors.
 
 use articulated::simulate::{IntegratorId, SimulateError};
 use articulated_core::effect::EffectId;
 
 use super::{CART, moved, session, words};
 
-/// A link of 2 kg whose centre is 0.25 m from a hinge with 6 N·m of dry friction: gravity needs
+/// A link of 2 kg with its centre 0.25 m from a hinge with 6 N·m of dry friction: gravity needs
 /// 4.905 N·m.
 const STICTION: &str = r#"<robot name="arm"><link name="root"/>
     <joint name="s" type="revolute"><parent link="root"/><child link="u"/><axis xyz="0 1 0"/>
@@ -39,13 +39,13 @@ fn a_joint_that_friction_does_not_hold_starts_to_slide() {
     let scene = "effects = { friction = { s = 4.0 } }\nsimulation = { end = 0.5, events = ['stick_slip'] }";
     let outcome = moved(&session(scene, STICTION));
     assert_eq!(words(&outcome), ["s starts to slide"]);
-    // What is left at a horizontal start is 0.905 N·m of an inertia of 0.05 + 2 · 0.25² kg·m².
+    // At a horizontal start 0.905 N·m accelerate an inertia of 0.05 + 2 · 0.25² kg·m².
     let expected = 0.5 * (4.905 - 4.0) / 0.175 * 0.25;
     let q = outcome.recording.q_at(outcome.recording.len() - 1)[0];
     assert!((q / expected - 1.0).abs() < 0.1, "{q} {expected}");
 }
 
-/// A puck of 2 kg on the ground is pushed along it with half of what friction holds.
+/// A puck of 2 kg on the ground is pushed along it with half of the friction that holds it.
 #[test]
 fn a_contact_creeps_at_its_closed_form() {
     const PUCK: &str = r#"<robot name="puck"><link name="rail"/><link name="cart"/><link name="puck"><inertial><mass value="2"/>
@@ -129,8 +129,8 @@ fn the_first_step_shows_what_a_run_would_end_with() {
     }
 }
 
-/// Scenes at random: integrators, steps, effects and starts that are wild now and then. What the
-/// first step accepts a run does not refuse at its start.
+/// Random scenes: integrators, steps, effects and starts, some of them extreme. A start accepted by
+/// the first step is not refused by a run.
 #[test]
 fn what_the_first_step_accepts_is_not_refused_at_the_start() {
     let mut state = 7_u64;

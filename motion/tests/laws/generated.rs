@@ -34,8 +34,8 @@ fn a_robot_is_generated_with_what_the_scene_needs() {
     assert_eq!(session.functions(IntegratorId::dopri5), functions);
 }
 
-/// Of what there is nothing of, nothing is told: momentum of no mass, losses of no effects. A link
-/// that two things need a frame of has one.
+/// Functions without effect are not requested: momentum without mass, losses without effects. A
+/// frame that two parts of the scene need is listed once.
 #[test]
 fn a_robot_is_generated_without_what_the_scene_has_not() {
     let told = |scene: &str, urdf: &str| {

@@ -1,4 +1,4 @@
-//! What a scene's motion in a program has to be.
+//! Tests of a scene's motion in a program.
 
 mod by_hand;
 mod collision;
@@ -34,7 +34,7 @@ fn moved(session: &Session) -> Outcome {
     session.run(&session.model, &session.frame_names()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// What happened, in words.
+/// The events, in words.
 fn words(outcome: &Outcome) -> Vec<&str> {
     outcome.occurrences.iter().map(|h| h.what.as_str()).collect()
 }

@@ -1,4 +1,4 @@
-//! Stages that are opened by the name of a scene's file.
+//! Stages opened by the name of a scene's file.
 
 use articulated_motion::Session;
 
@@ -29,7 +29,7 @@ fn what_the_scene_edits_moves_and_what_is_odd_is_told() {
     assert!((edited.model.moving_mass() - plain.model.moving_mass() - 3.0).abs() < 1e-12);
     assert!(edited.warnings.iter().any(|warning| warning.to_string().contains("joint \"elbow\"")), "{:?}", edited.warnings);
     let r = moved(&edited).recording;
-    // Nothing drives it and nothing is lost.
+    // No torques and no losses.
     assert!(r.imbalance(r.len() - 1).is_some_and(|joules| joules.abs() < 1e-4) && r.q_at(0) != r.q_at(r.len() - 1));
 }
 

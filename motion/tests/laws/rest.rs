@@ -26,7 +26,7 @@ fn held(output: &str) -> String {
     )
 }
 
-/// The box on a slope of 24°, from 2 mm above it or on it. `law` is that of its contacts.
+/// The box on a slope of 24°, from 2 mm above it or on it. `law` is the law of its contacts.
 fn slope(height: f64, law: &str, simulation: &str) -> String {
     let (sine, cosine) = 24_f64.to_radians().sin_cos();
     format!(
@@ -39,7 +39,7 @@ fn slope(height: f64, law: &str, simulation: &str) -> String {
     )
 }
 
-/// What is recorded does not change what a motion says: creep and depths are of its steps.
+/// The outputs do not change the statistics: creep and depths are those of the steps.
 #[test]
 fn creep_is_the_same_whatever_is_recorded() {
     let outputs = ["'ends'", "4.0", "0.3", "0.01", "'steps'"];
@@ -75,7 +75,7 @@ fn a_step_over_a_stiff_layer_loses_the_energy_that_there_is() {
     assert!((outcome.recording.q_at(outcome.recording.len() - 1)[0] / 1.5e-5 - 1.0).abs() < 1e-6);
     let (work, dissipated, lacks, layers) = energies(&outcome);
     assert!((dissipated + 9.0).abs() < 1e-9 && work.abs() < 1e-12 && lacks < 1e-9 && (1..5).contains(&layers), "{:?}", energies(&outcome));
-    // The same layer by a control: its torque does the work. Beside it a damper takes a part.
+    // The same layer by a control: its torque does the work. A parallel damper dissipates a part.
     let kd = "control = { kind = 'pd', kd = 3e5, target = {} }";
     let outcome = moved(&session(&scene(0.0, kd), HINGE));
     let (work, dissipated, lacks, layers) = energies(&outcome);
@@ -112,7 +112,7 @@ fn a_box_rests_on_a_slope_that_its_friction_holds() {
     let (x, _) = end(&outcome);
     let [slide] = &outcome.slides[..] else { panic!("{x} {:?}", outcome.slides) };
     assert!(slide.on == "box" && slide.distance > 0.25 * x && slide.distance < 1.1 * x && x > 1e-2, "{slide:?} {x}");
-    // What the slope needs, and 2 √(m/k).
+    // The friction that the slope needs, and 2 √(m/k).
     let needed = 24_f64.to_radians().tan() / 0.6;
     assert!((slide.part / needed - 1.0).abs() < 0.2, "{slide:?} {needed}");
     assert!(slide.damping_time > 2e-3 && slide.damping_time < 1e-2, "{slide:?}");
@@ -123,7 +123,7 @@ fn a_box_rests_on_a_slope_that_its_friction_holds() {
     );
 }
 
-/// A box that the cone does not hold slides with all its friction, which is no fault of it.
+/// A box beyond its friction cone slides with its full friction, which is correct.
 #[test]
 fn a_box_that_slides_with_all_its_friction_is_not_told() {
     let outcome =

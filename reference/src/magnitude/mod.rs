@@ -1,7 +1,7 @@
 //! The scale against which a rounding error is measured.
 //!
-//! Operations are calls, not inlined: algorithms would become several times as large, and as long
-//! to compile, for nothing.
+//! Operations are calls, not inlined: algorithms would become several times as large, and take as
+//! much longer to compile, without benefit.
 
 mod norms;
 mod scales;
@@ -15,7 +15,7 @@ use num_traits::{One, Zero};
 pub use norms::{is_plain, norms};
 pub use scales::{scales, scales_of_generated, where_suspect};
 
-/// A value together with the sum of the magnitudes of the terms that it was summed from.
+/// A value together with the sum of the magnitudes of its terms.
 ///
 /// |x| where nothing cancels; more where terms cancel, by as much as rounding errors of the terms count more there. An
 /// evaluation in floating point is off by about unit roundoff times this, whatever the order of its
@@ -26,12 +26,12 @@ pub struct Magnitude {
     pub value: f64,
     /// The sum of the magnitudes of its terms; never less than |value|, rounding apart.
     pub magnitude: f64,
-    /// Whether the value was given and not computed.
+    /// Whether the value is an input, not computed.
     given: bool,
 }
 
 impl Magnitude {
-    /// A value that comes from a computation whose terms have these magnitudes.
+    /// A value from a computation whose terms have these magnitudes.
     pub fn computed(value: f64, magnitude: f64) -> Self {
         Self { value, magnitude, given: false }
     }
@@ -130,7 +130,7 @@ impl Scalar for Magnitude {
         Self { value: x, magnitude: x.abs(), given: true }
     }
 
-    // ‖sin x‖ = |sin x| + |cos x| ‖x‖ for a computed angle x, |sin x| for a given one
+    // ‖sin x‖ = |sin x| + |cos x| ‖x‖ for a computed angle x, |sin x| for an input
     #[inline(never)]
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.value.sin_cos();
@@ -192,7 +192,7 @@ mod tests {
     fn the_angle_of_a_point_carries_the_error_of_the_point() {
         let angle = of(1.0).atan2(of(1.0));
         assert!((angle.magnitude - (angle.value + 1.0)).abs() < 1e-15);
-        // (1000 − 999, 0): the zero cannot tell, the one is off by 1999.
+        // (1000 − 999, 0): the zero has no influence, the one has an error of 1999.
         assert!((of(0.0).atan2(of(1000.0) - of(999.0))).magnitude < 1e-15);
         assert!(((of(1000.0) - of(999.0)).atan2(of(1e3))).magnitude > 1.99);
         assert_eq!(of(0.0).atan2(of(0.0)).magnitude, 0.0);

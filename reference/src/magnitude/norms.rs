@@ -10,8 +10,8 @@ use articulated_core::joint::Joint;
 use articulated_core::model::{Body, Model};
 use articulated_core::nalgebra::Vector3;
 
-/// Of a function's results; none for those of other functions, none with effects, whose terms are
-/// not in it, and none where joints follow others, whose angles are sums themselves.
+/// Norms of a function's results. Empty for other functions, with effects, whose terms are not
+/// included, and if joints follow others, whose angles are sums themselves.
 pub fn norms(function: FunctionId, model: &Model<f64>, arguments: &[&[f64]]) -> Vec<f64> {
     let n = model.nv();
     if !is_plain(model) {
@@ -28,12 +28,12 @@ pub fn norms(function: FunctionId, model: &Model<f64>, arguments: &[&[f64]]) -> 
     }
 }
 
-/// Whether no joint follows another, and nothing acts but gravity.
+/// Whether no joint follows another, and gravity is the only effect.
 pub fn is_plain(model: &Model<f64>) -> bool {
     model.bodies().iter().all(|body| body.coordinates.mimic.is_none() && body.effects.joint.is_empty() && body.effects.body.is_empty())
 }
 
-/// Norms of what a body's motion and its wrench are summed of.
+/// Norms of the terms of a body's motion and wrench.
 #[derive(Clone, Copy, Default)]
 struct Norms {
     spin: f64,
@@ -64,7 +64,7 @@ fn torque(model: &Model<f64>, q: &[f64], v: &[f64], a: &[f64], gravity: f64) -> 
     tau
 }
 
-/// The motion of a body from its parent's, and the wrench that it needs for itself.
+/// The motion of a body from its parent's, and its own wrench.
 fn carried(body: &Body<f64>, parent: &Norms, q: &[f64], v: &[f64], a: &[f64]) -> Norms {
     let at = &body.coordinates;
     let (rates, derivatives) = (&v[at.v..at.v + body.joint.nv()], &a[at.v..at.v + body.joint.nv()]);
@@ -81,7 +81,7 @@ fn carried(body: &Body<f64>, parent: &Norms, q: &[f64], v: &[f64], a: &[f64]) ->
         Joint::Floating => Vector3::from_column_slice(&q[at.q..at.q + 3]).norm(),
         Joint::Revolute | Joint::Spherical => 0.0,
     };
-    // The base stands still: no result depends on how far a body is from it.
+    // The base does not move: no result depends on a body's distance from it.
     let arm = if body.parent == BodyId::BASE { 0.0 } else { body.placement.position.norm() + moved };
     let spin = parent.spin + turn;
     let spin_rate = parent.spin_rate + parent.spin * turn + turn_rate;
@@ -98,7 +98,7 @@ fn sum(x: &[f64]) -> f64 {
     x.iter().map(|x| x.abs()).sum()
 }
 
-/// The joint's part of a wrench.
+/// The joint's component of a wrench.
 fn along(body: &Body<f64>, k: usize, moment: f64, force: f64) -> f64 {
     match body.joint {
         Joint::Revolute | Joint::Spherical => moment,

@@ -1,4 +1,4 @@
-//! The scale of each number that a function gives.
+//! The scale of each number of a function's result.
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{FunctionError, Workspace, function};
@@ -7,13 +7,13 @@ use num_traits::Zero;
 
 use super::{Magnitude, norms, solution};
 
-/// The scale of each number that a function gives: the algorithm of the table, run with
-/// [`Magnitude`] on `model`, which has to be as it was read, before model passes; no more than the
-/// norms of its terms, where there are such.
+/// The scale of each number of a function's result: the algorithm of the table, run with
+/// [`Magnitude`] on `model`, which must be as read, before model passes; at most the norms of its
+/// terms, if these are defined.
 ///
-/// A function that solves with the mass matrix is measured by what rounding does to a backward
-/// stable solution instead: divisions would let the sum of magnitudes grow without bound, and
-/// everything would pass.
+/// A function that solves with the mass matrix is measured by the rounding error of a backward
+/// stable solution instead: divisions would let the sum of magnitudes grow without bound, and every
+/// result would pass.
 pub fn scales(model: &Model<f64>, name: &str, arguments: &[&[f64]]) -> Result<Vec<f64>, FunctionError> {
     let row = function::<f64>(name).ok_or(UNKNOWN)?;
     if row.inverts_mass_matrix() {
@@ -24,10 +24,10 @@ pub fn scales(model: &Model<f64>, name: &str, arguments: &[&[f64]]) -> Result<Ve
     Ok(scales)
 }
 
-/// What generated code may be off by where [`scales`] is too much to ask: model passes turn and
-/// move frames, so that one term becomes several whose sum it is, and a number of a moment m·c, of
-/// an offset or of a rotation that is zero in the file comes back as the rest of its neighbours. No
-/// more than the largest scale of all numbers of the result.
+/// Tolerance of generated code where [`scales`] is too strict: model passes turn and move frames,
+/// so that one term becomes a sum of several, and a zero of the file in a moment m·c, an offset or
+/// a rotation becomes the rounding error of its neighbours. At most the largest scale of all
+/// numbers of the result.
 pub fn scales_of_generated(model: &Model<f64>, name: &str, arguments: &[&[f64]]) -> Result<Vec<f64>, FunctionError> {
     let own = scales(model, name, arguments)?;
     if function::<f64>(name).is_some_and(|row| row.inverts_mass_matrix()) {
@@ -42,15 +42,15 @@ pub fn scales_of_generated(model: &Model<f64>, name: &str, arguments: &[&[f64]])
     Ok(scales)
 }
 
-/// The scales of a result: those of generated code for numbers that are suspect by their own, and
-/// no others.
+/// The scales of a result: those of generated code for numbers that are suspect by their own
+/// scales, the own scales for the others.
 pub fn where_suspect(own: &[f64], moved: &[f64], is_suspect: impl Fn(usize, f64) -> bool) -> Vec<f64> {
     own.iter().zip(moved).enumerate().map(|(k, (own, moved))| if is_suspect(k, *own) { *moved } else { *own }).collect()
 }
 
-/// In axes other than the joint's own, what is nothing in those (the force along a slide that goes
-/// with its own rate, at a right angle to it) is what products of its neighbours leave: no less is
-/// asked than of the largest number of its row or of its column, whichever is less.
+/// A number that is zero in the joint's own axes (the force along a slide that moves with its own
+/// rate, at a right angle to it) is a rounding error of its neighbours in other axes. Its scale is
+/// at least the largest number of its row or of its column, whichever is less.
 fn rests(matrix: &mut [f64], n: usize) {
     let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, f64::max);
     let rows: Vec<f64> = matrix.chunks(n).map(|row| largest(&mut row.iter().copied())).collect();
@@ -67,9 +67,9 @@ pub(super) fn exact_magnitudes(arguments: &[&[f64]]) -> Vec<Vec<Magnitude>> {
     arguments.iter().map(|x| x.iter().map(|x| Magnitude::from_f64(*x)).collect()).collect()
 }
 
-/// What a function gives with these arguments, in its first way, which is what
-/// [`articulated_core::algorithm::Function::call`] takes: in others some terms are zero that cancel
-/// in it, which is no reason to ask more of it.
+/// The result of a function with these arguments, in its first form, which
+/// [`articulated_core::algorithm::Function::call`] uses: in other forms some cancelling terms are
+/// zero, but that does not justify a stricter scale.
 pub(super) fn magnitudes(model: &Model<f64>, name: &str, arguments: &[Vec<Magnitude>]) -> Result<Vec<Magnitude>, FunctionError> {
     evaluated(&constants(model), name, arguments)
 }
@@ -82,9 +82,9 @@ fn evaluated(model: &Model<Magnitude>, name: &str, arguments: &[Vec<Magnitude>])
     Ok(out)
 }
 
-/// The model's constants. Each was computed from numbers of the file, so that what is small may be
-/// the rest of larger terms: its error is that of its neighbours. Nothing is exactly nothing, but
-/// for a rotation that is about none of the axes: there it may be a rest too.
+/// The model's constants. Each was computed from numbers of the file, so a small number may be the
+/// difference of larger terms: its error is that of its neighbours. Zeros are exact, except in a
+/// rotation about none of the axes: there a zero may be a difference too.
 fn constants(model: &Model<f64>) -> Model<Magnitude> {
     model.cast::<Magnitude>().changed(|parts| {
         for body in &mut parts.bodies {
@@ -100,8 +100,8 @@ fn constants(model: &Model<f64>) -> Model<Magnitude> {
     })
 }
 
-/// Constants of frames that may have been turned and moved: every number of a body is the rest of
-/// its neighbours.
+/// Constants of frames that may have been turned and moved: every number of a body may be a
+/// difference of its neighbours.
 fn turned(model: Model<Magnitude>) -> Model<Magnitude> {
     model.changed(|parts| {
         for body in &mut parts.bodies {

@@ -1,4 +1,4 @@
-//! The scale of what is solved for with the mass matrix.
+//! The scale of solutions with the mass matrix.
 //!
 //! A backward stable solution X of M X = R solves (M + δM) X = R + δR, with |δM| ≤ u ‖M‖ and |δR| ≤
 //! u ‖R‖, u a few roundings and ‖·‖ the sums of magnitudes of M's and R's terms. So, to first
@@ -8,8 +8,8 @@
 //! |δX| ≤ u |M⁻¹| (‖R‖ + ‖M‖ |X|)        Higham, Accuracy and Stability of Numerical Algorithms, 2002, §7.2
 //! ```
 //!
-//! No magnitude goes through a division: the scale is as large as the conditioning of M makes the
-//! error of a good solution, and no larger.
+//! No magnitude goes through a division: the scale is the error of a good solution by the
+//! conditioning of M, and no larger.
 
 use articulated_core::algorithm::{Argument, Function, FunctionError, FunctionId, Workspace};
 use articulated_core::model::Model;
@@ -27,7 +27,7 @@ pub(super) fn scales(model: &Model<f64>, row: &Function<f64>, arguments: &[&[f64
         FunctionId::mass_matrix_inverse => Ok(state.mass.inverse_scale()),
         FunctionId::operational_space_inertia_inverse => state.operational_space(None),
         FunctionId::operational_space_inertia => state.operational_space(Some(&state.value(row)?)),
-        // A function that inverts M and is none of these has no scale yet.
+        // Other functions that invert M have no scale yet.
         _ => Err(UNKNOWN),
     }
 }
@@ -54,7 +54,7 @@ impl Mass {
         product(&self.modulus, &sum, self.n, self.n)
     }
 
-    /// That of M⁻¹, the solution for R = 1.
+    /// The scale of M⁻¹, the solution for R = 1.
     fn inverse_scale(&self) -> Vec<f64> {
         let one: Vec<f64> = (0..self.n * self.n).map(|k| f64::from(u8::from(k % (self.n + 1) == 0))).collect();
         self.solution(&one, &self.inverse)
@@ -103,8 +103,8 @@ impl State<'_> {
         arguments
     }
 
-    /// Λ⁻¹ = J X with M X = Jᵀ, and Λ, of each frame. What δM and δJ do to them, and the rounding ε
-    /// of J X, is, with Y = X Λ,
+    /// Λ⁻¹ = J X with M X = Jᵀ, and Λ, of each frame. Their errors by δM, δJ and the rounding ε of
+    /// J X are, with Y = X Λ,
     ///
     /// ```text
     /// δΛ⁻¹ = −Xᵀ δM X + δJ X + Xᵀ δJᵀ + ε        δΛ = Yᵀ δM Y − Λ δJ Y − Yᵀ δJᵀ Λ − Λ ε Λ        |ε| ≤ u ‖J‖ |X|
@@ -136,7 +136,7 @@ impl State<'_> {
                 }
             };
             let by_mass = product(&transposed(&held, 6), &product(&self.mass.terms, &held, n, n), 6, n);
-            // Half of it is computed, and which half is nobody's business.
+            // Only one triangle is computed.
             let both = |m: &[f64], k: usize| m[k] + m[k % 6 * 6 + k / 6];
             scale.extend((0..36).map(|k| by_mass[k] + both(&by_jacobian, k) + both(&rounding, k) / 2.0));
         }
@@ -144,7 +144,7 @@ impl State<'_> {
     }
 }
 
-/// A function with the wrenches of another one, or with none where that takes none.
+/// A function with the wrenches of another one, or without wrenches if that takes none.
 fn beside(other: &Function<f64>, function: FunctionId) -> &'static Function<f64> {
     function.row().at_zero(|argument| argument == Argument::Wrenches && !other.takes.contains(&argument))
 }
@@ -159,8 +159,8 @@ fn absolute(x: &[f64]) -> Vec<f64> {
     x.iter().map(|x| x.abs()).collect()
 }
 
-/// Of magnitudes of a Jacobian, `[6][n]`: each column is two vectors, and computing them in other
-/// axes rounds all entries of a vector relative to its largest.
+/// Scales from magnitudes of a Jacobian, `[6][n]`: each column is two vectors, and computing them
+/// in other axes rounds all entries of a vector relative to its largest.
 fn vectors(magnitudes: &[f64], n: usize) -> Vec<f64> {
     let largest = |row: usize, column: usize| (0..3).map(|k| magnitudes[(row / 3 * 3 + k) * n + column]).fold(0.0, f64::max);
     (0..6 * n).map(|k| largest(k / n, k % n)).collect()
@@ -172,7 +172,7 @@ fn product(a: &[f64], b: &[f64], rows: usize, inner: usize) -> Vec<f64> {
     (0..rows * width).map(|k| (0..inner).map(|i| a[k / width * inner + i] * b[i * width + k % width]).sum()).collect()
 }
 
-/// Of a matrix with rows of this width.
+/// The transpose of a matrix with rows of this width.
 fn transposed(a: &[f64], width: usize) -> Vec<f64> {
     let rows = a.len() / width.max(1);
     (0..a.len()).map(|k| a[k % rows * width + k / rows]).collect()
@@ -196,8 +196,8 @@ mod tests {
         assert!(scale >= least * 0.999 && scale < 4.0 * least, "{scale} {least}");
     }
 
-    /// Every solving function has a scale, at least its own size, and none so large that a wrong
-    /// digit in the seventh place would pass.
+    /// Every solving function has a scale, at least its own size, and small enough that a wrong
+    /// seventh digit does not pass.
     #[test]
     fn no_scale_lets_everything_pass() {
         for name in ["panda_like", "quadruped"] {

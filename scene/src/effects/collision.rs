@@ -12,7 +12,7 @@ use crate::table::Spot;
 /// The word for it.
 pub(super) const WORD: &str = crate::report::COLLISION;
 
-/// The field that a shape gives.
+/// The field that a shape supplies.
 const RADIUS: &str = "radius";
 
 /// Whether points of this effect may be those of collision geometry.
@@ -25,7 +25,7 @@ pub(crate) fn is_of_shape(row: &Effect, field: &str) -> bool {
     offers(row) && field == RADIUS
 }
 
-/// Refuses points of the scene's own beside those of the geometry.
+/// Refuses own points of the scene combined with those of the geometry.
 pub(super) fn refuse_own_points(spot: &Spot<'_>, log: &mut Diagnostics) {
     for own in [RADIUS].into_iter().chain(FRAME).filter_map(|key| spot.get(key)) {
         let name = own.key.rsplit('.').next().unwrap_or_default();
@@ -38,8 +38,8 @@ pub(super) fn is_requested(one: &EffectRequest) -> bool {
     one.says.as_ref().is_some_and(|says| says.from_collision)
 }
 
-/// Whether a link's contact is that of its geometry: it is said of the link, or of all links and
-/// the link's own entry has no point.
+/// Whether a link's contact uses its geometry: if the link requests it, or if all links do and the
+/// link's own entry has no point.
 pub(super) fn is_taken(row: &Effect, says: &Numbers, rest: Option<&Numbers>) -> bool {
     let has_radius = || row.fields.iter().zip(&says.fields).any(|(field, own)| field.name == RADIUS && own.is_some());
     says.from_collision || (rest.is_some_and(|rest| rest.from_collision) && says.at.is_none() && !has_radius())
@@ -98,7 +98,7 @@ impl<'a> Resolving<'a> {
                     radius.and_then(|at| filled.get_mut(at)).into_iter().for_each(|(_, tag)| *tag = Some(WORD));
                     self.put_filled(row, &link.name, Origin { xyz: sphere.center, ..Origin::default() }, one, &filled);
                 }
-                // It lacks for each of the points.
+                // It is missing for each of the points.
                 Err(field) => return missing(row, field, one, &format!("link {:?}", link.name), log),
             }
         }

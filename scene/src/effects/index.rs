@@ -36,7 +36,7 @@ impl<'a> Index<'a> {
     }
 }
 
-/// Index of each name; the first, where there are several.
+/// Index of each name; the first one of duplicates.
 pub(crate) fn indices<'a, I: Id>(names: impl Iterator<Item = &'a str>) -> HashMap<&'a str, I> {
     let mut indices = HashMap::new();
     names.enumerate().for_each(|(k, name)| {

@@ -1,4 +1,4 @@
-//! `[effects]`: the effects that a scene requests beside rigid bodies and gravity.
+//! `[effects]`: the effects that a scene requests besides rigid bodies and gravity.
 //!
 //! ```toml
 //! [effects.damping]
@@ -42,7 +42,7 @@ pub struct EffectRequest {
     pub effect: EffectId,
     /// The joints or links that it acts on.
     pub on: Selector,
-    /// The numbers; `None`: it is off there.
+    /// The numbers; `None`: the effect is off there.
     pub says: Option<Numbers>,
     /// Its key path.
     pub key: String,
@@ -53,7 +53,7 @@ pub struct EffectRequest {
 /// The joints or links of a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Selector {
-    /// `*`: all joints that move, or all links that move and have mass; but those that are named.
+    /// `*`: all moving joints, or all moving links with mass, except the named ones.
     All,
     /// The joint, link or frame of this name.
     Named(String),
@@ -62,13 +62,13 @@ pub enum Selector {
 /// The given numbers of an effect.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Numbers {
-    /// What is left out is taken from the robot's file, where that has it.
+    /// Missing numbers are taken from the robot's file, if it has them.
     pub from_urdf: bool,
     /// Points and radii are those of the link's collision geometry.
     pub from_collision: bool,
     /// The planes are those of the robot's file.
     pub from_file_planes: bool,
-    /// The effect's frame in the frame of what it is on: a link, or a frame of the robot.
+    /// The effect's frame, in the frame of its link or in a frame of the robot.
     pub at: Option<Origin>,
     /// One for each of the effect's fields.
     pub fields: Vec<Option<Vec<f64>>>,
@@ -76,9 +76,9 @@ pub struct Numbers {
 
 /// The keys of an effect on a link that place its frame.
 const FRAME: [&str; 2] = ["xyz", "rpy"];
-/// The key that says where numbers come from.
+/// The key for the source of numbers.
 const FROM: &str = "from";
-/// The selector of everything that is not named.
+/// The selector of all unnamed joints or links.
 const ALL: &str = "*";
 
 /// Reads the table `effects` into the scene.
@@ -99,7 +99,7 @@ pub(crate) fn read(scene: &mut Scene, spot: &Spot<'_>, log: &mut Diagnostics) {
 /// All requests of one effect.
 fn requests(row: &'static Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<EffectRequest> {
     let Value::Table(entries) = &spot.node.value else { return on(row, &Selector::All, spot, log) };
-    // A table that says where its numbers come from is that of all joints.
+    // A table with a source of numbers applies to all joints.
     if spot.get(FROM).is_some_and(|from| matches!(from.node.value, Value::Text(_))) {
         return on(row, &Selector::All, spot, log);
     }
@@ -149,7 +149,7 @@ fn empty(row: &Effect) -> Numbers {
     Numbers { fields: vec![None; row.fields.len()], ..Numbers::default() }
 }
 
-/// Whether one number is enough: that of the first field.
+/// Whether one number, the first field's, is enough.
 pub(crate) fn shorthand(row: &Effect) -> bool {
     row.fields.first().is_some_and(|f| f.len == 1) && row.fields.iter().skip(1).all(|f| f.default.is_some())
 }
@@ -237,8 +237,8 @@ fn quoted_with_reason(word: &str) -> String {
     format!("{}{why}", quote(word))
 }
 
-/// The field as it is on a ball joint, if that has as many numbers as are written: the kind of the
-/// joint is not known here.
+/// The field on a ball joint, if its length is that of the written numbers: the kind of the joint
+/// is unknown here.
 fn as_written(row: &'static Effect, field: &'static Field, spot: &Spot<'_>) -> &'static Field {
     let Some(count) = spot.list().map(|list| list.len()) else { return field };
     let on_ball = row.ball_fields.unwrap_or_default().iter().find(|other| other.name == field.name && other.len == count);
@@ -262,7 +262,7 @@ fn number(field: &Field, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<f64> 
     spot.within(log, field.range)
 }
 
-/// Checks the joint constraint of the numbers. Where one still comes from the file or from `*`, the
+/// Checks the joint constraint of the numbers. If a number comes from the file or from `*`, the
 /// model checks it.
 fn check(row: &'static Effect, numbers: &Numbers, spot: &Spot<'_>, log: &mut Diagnostics) {
     let default = |field: &Field| resolve::default_of(row, field, std::iter::once(numbers));
@@ -276,13 +276,13 @@ fn check(row: &'static Effect, numbers: &Numbers, spot: &Spot<'_>, log: &mut Dia
     for (field, own) in blamed(row, numbers, broken, &all) {
         let at = spot.get(field.name).unwrap_or(Spot { node: spot.node, key: spot.key.clone(), at: spot.at });
         let found = own.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(", ");
-        // What the rule says of its own field, said of this one.
+        // The rule names its own field; the message names this one.
         at.clash(log, found, expected.replace(field.name, broken.name));
     }
 }
 
-/// The fields to blame for a broken rule, with their part of `all`: the rule's own if it is
-/// written, else those written that break it with zeros for the others.
+/// The fields that break a rule, with their part of `all`: the rule's own field if it is written,
+/// else written fields that break it with zeros for the others.
 fn blamed<'a>(row: &'static Effect, numbers: &Numbers, broken: &'static Field, all: &'a [f64]) -> Vec<(&'static Field, &'a [f64])> {
     let parts = row.fields_of(all.len()).iter().zip(&numbers.fields).scan(0, |end, (field, said)| {
         let start = *end;

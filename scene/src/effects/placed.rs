@@ -9,8 +9,9 @@ use articulated_core::effect::On;
 
 use super::{EffectRequest, Selector};
 
-/// The requests of a scene. One at a frame is one of the link that carries the frame: its place is
-/// seen from the frame. A request that a frame cannot have is an error and left out.
+/// The requests of a scene. A request at a frame becomes one of the link that carries the frame,
+/// with its place relative to the frame. A request that a frame cannot have is an error and left
+/// out.
 pub(super) fn on_links<'a>(requests: &'a [EffectRequest], robot: &Description, log: &mut Diagnostics) -> Cow<'a, [EffectRequest]> {
     let frames: HashMap<&str, &Frame> = robot.frames.iter().map(|frame| (frame.name.as_str(), frame)).collect();
     let frame_of = |one: &EffectRequest| match &one.on {

@@ -12,9 +12,9 @@ use crate::tree::Value;
 pub(super) const KEY: &str = "plane";
 /// Its only value.
 const FILE: &str = "file";
-/// The fields that a plane gives.
+/// The fields that a plane supplies.
 const OWN: [&str; 2] = ["normal", "height"];
-/// A file may have so many planes for contact: each link meets each of them.
+/// Maximum number of a file's planes for contact: each link meets each plane.
 const MOST: usize = 100;
 
 /// Whether the effect acts against a plane.
@@ -32,7 +32,7 @@ pub(super) fn is_of_file(spot: &Spot<'_>, log: &mut Diagnostics) -> bool {
     false
 }
 
-/// Reports `normal` or `height` beside `plane = "file"`.
+/// Reports `normal` or `height` combined with `plane = "file"`.
 pub(super) fn refuse_own_plane(spot: &Spot<'_>, log: &mut Diagnostics) {
     for own in OWN.into_iter().filter_map(|key| spot.get(key)) {
         let name = own.key.rsplit('.').next().unwrap_or_default();
@@ -40,11 +40,11 @@ pub(super) fn refuse_own_plane(spot: &Spot<'_>, log: &mut Diagnostics) {
     }
 }
 
-/// The numbers of a request against a plane, and what makes contact with that.
+/// The numbers of a request against a plane, and the mask of geometry in contact with it.
 pub(super) type Against = (Numbers, Option<ContactMask>);
 
-/// The numbers of a request for each plane. One with a plane of its own is alone. `None`: it is of
-/// the file, which has none or very many, and that is an error.
+/// The numbers of a request for each plane; a single one if it has its own plane. `None` is an
+/// error: it uses the file's planes, and there are none or too many.
 pub(super) fn of(
     row: &Effect,
     one: &EffectRequest,

@@ -17,7 +17,7 @@ use articulated_core::effect::{Applied, Effect, EffectId, Enters, Field, On, Zer
 use articulated_core::model::FLOATING_BASE;
 use articulated_formats::world::World;
 
-/// A robot as the scene's edits left it.
+/// A robot after the scene's edits.
 #[derive(Clone, Copy, Debug)]
 pub struct Edited<'a> {
     /// The robot.
@@ -26,9 +26,9 @@ pub struct Edited<'a> {
     pub file: &'a str,
     /// Its base.
     pub base: Base,
-    /// What the reader of the robot's file could not use.
+    /// Unused content of the robot's file.
     pub unused: &'a [Unused],
-    /// What the robot's file says beside the robot: its planes.
+    /// The world of the robot's file, with its planes.
     pub world: &'a World,
     /// The springs and dampings of each of the scene's shafts; `None` for a refused one.
     pub shafts: &'a [Option<Vec<Applied>>],
@@ -37,9 +37,9 @@ pub struct Edited<'a> {
 /// Effects with all their numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Resolved {
-    /// In the order of the list of effects, then of the robot, whatever the order of the scene.
+    /// In the order of the list of effects, then of the robot; independent of the scene's order.
     pub effects: Vec<Applied>,
-    /// The place of each of them in the scene.
+    /// The place of each effect in the scene.
     pub places: Vec<At>,
     /// By which key.
     pub keys: Vec<String>,
@@ -53,14 +53,14 @@ impl Scene {
     /// The effects on `robot`.
     ///
     /// # Errors
-    /// Joints and links that do not exist, or do not move; numbers that are missing; all of them.
+    /// Joints and links that do not exist or do not move, and missing numbers; all at once.
     pub fn resolve(&self, robot: &Edited<'_>) -> Result<Resolved, Diagnostics> {
         let mut log = Diagnostics::new(&self.file);
         let resolved = self.resolve_into(robot, &mut log);
         log.result(resolved)
     }
 
-    /// As [`resolve`](Self::resolve), without the effects that are wrong.
+    /// As [`resolve`](Self::resolve), without the invalid effects.
     pub(crate) fn resolve_into(&self, robot: &Edited<'_>, log: &mut Diagnostics) -> Resolved {
         let (still, moving) = (still(robot.description, robot.base), moving(robot.description));
         let index = Index::of(robot, &self.shafts);
@@ -125,7 +125,7 @@ impl<'a> Resolving<'a> {
         self.robot.description.joints.iter().zip(moving).filter(|(_, moving)| *moving).map(|(joint, _)| joint)
     }
 
-    /// Whether everything that is named is there and moves.
+    /// Whether all named joints and links exist and move.
     fn known_names(&self, row: &'static Effect, asked: &[&EffectRequest], log: &mut Diagnostics) {
         for one in asked {
             let Selector::Named(name) = &one.on else { continue };
@@ -210,11 +210,11 @@ impl<'a> Resolving<'a> {
                 self.put(row, one, (place, key), &vec![None; row.fields.len()]);
             }
             let named = by_name.get(&joint.name).first().copied();
-            // Numbers for all joints are for those that have such numbers.
+            // A request for all joints applies to those with such numbers.
             let fits = |one: &&EffectRequest| one.says.as_ref().is_none_or(|says| fits(row, says, joint.kind));
             let all = all.filter(fits);
             let spread = all.filter(|_| self.is_spread_over(row.id, joint));
-            // The wrong ones of a joint by its name are errors already.
+            // Wrong numbers of a named joint are already reported.
             let Some(one) = named.or(spread).filter(fits) else { continue };
             let layers = [named, all].map(|asked| asked.and_then(|a| a.says.as_ref()));
             let Some(layers) = one.says.as_ref().map(|_| layers) else { continue };
@@ -226,7 +226,7 @@ impl<'a> Resolving<'a> {
                     urdf::before_the_gear(row.id, &mut filled);
                     self.put_filled(row, &joint.name, Origin::default(), one, &filled);
                 }
-                // Not every joint has what all are to have from the file.
+                // A request for all joints skips those without numbers in the file.
                 Err(field) if named.is_none() && urdf::tag(row.id, field).is_some() => {}
                 Err(field) => missing(row, field, one, &format!("joint {:?}", joint.name), log),
             }
@@ -244,7 +244,7 @@ impl<'a> Resolving<'a> {
             let named = !ones.is_empty();
             let heavy = link.inertial.is_some_and(|inertial| inertial.mass > 0.0);
             let is_meant = |one: &EffectRequest| if collision::is_requested(one) { !link.collision.is_empty() } else { heavy };
-            // Of a list for all links each counts.
+            // Each entry of a list for all links applies.
             ones.extend(asked.iter().filter(|one| !named && one.on == Selector::All && is_meant(one)));
             for one in ones {
                 let Some(says) = &one.says else { continue };
@@ -265,8 +265,8 @@ impl<'a> Resolving<'a> {
         }
     }
 
-    /// Warns if the numbers of all joints are to come from the robot's file, which has them for no
-    /// joint, not even for one that is locked, or has zeros.
+    /// Warns if the numbers of all joints are requested from the robot's file, which has them for
+    /// no joint, not even a locked one, or has zeros.
     fn warn_of_no_numbers(&mut self, row: &'static Effect, asked: &[&EffectRequest]) {
         let Some((one, says)) = for_all(asked).and_then(|one| Some((one, one.says.as_ref()?))).filter(|(_, says)| says.from_urdf) else {
             return;
@@ -296,7 +296,7 @@ impl<'a> Resolving<'a> {
     /// Whether a request for all joints includes this one.
     fn is_spread_over(&self, effect: EffectId, joint: &Joint) -> bool {
         let of_shaft = self.index.of_shafts.contains(joint.name.as_str());
-        // What a joint that follows another does is not asked of it.
+        // Drive effects do not apply to a joint that follows another.
         let follows = effect.row().enters == Enters::Drive && joint.mimic.is_some();
         !of_shaft && !follows
     }
@@ -333,8 +333,8 @@ impl<'a> Resolving<'a> {
         self.resolved.keys.push(key);
     }
 
-    /// Unused content of the robot's file: what the reader could not use, except for numbers that
-    /// effects use, and bounds without an effect that keeps them.
+    /// Unused content of the robot's file: content that the reader could not use, except numbers
+    /// that effects use, and bounds without an effect that keeps them.
     fn ignored(&mut self) {
         if self.scene.shafts.is_empty() {
             self.resolved.report.off.push(EffectOff { effect: shaft::NAME, why: Why::NotAsked });
@@ -361,7 +361,7 @@ fn for_all<'a>(asked: &[&'a EffectRequest]) -> Option<&'a EffectRequest> {
     asked.iter().find(|a| a.on == Selector::All).copied()
 }
 
-/// Whether a joint of this kind has what the effect acts on.
+/// Whether the effect is defined for a joint of this kind.
 fn has_room(row: &Effect, kind: JointKind) -> bool {
     let is_of_rotation = kind == JointKind::Spherical && row.ball_fields.is_some();
     kind.quaternion().is_none() || row.enters != Enters::ForceOfCoordinate || is_of_rotation
@@ -372,7 +372,7 @@ fn fields_on(row: &'static Effect, kind: JointKind) -> &'static [Field] {
     row.ball_fields.filter(|_| kind == JointKind::Spherical).unwrap_or(row.fields)
 }
 
-/// The given fields that a joint of this kind does not have, or with another number of numbers.
+/// The given fields that a joint of this kind does not have, or has with a different length.
 fn unfit_fields<'n>(row: &'static Effect, says: &'n Numbers, kind: JointKind) -> impl Iterator<Item = (&'static Field, &'n [f64])> {
     let fields = fields_on(row, kind);
     let given = row.fields.iter().zip(&says.fields).filter_map(|(field, numbers)| Some((field, numbers.as_deref()?)));
@@ -384,21 +384,21 @@ fn fits(row: &'static Effect, says: &Numbers, kind: JointKind) -> bool {
     unfit_fields(row, says, kind).next().is_none()
 }
 
-/// What is given and does not fit.
+/// The given fields that do not fit.
 fn unfit(row: &'static Effect, one: &EffectRequest, kind: JointKind) -> String {
     let all = one.says.iter().flat_map(|says| unfit_fields(row, says, kind));
     let each: Vec<String> = all.map(|(field, numbers)| format!("{} with {}", field.name, count(numbers.len()))).collect();
     format!("{} for a {} joint", each.join(", "), kind.name())
 }
 
-/// What a joint of this kind has.
+/// The fields of a joint of this kind.
 fn on_joint(row: &'static Effect, kind: JointKind) -> String {
     let each: Vec<String> =
         fields_on(row, kind).iter().map(|field| format!("{} with {} ({})", field.name, count(field.len), field.what)).collect();
     each.join(", ")
 }
 
-/// Whether a number of the file makes the effect nothing.
+/// Whether a zero of the file makes the effect vanish.
 fn is_zero_in_file(fields: &[Field], filled: &[Filled]) -> bool {
     let is_zero = |(field, (numbers, tag)): (&Field, &Filled)| {
         field.zeros == Zeros::Nothing && tag.is_some() && numbers.iter().all(|number| *number == 0.0)
@@ -410,9 +410,10 @@ fn count(numbers: usize) -> String {
     if numbers == 1 { "1 number".into() } else { format!("{numbers} numbers") }
 }
 
-/// All numbers: of the first layer that says or takes them from the file, otherwise the defaults.
-/// The name of a field for which there are none. `layers`: what is said of a joint by its name, and
-/// of all; what is to be had from the file by name is not left out, so that no other says it.
+/// All numbers: from the first layer that gives them or takes them from the file, otherwise the
+/// defaults. An error names a field without numbers. `layers`: entries of the joint's name and of
+/// all joints. A field without default that files may contain is required in the joint's own entry:
+/// that of all joints does not supply it.
 pub(super) fn fill(
     (row, fields): (&'static Effect, &'static [Field]),
     layers: &[Option<&Numbers>],
@@ -437,7 +438,7 @@ pub(super) fn fill(
     fields.iter().map(of).collect()
 }
 
-/// What a field is where no layer gives it; `None`: one has to.
+/// The default of a field that no layer gives; `None`: it is required.
 pub(super) fn default_of<'n>(row: &Effect, field: &Field, mut layers: impl Iterator<Item = &'n Numbers>) -> Option<Vec<f64>> {
     if let Some(default) = field.default {
         return Some(default.to_vec());

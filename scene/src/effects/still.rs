@@ -2,8 +2,8 @@
 
 use articulated_core::description::{Base, ById, Description, Joint, JointId, LinkId};
 
-/// For each joint, whether it lets its child move: it is not fixed, not locked, and does not follow
-/// joints that all are. A chain of followers without an end lets it.
+/// For each joint, whether its child can move: it is not fixed, not locked, and does not follow
+/// only such joints. A cyclic chain of followers can move.
 pub(crate) fn moving(description: &Description) -> ById<JointId, bool> {
     let joints = &description.joints;
     let mut moving: ById<JointId, bool> = vec![true; joints.len()].into();
@@ -16,12 +16,12 @@ pub(crate) fn moving(description: &Description) -> ById<JointId, bool> {
             moving[at] = !joints[at].kind.is_fixed() && joints[at].locked.is_none();
             next = leader(joints, at).filter(|_| moving[at]);
         }
-        // The last of them first: what it follows was seen before.
+        // The last one first: its leader was visited before.
         for at in chain.into_iter().rev() {
             moving[at] &= leader(joints, at).is_none_or(|leader| moving[leader]);
         }
     }
-    // None of them leads another joint.
+    // None of these joints leads another joint.
     for (at, joint) in joints.iter().enumerate().filter(|(_, joint)| !joint.also.is_empty()) {
         let mut leaders = joint.mimic.iter().chain(&joint.also);
         moving[JointId(at)] &= leaders.any(|mimic| moving.get(mimic.joint).is_none_or(|moves| *moves));

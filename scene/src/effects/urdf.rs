@@ -1,4 +1,4 @@
-//! What a file of a robot says of effects: in a URDF, `<dynamics>` and `<limit>`.
+//! Numbers of effects in a robot's file: in a URDF, `<dynamics>` and `<limit>`.
 
 use articulated_core::description::{Joint, JointKind};
 
@@ -12,12 +12,12 @@ pub(crate) fn offers(row: &Effect) -> bool {
     row.fields.iter().any(|field| tag(row.id, field.name).is_some())
 }
 
-/// The word for the file of the robot, for which others stand.
+/// The word for the robot's file; `file` is a synonym.
 pub(super) fn source(word: &str) -> &str {
     if word == "file" { "urdf" } else { word }
 }
 
-/// The words for what an effect may take from the robot's file.
+/// The words for the possible sources of an effect's numbers in the robot's file.
 pub(crate) fn sources(row: &Effect) -> impl Iterator<Item = &'static str> {
     let urdf = Some("urdf").filter(|_| offers(row));
     let collision = Some(collision::WORD).filter(|_| collision::offers(row));
@@ -40,8 +40,8 @@ pub(crate) fn tag(effect: EffectId, field: &str) -> Option<&'static str> {
     }
 }
 
-/// A URDF has effort and velocity of the joint, behind the gear: those of the motor are less and
-/// more by its turns.
+/// A URDF has effort and velocity of the joint, behind the gear: the motor's torque is smaller, and
+/// its speed larger, by the gear ratio.
 pub(super) fn before_the_gear(effect: EffectId, filled: &mut [Filled]) {
     let [torque, speed, (gear, _), ..] = filled else { return };
     let Some(gear) = gear.first().filter(|_| effect == EffectId::motor) else { return };
@@ -49,7 +49,7 @@ pub(super) fn before_the_gear(effect: EffectId, filled: &mut [Filled]) {
     speed.0.iter_mut().filter(|_| speed.1.is_some()).for_each(|x| *x *= gear);
 }
 
-/// The number that stands there for a joint; `None`, if there is none or it is infinite.
+/// The number of a tag for a joint; `None` if it is missing or infinite.
 pub(crate) fn number(joint: &Joint, tag: &str) -> Option<f64> {
     let number = match tag {
         "dynamics damping" => joint.dynamics.damping?,
@@ -58,7 +58,7 @@ pub(crate) fn number(joint: &Joint, tag: &str) -> Option<f64> {
         "joint stiffness" => joint.dynamics.stiffness?,
         "joint springref" => joint.dynamics.rest?,
         "limit lower" => joint.limit?.lower,
-        // Of a ball joint the largest angle; 0 where a `<limit>` says nothing of it.
+        // The largest angle of a ball joint; 0 if `<limit>` does not contain it.
         "limit upper" if joint.kind == JointKind::Spherical => Some(joint.limit?.upper).filter(|upper| *upper > 0.0)?,
         "limit upper" => joint.limit?.upper,
         "limit effort" => joint.limit?.effort,

@@ -1,5 +1,5 @@
-//! Robots that are appended to another one: their links, joints and frames, and what their files
-//! say beside them.
+//! Robots that are appended to another one: their links, joints and frames, and the worlds of their
+//! files.
 //!
 //! All names get the prefix. States of one name are one state; the states of the appended robot
 //! that the other one does not have get the prefix, too. Gravity, step and integrator are those of
@@ -20,7 +20,7 @@ impl Editing<'_> {
     /// Reads another robot and appends it, with its world.
     pub(super) fn append(&mut self, other: &Appended, editor: &mut Editor<'_>, log: &mut Diagnostics) {
         // Its root moves with the link that carries it.
-        // Arguments are those of the robot.
+        // Only the robot itself has arguments.
         let arguments = Default::default();
         let options = Options { file: other.file.value.clone(), base: Base::Floating, arguments, ..self.request.reader_options() };
         let reading = match read_with(&self.request.options.included, &other.document, &options) {
@@ -44,7 +44,7 @@ impl Editing<'_> {
         self.take(&at, result, log);
     }
 
-    /// Lists the gravity of an appended robot's file where it is not that of the robot.
+    /// Lists the gravity of an appended robot's file if it differs from the robot's.
     fn report_other_gravity(&mut self, other: &World) {
         let own = self.request.options.gravity_in(&self.reading.world);
         if other.gravity.is_some_and(|gravity| gravity != own) {
@@ -64,7 +64,7 @@ fn renamed(unused: Unused, prefix: &str) -> Unused {
     Unused { subject, ..unused }
 }
 
-/// Adds the world of an appended robot to that of the robot that carries it.
+/// Adds the world of an appended robot to the world of the robot that carries it.
 struct Joining<'a> {
     /// The file of the appended robot.
     file: &'a str,
@@ -115,7 +115,7 @@ impl Joining<'_> {
         self.warnings.push(Diagnostic::error(self.file, place, code, found, expected).into_warning());
     }
 
-    /// Its lines are of another file than those of the robot that carries it.
+    /// Its lines are in another file than those of the robot that carries it.
     fn actuator(&mut self, actuator: Actuator, taken: &mut HashSet<String>) -> Actuator {
         let name = self.named(&actuator.name);
         let mut free = name.clone();
@@ -137,8 +137,8 @@ impl Joining<'_> {
         Coupling { joint: self.named(&coupling.joint), leaders: self.all_named(coupling.leaders), offset: coupling.offset }
     }
 
-    /// States with controls for the actuators of both: `[own, appended]`. Controls that a state
-    /// does not have are 0, and joints that it does not have are where the file begins.
+    /// States with controls for the actuators of both: `[own, appended]`. Missing controls of a
+    /// state are 0, and missing joints have the file's initial coordinates.
     fn keyframes(&self, world: &mut World, other: Vec<Keyframe>, [own, appended]: [usize; 2]) {
         let full = |control: Vec<f64>, count: usize| if control.len() == count { control } else { vec![0.0; count] };
         for keyframe in &mut world.keyframes {

@@ -60,7 +60,7 @@ impl RobotRequest<'_> {
     }
 
     /// As [`build`](Self::build), and reports to a collector. `None`: there is no robot, and an
-    /// error says why. What is refused is left out.
+    /// error says why. Refused edits are left out.
     pub fn build_into(&self, log: &mut Diagnostics) -> Option<BuiltRobot> {
         let mut own = log.apart();
         let robot = self.build_all(&mut own);
@@ -69,8 +69,8 @@ impl RobotRequest<'_> {
         robot
     }
 
-    /// As [`build_into`](Self::build_into), and reports what is wrong with the file of the scene's
-    /// table, which is seen from `folder`: for a scene that has other mistakes.
+    /// As [`build_into`](Self::build_into), and reports errors in the file of the scene's table,
+    /// relative to `folder`: for a scene that has other errors.
     pub fn check_with_table(&self, folder: &Path, log: &mut Diagnostics) -> Option<BuiltRobot> {
         let robot = self.build_into(log);
         if let Some(scene) = self.scene {
@@ -94,7 +94,7 @@ impl RobotRequest<'_> {
     /// The robot read and edited, without a model. For programs that only need the description.
     ///
     /// # Errors
-    /// All findings about the document and the edits, if one of them is an error.
+    /// All findings about the document and the edits, if one is an error.
     pub fn read(&self) -> Result<Reading, Diagnostics> {
         let mut log = Diagnostics::new(self.file);
         self.check_numbers(&mut log);
@@ -108,7 +108,7 @@ impl RobotRequest<'_> {
         }
     }
 
-    /// Numbers that cannot be, whatever the robot.
+    /// Checks numbers that are invalid for any robot.
     fn check_numbers(&self, log: &mut Diagnostics) {
         let wrong = |key, found, expected| Diagnostic::error("", (Default::default(), key), Code::Number, found, expected);
         if let Some(gravity) = self.options.gravity.filter(|gravity| gravity.iter().any(|x| !x.is_finite())) {
@@ -130,7 +130,7 @@ impl RobotRequest<'_> {
         editing.refuse_second_base(&mut refused);
         editing.choose_frames(&mut refused);
         if !appended {
-            // Names that only the appended robot would have had are not unknown.
+            // Names of the appended robot, which is missing here, are not unknown.
             refused.errors.retain(|error| !matches!(error.code, Code::UnknownLink | Code::UnknownJoint) || error.field == "append");
         }
         log.take(refused);
@@ -142,8 +142,8 @@ impl RobotRequest<'_> {
         self.model(&editing.reading).map_err(|error| log.push(refusal(error))).ok()
     }
 
-    /// The model of what was read, with the gravity and the reference of wrenches of the request,
-    /// without effects.
+    /// The model of the robot read, with the request's gravity and reference of wrenches, without
+    /// effects.
     fn model(&self, reading: &Reading) -> Result<Model<f64>, ModelError> {
         let gravity = self.options.gravity_in(&reading.world).map(|x| if x.is_finite() { x } else { 0.0 });
         let model = Model::new(&reading.description, self.options.base)?;
@@ -151,7 +151,7 @@ impl RobotRequest<'_> {
     }
 
     /// The model of a robot of this request whose description was changed since, with its effects.
-    /// `None`: it is not a robot any more.
+    /// `None`: it is no longer a valid robot.
     #[must_use]
     pub fn model_of(&self, robot: &BuiltRobot) -> Option<Model<f64>> {
         self.model(&robot.reading).ok()?.with_effects(&robot.effects).ok()
@@ -168,7 +168,7 @@ impl RobotRequest<'_> {
                 scene.check_file_step(&editing.reading.world, &mut own);
                 own.take(scene.fits(RobotInWorld { model: &model, world: &editing.reading.world }).err().unwrap_or_default());
             }
-            // A refused shaft would have brought names.
+            // Names that a refused shaft would have added.
             let refused: Vec<&str> = scene
                 .shafts
                 .iter()
@@ -200,8 +200,8 @@ impl RobotRequest<'_> {
         (resolved, model, effects)
     }
 
-    /// A finding about a number of the robot's file that an effect takes, at its place there.
-    /// `None`: the number is not of the file, or the scene has a place of its own.
+    /// A finding about a number of the robot's file that an effect uses, at its place there.
+    /// `None`: the number is not from the file, or the scene has a place of its own.
     fn number_of_the_file(&self, error: &EffectError, resolved: &Resolved, unused: &[Unused]) -> Option<Diagnostic> {
         let Fault::Number { field, found, expected } = &error.fault else { return None };
         let numbers = resolved.places.get(error.index).filter(|place| **place == At::Nowhere);
@@ -239,7 +239,7 @@ impl RobotRequest<'_> {
     }
 }
 
-/// Whether a finding is about a joint or a link that only a refused shaft would have brought.
+/// Whether a finding is about a joint or a link of a refused shaft.
 fn is_about_shaft(error: &Diagnostic, refused: &[&str]) -> bool {
     let may_name = |name: &str| refused.iter().any(|joint| articulated_core::description::Shaft::may_name(joint, name));
     error.field.split(['.', '[']).any(may_name)
@@ -259,7 +259,7 @@ pub(super) struct Editing<'a> {
 /// The place of an entry for messages: its own, or the robot's file.
 pub(super) struct Entry<'a> {
     span: Option<&'a Span>,
-    /// The key in a file, and that of an entry which no file gives.
+    /// The key in a file, and the key of an entry that no file contains.
     key: (String, &'static str),
 }
 
@@ -274,7 +274,7 @@ impl<'a> Entry<'a> {
 }
 
 impl Editing<'_> {
-    /// Makes all edits that can be made. Whether all robots were appended.
+    /// Makes all edits that can be made. Returns whether all robots were appended.
     fn edit(&mut self, log: &mut Diagnostics) -> bool {
         let mut description = std::mem::take(&mut self.reading.description);
         let mut editor = Editor::of(&mut description);
@@ -308,8 +308,8 @@ impl Editing<'_> {
         appended
     }
 
-    /// Linear equations of the robot's file and of those appended are edits. Warnings that they are
-    /// not applied go. `appended`: whether all robots were appended.
+    /// Linear equations of the robot's file and of appended ones are edits. Warnings that they are
+    /// not applied are removed. `appended`: whether all robots were appended.
     fn couple_as_the_files_say(&mut self, appended: bool, editor: &mut Editor<'_>, log: &mut Diagnostics) {
         if appended && self.reading.world.couplings.is_empty() {
             let place = (Default::default(), "coupling");
@@ -382,11 +382,11 @@ mod tests {
     use super::*;
     use crate::Appended;
 
-    /// An inertia that no body has, which is a warning.
+    /// An implausible inertia, which is a warning.
     const LINK: &str = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='3'/></inertial>";
 
-    /// A link that turns on another, between these bounds, with an unused colour; its axis
-    /// is nearly that of z.
+    /// A link that turns on another, between these bounds, with an unused colour; its axis is
+    /// nearly z.
     fn robot(name: &str) -> String {
         format!(
             "<robot name='{name}'><link name='base'>{LINK}</link><link name='tip'>{LINK}<visual/></link>
@@ -432,7 +432,7 @@ mod tests {
         }
     }
 
-    /// The keys of what is refused, and what is found there.
+    /// The keys of refused entries, and what was found there.
     fn refused(asked: &TestRequest) -> Vec<String> {
         read(asked).unwrap_err().errors.into_iter().map(|error| format!("{}: {}", error.field, error.found)).collect()
     }
@@ -452,7 +452,7 @@ mod tests {
         assert_eq!((hand(&both.snapped), both.snapped.len()), (alone.snapped.len(), 2 * alone.snapped.len()));
         assert_eq!(both.warnings.len() - hand(&both.warnings), alone.warnings.len());
         assert!(hand(&both.warnings) == alone.warnings.len() && !alone.warnings.is_empty(), "{:?}", both.warnings);
-        // The mass of its root moves; that of a fixed base does nothing.
+        // The mass of its root moves; that of a fixed base has no effect.
         let held = |reading: &Reading| reading.unused.iter().filter(|u| u.tag == "inertial").count();
         assert_eq!((held(&both), held(&alone)), (1, 1));
         let subjects: Vec<&Subject> = both.unused.iter().map(|u| &u.subject).collect();
@@ -521,7 +521,7 @@ mod tests {
         assert_eq!(told([0.0, 0.0, 0.0, 1.0, 1e-7, 1.0]), []);
     }
 
-    /// A body that a free joint holds to the root, of this name and with this content.
+    /// A body with a free joint on the root of this name, with this content.
     fn free(root: &str, content: &str) -> TestRequest {
         let urdf = format!(
             "<robot name='quad'><link name='{root}'>{content}</link><link name='stand'/><link name='trunk'>{LINK}</link>

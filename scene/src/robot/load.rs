@@ -22,7 +22,7 @@ pub struct Bundled<'a> {
     pub name: &'a str,
     /// Its document.
     pub document: &'a str,
-    /// The base that it is meant for.
+    /// The intended base.
     pub base: Base,
 }
 
@@ -33,7 +33,7 @@ pub struct Loader<'a> {
     pub sources: &'a dyn Sources,
     /// The folder that names of files start from.
     pub root: PathBuf,
-    /// The same in messages: `, seen from …`; empty for the folder in which the program runs.
+    /// The same for messages: `, seen from …`; empty for the program's working folder.
     pub seen_from: &'static str,
     /// The robots that scenes may call by name.
     pub bundled: &'a [Bundled<'a>],
@@ -52,18 +52,18 @@ pub struct Opened {
     pub file: String,
     /// The bytes of that file.
     pub document: Vec<u8>,
-    /// What the scene requests of it; without the scene's effects, which need the robot.
+    /// The scene's requests for the robot; without the scene's effects, which need the robot.
     pub options: RobotOptions,
     /// The files that were read: the scene, the robot, and those appended.
     pub files: Vec<PathBuf>,
 }
 
-/// The scene at `path` with its robot's documents; `bundled` are the robots that it may call by
-/// name. Files that it names are seen from its folder.
+/// The scene at `path` with its robot's documents; `bundled` are the robots available by name.
+/// Names of files are relative to its folder.
 ///
 /// # Errors
-/// All findings, if one of them is an error; then also those about the scene on its robot, as far
-/// as both can be read.
+/// All findings, if one is an error; then also those about the scene on its robot, as far as both
+/// can be read.
 pub fn open(path: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, Diagnostics> {
     let mut log = Diagnostics::new(&path.display().to_string());
     let opened = open_into(path, bundled, &mut log);
@@ -74,15 +74,14 @@ pub fn open(path: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, Diagnostics>
 ///
 /// # Errors
 /// A document is missing: the scene, if that could be read. A collector without errors means that
-/// nothing is wrong with the files; what is wrong was left out of the scene.
+/// the files are valid; invalid content was left out of the scene.
 pub fn open_into(path: &Path, bundled: &[Bundled<'_>], log: &mut Diagnostics) -> Result<Opened, Option<Box<Scene>>> {
     let mut loader = Loader { sources: &Environment, bundled, ..Loader::default() };
     let scene = loader.scene(path, &Span::default(), log).ok_or(None)?;
     loader.open(folder_of(path), scene.clone(), log).ok_or_else(|| Some(Box::new(scene)))
 }
 
-/// What was opened if nothing is wrong. Otherwise what is wrong, with what else is wrong with the
-/// scene.
+/// The opened scene if there are no errors. Otherwise all errors, with the scene's other errors.
 fn whole(opened: Result<Opened, Option<Box<Scene>>>, folder: &Path, mut log: Diagnostics) -> Result<Opened, Diagnostics> {
     let scene = match opened {
         Ok(opened) if log.is_ok() => return Ok(opened),
@@ -98,11 +97,11 @@ fn whole(opened: Result<Opened, Option<Box<Scene>>>, folder: &Path, mut log: Dia
     Err(log.result(()).err().unwrap_or_default())
 }
 
-/// A scene that was read, with its robot's documents; `bundled` are the robots that it may call by
-/// name. Files that it names are seen from `folder`.
+/// A scene that was read, with its robot's documents; `bundled` are the robots available by name.
+/// Names of files are relative to `folder`.
 ///
 /// # Errors
-/// All findings, if one of them is an error.
+/// All findings, if one is an error.
 pub fn open_in(scene: Scene, folder: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, Diagnostics> {
     let mut log = Diagnostics::new(&scene.file);
     let opened = open_in_into(scene, folder, bundled, &mut log);
@@ -119,15 +118,15 @@ pub fn open_in_into(scene: Scene, folder: &Path, bundled: &[Bundled<'_>], log: &
 }
 
 impl Default for Loader<'_> {
-    /// Of the file system, from the folder in which the program runs; no bundled robots.
+    /// The file system, from the program's working folder; no bundled robots.
     fn default() -> Self {
         Self { sources: &Disk, root: PathBuf::new(), seen_from: "", bundled: &[], files: Vec::new(), included: Included::default() }
     }
 }
 
 impl Loader<'_> {
-    /// The bytes of a file. A finding is at the place that names the file, under the key there;
-    /// with no place, at the file itself.
+    /// The bytes of a file. A finding is at the place that names the file, under its key; without a
+    /// place, at the file itself.
     pub fn read(&mut self, name: &Path, span: &Span, key: &str, log: &mut Diagnostics) -> Option<Vec<u8>> {
         let (path, name) = (self.root.join(name), name.display().to_string());
         match self.sources.read(&path) {
@@ -154,7 +153,7 @@ impl Loader<'_> {
     }
 
     /// Reads the files that a robot's document includes; `name`: the document's, `robot`: the
-    /// arguments and packages that it is read with later.
+    /// arguments and packages for reading it later.
     pub fn include(&mut self, name: &str, document: &[u8], robot: &RobotOptions) {
         let RobotOptions { formats, arguments, packages, .. } = robot;
         let (arguments, packages) = (arguments.clone(), packages.clone());
@@ -164,15 +163,15 @@ impl Loader<'_> {
         self.included.extend(found);
     }
 
-    /// The scene of this name, which `span` names. Its mistakes are reported and left out. `None`:
+    /// The scene of this name, which `span` names. Its errors are reported and left out. `None`:
     /// there is no such file, or it is not TOML.
     pub fn scene(&mut self, name: &Path, span: &Span, log: &mut Diagnostics) -> Option<Scene> {
         let bytes = self.read(name, span, "scene", log)?;
         Scene::read_bytes_into(&name.display().to_string(), &bytes, log)
     }
 
-    /// The documents that a scene names, seen from its folder. `None`: one of them is missing, and
-    /// an error says which.
+    /// The documents that a scene names, relative to its folder. `None`: a document is missing, and
+    /// an error names it.
     pub fn open(&mut self, folder: &Path, scene: Scene, log: &mut Diagnostics) -> Option<Opened> {
         let robot = self.robot(folder, &scene, log);
         let mut options = RobotOptions { base: robot.as_ref().map_or(Base::Fixed, |robot| robot.2), ..RobotOptions::default() };
@@ -212,11 +211,11 @@ impl Loader<'_> {
         }
     }
 
-    /// Reads the robots to append; `folder`: the scene's. Whether all are there.
+    /// Reads the robots to append; `folder`: the scene's. Returns whether all are there.
     pub fn append(&mut self, folder: &Path, options: &mut RobotOptions, log: &mut Diagnostics) -> bool {
         let mut all = true;
         let mut append = std::mem::take(&mut options.append);
-        // Arguments are those of the robot.
+        // Only the robot itself has arguments.
         let own = RobotOptions { arguments: BTreeMap::new(), ..options.clone() };
         for other in &mut append {
             let span = other.file.span.clone().unwrap_or_default();
@@ -243,8 +242,8 @@ impl Loader<'_> {
     }
 }
 
-/// A file as the root sees it: one that an invocation names as it is, one that a scene names from
-/// the scene's folder.
+/// A file as the root sees it: a name in an invocation is unchanged, a name in a scene is relative
+/// to the scene's folder.
 fn seen_from(at: At, folder: &Path, name: &str) -> PathBuf {
     if matches!(at, At::Word(_)) { name.into() } else { folder.join(name) }
 }
@@ -255,7 +254,7 @@ pub fn folder_of(file: &Path) -> &Path {
     file.parent().unwrap_or(Path::new(""))
 }
 
-/// A file that a scene names, as seen from where the scene is seen.
+/// A file that a scene names, relative to the root that the scene is relative to.
 #[must_use]
 pub fn beside(scene: &str, name: &str) -> String {
     let folder = Path::new(scene).parent().filter(|folder| *folder != Path::new(""));
@@ -263,8 +262,8 @@ pub fn beside(scene: &str, name: &str) -> String {
 }
 
 impl Opened {
-    /// A scene for the robot in `document`; `append` are the documents that it appends. Nothing is
-    /// opened. `base` applies where the scene gives none.
+    /// A scene for the robot in `document`; `append` are the documents of appended robots. No file
+    /// is opened. `base` applies if the scene has none.
     #[must_use]
     pub fn new(scene: Scene, file: &str, document: Vec<u8>, base: Base, append: Vec<Vec<u8>>) -> Self {
         let mut options = RobotOptions { base, ..RobotOptions::default() };
@@ -273,7 +272,7 @@ impl Opened {
         Self { scene, file: file.to_owned(), document, options, files: Vec::new() }
     }
 
-    /// The robot as the scene requests it.
+    /// The robot requested by the scene.
     #[must_use]
     pub fn robot(&self) -> RobotRequest<'_> {
         RobotRequest { file: &self.file, document: &self.document, options: &self.options, scene: Some(&self.scene), checks_motion: true }
@@ -291,8 +290,8 @@ impl Opened {
 }
 
 impl Scene {
-    /// Writes into the options what the scene says of its robot: all but the effects, which need
-    /// it, and the documents of the robots to append.
+    /// Writes the scene's options of its robot into `options`: all but the effects, which need the
+    /// robot, and the documents of the robots to append.
     pub fn fill_robot(&self, options: &mut RobotOptions) {
         let (code, places) = (self.code.clone(), &self.code.places);
         options.base = self.base.unwrap_or(options.base);

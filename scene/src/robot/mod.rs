@@ -1,4 +1,4 @@
-//! The robot that a scene, or a request, asks for: its document read and edited, and its model.
+//! The robot that a scene or a request describes: its document read and edited, and its model.
 //!
 //! [`Loader`] reads the files. [`RobotOptions`] (from a scene: [`crate::Scene::fill_robot`]) and a
 //! document make a [`RobotRequest`]; [`RobotRequest::build`] makes the robot and reports all

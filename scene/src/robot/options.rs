@@ -1,4 +1,4 @@
-//! What is requested of a robot before anything is computed.
+//! Options of a robot before any computation.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -13,8 +13,8 @@ use articulated_formats::{Formats, Included, LeaveOut};
 
 use crate::scene::Scene;
 
-/// The robot as requested: base, gravity, edits, frames and effects. An entry that a file gives
-/// carries its place.
+/// The robot as requested: base, gravity, edits, frames and effects. An entry from a file carries
+/// its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotOptions {
     /// Whether the root link is fixed.
@@ -22,10 +22,10 @@ pub struct RobotOptions {
     /// Gravity in the world frame, m/s²; `None`: that of the robot's file, or else standard
     /// gravity.
     pub gravity: Option<[f64; 3]>,
-    /// Names of the links whose frames the functions of frames return, in this order; `None`: all
-    /// of them, in the order of the file.
+    /// Names of the links whose frames the functions of frames return, in this order; `None`: all,
+    /// in the order of the file.
     pub frames: Option<Vec<Spanned<String>>>,
-    /// What the wrenches that functions take refer to.
+    /// Reference of the wrenches that functions take.
     pub wrench_reference: Reference,
     /// Robots to append, one after the other.
     pub append: Vec<Appended>,
@@ -38,27 +38,26 @@ pub struct RobotOptions {
     /// Joints that follow others, see
     /// [`couple`](articulated_core::description::Description::couple).
     pub coupling: Vec<Spanned<Coupling>>,
-    /// Lets joints follow others as linear equations of the robot's file say
+    /// Lets joints follow others according to the linear equations of the robot's file
     /// ([`World::couplings`]).
     pub file_coupling: bool,
     /// Joints to lock and their coordinates, see
     /// [`lock`](articulated_core::description::Description::lock); also joints of appended robots.
     pub lock: Vec<Spanned<(String, Vec<f64>)>>,
-    /// What the robot is subject to besides gravity and the scene's effects; also on joints and
-    /// links of appended robots.
+    /// Effects of the robot besides gravity and the scene's effects; also on joints and links of
+    /// appended robots.
     pub effects: Vec<Applied>,
     /// Accept negative principal moments, with a warning. (Moments that violate the triangle
     /// inequality are always accepted with a warning.)
     pub allow_unphysical_inertia: bool,
-    /// Take the first of tags of a URDF or SDF that should be there once, with a warning.
+    /// If a unique tag of a URDF or SDF is repeated, take the first, with a warning.
     pub first_of_duplicates: bool,
     /// Elements of an MJCF that change the motion and are not read, to leave out with a warning.
     pub leave_out: BTreeSet<LeaveOut>,
     /// Read a URDF of a version other than 1.0, 1.1 and 1.2 as 1.0, with a warning.
     pub allow_unknown_version: bool,
-    /// Take angles this near (rad, above 0, at most
-    /// [`MOST_SNAPPED`](articulated_formats::MOST_SNAPPED)) to a multiple of π/2 as that multiple;
-    /// every one is reported. `None`: never.
+    /// Rounds angles to a multiple of π/2 that is this near (rad, above 0, at most
+    /// [`MOST_SNAPPED`](articulated_formats::MOST_SNAPPED)); each is reported. `None`: never.
     pub snap_angles: Option<f64>,
     /// The formats of robot files.
     pub formats: Formats,
@@ -71,23 +70,23 @@ pub struct RobotOptions {
 }
 
 /// Another robot, such as a gripper, to be fixed to a link or frame. Its links, joints, frames and
-/// what its file says of a world get a prefix before their names.
+/// the names in its file's world get a prefix.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Appended {
     /// The bytes of its file.
     pub document: Vec<u8>,
-    /// The file's name, for messages and for the header of a generated file; with the place that
-    /// names it. Not opened.
+    /// The file's name, for messages and for the header of a generated file, with the place that
+    /// names it. It is not opened.
     pub file: Spanned<String>,
     /// The link or frame that carries it.
     pub at: Spanned<String>,
-    /// What stands before its names.
+    /// Prefix of its names.
     pub prefix: String,
     /// Its root in that frame.
     pub origin: Origin,
 }
 
-/// A robot's document and what is requested of it.
+/// A robot's document and its options.
 #[derive(Clone, Copy, Debug)]
 pub struct RobotRequest<'a> {
     /// The file's name, for messages; not opened.
@@ -131,7 +130,7 @@ impl Default for RobotOptions {
 }
 
 impl RobotOptions {
-    /// Gravity in the world frame, m/s², of a robot whose file says this of its world.
+    /// Gravity in the world frame, m/s², for a robot whose file has this world.
     #[must_use]
     pub fn gravity_in(&self, world: &World) -> [f64; 3] {
         self.gravity.or(world.gravity).unwrap_or(GRAVITY)

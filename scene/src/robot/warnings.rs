@@ -20,8 +20,8 @@ const MOST_GRAVITY: f64 = 1000.0;
 /// left.
 const MOST_COORDINATE: f64 = 1e6;
 
-/// A warning for each joint of which a coordinate in `q`, rad or m, is beyond any sense: sines of
-/// such angles, and what follows from them, are rounding.
+/// A warning for each joint with an implausibly large coordinate in `q`, rad or m: sines of such
+/// angles, and results computed from them, are rounding errors.
 pub fn beyond_sense(model: &Model<f64>, q: &[f64]) -> Vec<String> {
     let joints = model.joints().iter().filter_map(|joint| {
         let own = q.get(joint.q.0..joint.q.0 + joint.q.1)?;
@@ -34,13 +34,13 @@ pub fn beyond_sense(model: &Model<f64>, q: &[f64]) -> Vec<String> {
     joints.collect()
 }
 
-/// A warning of a robot's edits.
+/// A warning about a robot's edits.
 fn warning(file: &str, place: &Place<'_>, code: Code, found: String, expected: impl Into<String>) -> Diagnostic {
     Diagnostic::error(file, place, code, found, expected).into_warning()
 }
 
 impl Editing<'_> {
-    /// What is odd about the edits, or no more so because of them.
+    /// Warnings about the edits; removes findings that the edits made obsolete.
     pub(super) fn warn(&mut self, effects: &[Applied]) {
         self.let_go();
         self.warn_of_gravity();
@@ -52,7 +52,7 @@ impl Editing<'_> {
         self.report_world();
     }
 
-    /// Lists what the file says beside the robot and the scene does not ask for.
+    /// Lists content of the file's world that the scene does not request.
     fn report_world(&mut self) {
         let (Reading { world, unused, .. }, scene) = (&mut self.reading, self.request.scene);
         let is_driven = scene.is_some_and(|scene| matches!(scene.control.drive, Drive::Actuators(_)));
@@ -81,7 +81,7 @@ impl Editing<'_> {
         }
     }
 
-    /// Mass behind a shaft moves, and so does what the shaft has taken for its own.
+    /// Mass behind a shaft moves, and so does mass that the shaft has taken over.
     fn let_go(&mut self) {
         if self.request.options.shafts.is_empty() {
             return;
@@ -93,7 +93,7 @@ impl Editing<'_> {
         self.reading.release(|link| !held.contains(link));
     }
 
-    /// Warns of a gravity that no place has.
+    /// Warns of implausible gravity.
     fn warn_of_gravity(&mut self) {
         let gravity = self.request.options.gravity_in(&self.reading.world);
         let size = gravity.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -108,7 +108,7 @@ impl Editing<'_> {
         }
     }
 
-    /// A lock beyond the joint's limits is odd, and used.
+    /// A lock beyond the joint's limits is used, with a warning.
     fn warn_of_limits(&mut self) {
         let joints = &self.reading.description.joints;
         let of_name = indices(joints.iter().map(|j| j.name.as_str()));
@@ -123,7 +123,7 @@ impl Editing<'_> {
             if let (JointKind::Spherical, &[x, y, z, w]) = (joint.kind, at.as_slice()) {
                 // The angle of the rotation from the identity, rad
                 let angle = 2.0 * (x * x + y * y + z * z).sqrt().atan2(w.abs());
-                // Rounding of the numbers in the scene counts nothing.
+                // Rounding of the numbers in the scene is tolerated.
                 return (limit.upper > 0.0 && angle > limit.upper * (1.0 + 1e-9)).then(|| {
                     beyond(
                         format!("a rotation by {angle:.6} rad, beyond its limit"),
@@ -147,7 +147,7 @@ impl Editing<'_> {
         let (options, description) = (&self.request.options, &self.reading.description);
         let still = still(description, options.base);
         let links = indices(description.links.iter().map(|l| l.name.as_str()));
-        // The first of a name is the last that is kept.
+        // The first frame of a name is the last that is inserted.
         let frames: HashMap<&str, LinkId> = description.frames.iter().rev().map(|frame| (frame.name.as_str(), frame.link)).collect();
         let carrier = |name: &str| links.get(name).copied().or_else(|| frames.get(name).copied());
         let held = |name: &str| carrier(name).is_some_and(|at| still.get(at).copied().unwrap_or_default());
@@ -163,7 +163,7 @@ impl Editing<'_> {
         self.reading.warnings.extend(loads.collect::<Vec<_>>());
     }
 
-    /// Warns of a load whose mass no link has.
+    /// Warns of a load with an implausible mass.
     fn warn_of_masses(&mut self) {
         let odd = self.request.options.payloads.iter().filter_map(|load| {
             let (found, expected) = beyond_any_mass(load.mass)?;
@@ -173,7 +173,7 @@ impl Editing<'_> {
         self.reading.warnings.extend(odd);
     }
 
-    /// An inertia of a load that no body has is odd, and used, as that of a link is.
+    /// An inertia of a load that no body can have is used, with a warning, as that of a link is.
     fn warn_of_moments(&mut self) {
         let odd = self.request.options.payloads.iter().filter_map(|load| {
             let moments = PrincipalMoments::of(load.inertia);
@@ -211,7 +211,7 @@ impl Editing<'_> {
         let joints = indices(description.joints.iter().map(|j| j.name.as_str()));
         let tags = |e: &Applied| {
             let dynamics = description.joints[*joints.get(e.on.as_str())?].dynamics;
-            // Numbers of the file by their place among those of the effect.
+            // Numbers of the file by their index among those of the effect.
             let numbers: &[(usize, &str, Option<f64>)] = match e.effect {
                 EffectId::damping => &[(0, "dynamics damping", dynamics.damping)],
                 EffectId::friction => &[(0, "dynamics friction", dynamics.friction)],

@@ -1,5 +1,4 @@
-//! What is said of scenes that are wrong: the key, the line, what was found, what would be right;
-//! all at once.
+//! Errors of wrong scenes: the key, the line, what was found, what was expected; all at once.
 
 mod robot;
 
@@ -314,7 +313,7 @@ fn sorts_of_mistakes_are_data() {
     );
 }
 
-/// What may be at most so much may be just that.
+/// The maximum itself is allowed.
 #[test]
 fn the_most_that_is_expected_is_taken() {
     let taken = |text: &str| Scene::read("s.toml", text).map(drop).map_err(|e| e.to_string());

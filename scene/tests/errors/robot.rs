@@ -1,4 +1,4 @@
-//! What only the robot, or a table beside the scene, shows to be wrong.
+//! Errors that need the robot, or a table next to the scene, to be found.
 
 use articulated_core::description::Base;
 use articulated_core::model::Model;
@@ -13,7 +13,7 @@ const ARM: &str = r#"<robot name="arm">
     <limit lower="-1" upper="2" effort="5" velocity="3"/></joint>
   <joint name="tool" type="fixed"><parent link="lower"/><child link="tip"/></joint></robot>"#;
 
-/// What is said of a scene that reads, against the arm.
+/// Errors of a readable scene, against the arm.
 fn against_the_arm(text: &str) -> Vec<String> {
     against(ARM, text)
 }
@@ -148,7 +148,7 @@ fn numbers_that_a_ball_joint_does_not_have_are_told() {
     assert!(told.contains("effects.spring.hip.rest"), "{told}");
 }
 
-/// `*` is for the joints that have the given numbers.
+/// `*` applies to the joints that have the given numbers.
 #[test]
 fn effects_on_all_joints_are_on_balls_where_they_have_such_numbers() {
     let reading = articulated_formats::read(BALL.as_bytes(), &articulated_formats::Options::default()).unwrap();

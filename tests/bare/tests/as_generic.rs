@@ -1,4 +1,4 @@
-//! What a crate without `std` computes, against the generic library.
+//! Results of a crate without `std`, against the generic library.
 
 use articulated::{Base, Dynamics, Model};
 use articulated_tests_bare::{arm, arm_of_pairs, arm_of_singles, walker};
@@ -13,8 +13,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |m: f64, (x, y)| m.max((x - y).abs())) / size
 }
 
-/// Angles near and far, the last of them beyond those that have polynomials; rates and
-/// accelerations.
+/// Angles near and far, the last ones beyond the range of the polynomials; rates and accelerations.
 fn states() -> [([f64; 6], [f64; 6], [f64; 6]); 3] {
     let of = |scale: f64, k: f64| core::array::from_fn(|i| scale * (i as f64 - 2.3 + k));
     [1.0, 1e3, 1e7].map(|scale| (of(scale, 0.0), of(0.7, 1.0), of(0.4, -1.5)))

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use crate::table::{escaped, is_obeyed, plain};
 
-/// Writes to the standard output. A reader that has gone away is not an error.
+/// Writes to the standard output. A closed pipe is not an error.
 pub fn print(text: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     match out.write_all(harmless(text).as_bytes()).and_then(|()| out.flush()) {
@@ -32,12 +32,12 @@ pub fn error(text: &str) {
     say("error", "31", &plain(text));
 }
 
-/// The same, of what a tool has said in several lines.
+/// The same, for a tool's message of several lines.
 pub fn error_of_tool(text: &str) {
     say("error", "31", text);
 }
 
-/// What is wrong with the command line, as it is.
+/// The error of the command line, unchanged.
 pub fn refuse(text: &str) {
     let _ = io::stderr().lock().write_all(harmless(text).as_bytes());
 }
@@ -70,8 +70,8 @@ fn say(level: &str, colour: &str, text: &str) {
     let _ = writeln!(stream, "{level}: {}", harmless(text));
 }
 
-/// A text without what a terminal would obey: names of files and robots may have such characters.
-/// Ends of lines and tabs stay.
+/// A text without control characters, which names of files and robots may contain. Ends of lines
+/// and tabs stay.
 pub fn harmless(text: &str) -> String {
     escaped(text, |c| !matches!(c, '\n' | '\t') && is_obeyed(c))
 }
@@ -82,13 +82,13 @@ pub struct Progress {
     shown: Option<(Arc<Mutex<Bar>>, JoinHandle<()>)>,
 }
 
-/// What a bar shows.
+/// Contents of a bar.
 #[derive(Debug, Default)]
 struct Bar {
     message: String,
     done: u64,
     steps: u64,
-    /// Whether parts of a whole are shown, in percent, and not counts.
+    /// Whether parts are shown in percent instead of counts.
     whole: bool,
     turns: usize,
     over: bool,
@@ -116,12 +116,12 @@ impl Progress {
         Self::start(Bar { steps: steps as u64, ..Bar::default() })
     }
 
-    /// For something whole, of which parts get done.
+    /// For a whole whose parts get done.
     pub fn of_whole(what: String) -> Self {
         Self::start(Bar { message: what, steps: 1000, whole: true, ..Bar::default() })
     }
 
-    /// For what another bar tells of.
+    /// For work that another bar shows.
     pub fn hidden() -> Self {
         Self { shown: None }
     }
@@ -159,7 +159,7 @@ impl Progress {
         self.change(|bar| bar.done = (part.clamp(0.0, 1.0) * 1000.0) as u64);
     }
 
-    /// What is being done now.
+    /// The current work.
     pub fn doing(&self, what: String) {
         self.change(|bar| bar.message = what);
     }

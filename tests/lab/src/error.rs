@@ -5,7 +5,7 @@ use std::fmt;
 use articulated_core::diagnostic::{Diagnostic, Diagnostics};
 use articulated_motion::MotionErrors;
 
-/// What is wrong. The command makes an exit status and diagnostics of it.
+/// An error. The command turns it into an exit status and diagnostics.
 #[derive(Debug)]
 pub enum Error {
     /// The robot or its code.
@@ -68,7 +68,7 @@ impl From<MotionErrors> for Error {
     }
 }
 
-/// What a robot lacks for a function, in a few words; the findings if something else is wrong.
+/// The missing property of a robot for a function, in a few words; the findings for another error.
 pub fn undefined(findings: Diagnostics) -> Result<String, Diagnostics> {
     match articulated_codegen::undefined(&findings) {
         Some(why) => Ok(why.to_owned()),

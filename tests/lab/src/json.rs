@@ -4,8 +4,8 @@ use serde::{Serialize, Serializer};
 
 use crate::table::is_obeyed;
 
-/// Units by path: `functions[].generated` is what `generated` is in each of `functions`. Seconds
-/// and bytes that say so in their names are not among them.
+/// Units by path: `functions[].generated` is `generated` in each of `functions`. Seconds and bytes
+/// that are part of the name are not included.
 #[derive(Clone, Copy, Debug)]
 pub struct Units(pub &'static [(&'static str, &'static str)]);
 

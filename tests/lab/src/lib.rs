@@ -1,13 +1,13 @@
 //! The laboratory: measures generated code.
 //!
 //! * [`compare`]: against the generic library and peers, on one robot.
-//! * [`accuracy`]: what accuracy costs, level by level; integrators on the motion of a scene.
+//! * [`accuracy`]: the cost of accuracy for each level; integrators on the motion of a scene.
 //! * [`scaling`]: how costs grow with the length of a robot.
-//! * [`stress`]: a corpus of hard cases, each with a limit that it keeps.
-//! * [`against`]: whole simulations beside peers.
+//! * [`stress`]: a corpus of hard cases, each with its limit.
+//! * [`against`]: whole simulations compared with peers.
 //!
-//! A robot comes in as a value, [`robot::Robot`], a scene as [`session::Session`]. A measurement
-//! gives a report, which can be printed as text, as JSON ([`json::json`]), and as files. The
+//! The inputs are a robot, [`robot::Robot`], and a scene, [`session::Session`]. A measurement
+//! returns a report, which can be printed as text, as JSON ([`json::json`]), and as files. The
 //! command `articulated` reads the command line, loads, and prints; tests use [`states`],
 //! [`compiled::Compiled`] and [`scaling::chain::chain`].
 

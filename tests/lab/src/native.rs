@@ -1,12 +1,13 @@
-//! Functions of libraries that are opened at run time: the one module of the command that needs
+//! Functions of libraries that are opened at run time: the only module of the command that needs
 //! `unsafe`.
 //!
-//! A library runs whatever is in it. Two kinds are opened here: one that the command has just
-//! compiled from its own source ([`kernel`], [`batch`]), and peers that the user names ([`peer`],
-//! [`peer_kernel`]). The signatures there are what both promise; nothing can check them.
+//! A library runs any code that it contains. Two kinds are opened here: one that the command has
+//! just compiled from its own source ([`kernel`], [`batch`]), and peers that the user names
+//! ([`peer`], [`peer_kernel`]). The signatures there are the contracts of both; they cannot be
+//! checked.
 #![allow(unsafe_code)]
-// Why: calling across a C interface has no safe form. What can be checked, the lengths of arrays,
-// is checked before every call.
+// Why: calls across a C interface have no safe form. The lengths of arrays, which can be checked,
+// are checked before every call.
 
 mod batch;
 mod entry;
@@ -35,16 +36,16 @@ pub(crate) struct Native {
 }
 
 impl Native {
-    /// Opens a copy of the library at `path`. What a linker has written piece by piece lies
-    /// scattered in memory, and code that fills the cache for instructions then takes up to a third
-    /// longer, or not, as it happens; a copy is written in one go.
+    /// Opens a copy of the library at `path`. A file that a linker has written piece by piece is
+    /// scattered in memory, and code that fills the instruction cache then sometimes takes up to a
+    /// third longer; a copy is written at once.
     pub(crate) fn open(path: &Path) -> Result<Self, String> {
         let failed = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
         let folder = Folder::new().map_err(|e| failed(&e))?;
         let copy = folder.path().join(path.file_name().unwrap_or_default());
         std::fs::copy(path, &copy).map_err(|e| failed(&e))?;
         // SAFETY: initialisers of the library run: ours has none, and a peer is a library that the
-        // user asked to be run.
+        // user requested to run.
         let library = unsafe { libloading::Library::new(&copy) }.map_err(|e| failed(&e))?;
         Ok(Self { library: Arc::new(library), _copy: Arc::new(folder) })
     }
@@ -53,9 +54,9 @@ impl Native {
     ///
     /// # Safety
     /// T is the type of a pointer to that function: a function pointer with the C interface, and
-    /// the arguments and the result that the library gives the function.
+    /// the library's arguments and result of the function.
     unsafe fn symbol<T: Copy>(&self, name: &str) -> Option<T> {
-        // SAFETY: what this function asks for is what it asks for.
+        // SAFETY: the caller satisfies the same conditions.
         unsafe { self.library.get::<T>(name.as_bytes()) }.ok().map(|s| *s)
     }
 }
@@ -85,8 +86,8 @@ fn pointers(x: &[&[f64]]) -> [P; 4] {
     std::array::from_fn(|k| x.get(k).map_or(std::ptr::null(), |x| x.as_ptr().cast()))
 }
 
-/// Where each state's arrays begin, found once, so that nothing but calls is in the loop: to look
-/// that up is not a part of a function, and a short one would wait for it.
+/// The start of each state's arrays, found once, so that the loop contains only calls: the lookup
+/// is not part of a function, and a short one would wait for it.
 fn all_pointers(states: &[Vec<&[f64]>]) -> Vec<[P; 4]> {
     black_box(states.iter().map(|state| pointers(state)).collect())
 }

@@ -17,7 +17,7 @@ pub type Dash = [f64; 2];
 pub const INK: &str = "#222222";
 /// Of numbers at axes, and of notes.
 pub const GREY: &str = "#555555";
-/// Of the lines of a grid.
+/// Colour of the lines of a grid.
 pub const GRID: &str = "#dddddd";
 
 /// The size of letters at axes and marks.
@@ -25,7 +25,7 @@ pub const SMALL: f64 = 11.0;
 
 const FAMILY: &str = "DejaVu Sans, Verdana, Arial, sans-serif";
 
-/// Which side of a text its place is.
+/// The side of a text that is at its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// The text begins there.
@@ -75,7 +75,7 @@ impl Text {
         Self { rimmed: true, ..self }
     }
 
-    /// What it says.
+    /// Its text.
     pub fn content(&self) -> &str {
         &self.content
     }
@@ -111,7 +111,7 @@ pub enum Mark {
         colour: &'static str,
         /// Of the line.
         width: f64,
-        /// None if it is whole.
+        /// `None` for a solid line.
         dash: Option<Dash>,
     },
     /// A circle.
@@ -157,7 +157,7 @@ impl Mark {
 pub struct Drawing {
     width: f64,
     height: f64,
-    /// What is drawn.
+    /// The drawn marks.
     pub marks: Vec<Mark>,
 }
 
@@ -217,7 +217,7 @@ impl Drawing {
         }
     }
 
-    /// A row of a legend: a piece of the line, and the name beside it.
+    /// A row of a legend: a piece of the line, and the name next to it.
     pub fn key(&mut self, [x, y]: Point, (line, dash): (&'static str, Option<Dash>), colour: &'static str, name: &str) {
         self.line(vec![[x, y], [x + 18.0, y]], line, 2.0, dash);
         self.text([x + 24.0, y + 4.0], Anchor::Start, SMALL, colour, name);
@@ -249,7 +249,8 @@ pub fn escaped(text: &str) -> String {
     })
 }
 
-/// About how wide a text is at a size: letters as those of DejaVu Sans, the widest of the family.
+/// Approximate width of a text at a size: letters as wide as in DejaVu Sans, the widest of the
+/// family.
 pub fn width(text: &str, size: f64) -> f64 {
     let one = |c: char| match c {
         'i' | 'j' | 'l' | 'I' | 'J' | '\'' | '|' => 0.3,
@@ -271,7 +272,7 @@ pub struct Axis {
     range: [f64; 2],
     /// Where the ends are.
     ends: [f64; 2],
-    /// Between two ticks of a linear axis; none if the axis is logarithmic.
+    /// Distance of ticks of a linear axis; `None` if the axis is logarithmic.
     step: Option<f64>,
 }
 
@@ -297,7 +298,7 @@ impl Axis {
         Self { range: if low <= high { [low - room, high + room] } else { [0.0, 1.0] }, ends, step: None }
     }
 
-    /// Where a number is. Nothing is beyond the ends of a logarithmic axis.
+    /// The position of a number. A logarithmic axis clamps numbers to its ends.
     pub fn at(&self, number: f64) -> f64 {
         let along = |x: f64| (x - self.range[0]) / (self.range[1] - self.range[0]);
         let part = if self.step.is_some() { along(number) } else { along(number.max(1e-300).log10()).clamp(0.0, 1.0) };
@@ -309,8 +310,8 @@ impl Axis {
         (self.range[0]..=self.range[1]).contains(&number)
     }
 
-    /// The numbers written at a logarithmic axis: powers of ten, and their multiples by 2 and 5
-    /// where there are few.
+    /// The numbers written at a logarithmic axis: powers of ten, and their multiples by 2 and 5 if
+    /// there are few.
     pub fn decades(&self, text: impl Fn(f64) -> String) -> Vec<(f64, String)> {
         let decades = self.range[1] - self.range[0];
         let multiples: &[f64] = if decades < 2.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
@@ -320,8 +321,7 @@ impl Axis {
         all.filter(|x| self.holds(x.log10())).map(|x| (x, text(x))).collect()
     }
 
-    /// The numbers written at a linear axis, and the power of ten that all of them are to be
-    /// multiplied with.
+    /// The numbers written at a linear axis, and their common power of ten.
     pub fn ticks(&self) -> (Vec<(f64, String)>, i32) {
         let ([low, high], step) = (self.range, self.step.unwrap_or(1.0));
         let slack = 1e-9 * step;

@@ -1,5 +1,5 @@
-//! Temporary folders and programs that are run: both end when the process does, also when it is
-//! interrupted (Ctrl-C, or a signal), where nothing is dropped.
+//! Temporary folders and child programs: both end with the process, also after an interruption
+//! (Ctrl-C, or a signal), when no destructor runs.
 
 use std::hash::{BuildHasher, RandomState};
 use std::io::{self, Read};
@@ -25,7 +25,7 @@ impl Folder {
     /// An empty folder where temporary files belong.
     pub(crate) fn new() -> io::Result<Self> {
         watch();
-        // Nothing can come between a folder and its place in the list.
+        // No interruption is possible between a folder and its entry in the list.
         let mut folders = folders();
         let folder = create_folder(&std::env::temp_dir())?;
         folders.push(folder.clone());
@@ -37,8 +37,8 @@ impl Folder {
     }
 }
 
-/// A folder with a name that is free, for this user alone. Nothing can have been put there before:
-/// a name that is taken is an error, of a link too.
+/// A folder with a free name, for this user alone. It cannot contain earlier files: a taken name is
+/// an error, also for a link.
 fn create_folder(parent: &Path) -> io::Result<PathBuf> {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let mut builder = std::fs::DirBuilder::new();
@@ -93,7 +93,7 @@ fn wait() -> bool {
 /// Those that run.
 static CHILDREN: Mutex<Vec<Child>> = Mutex::new(Vec::new());
 
-/// How a program ended, and what it wrote to its two streams.
+/// A program's exit status, and the texts of its two streams.
 pub(crate) struct Ended {
     pub(crate) status: ExitStatus,
     pub(crate) output: String,
@@ -106,7 +106,7 @@ pub(crate) fn run(command: &mut Command, limit: Duration) -> io::Result<Ended> {
     watch();
     in_own_group(command);
     let (id, output, errors) = {
-        // Nothing can come between a child and its place in the list.
+        // No interruption is possible between a child and its entry in the list.
         let mut children = children();
         let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
         let (output, errors) = (child.stdout.take(), child.stderr.take());
@@ -202,7 +202,7 @@ pub(crate) fn watch_signals(end: fn(i32)) {
     thread::spawn(move || signals.forever().next().into_iter().for_each(|signal| end(i32::from(INTERRUPTED) - SIGINT + signal)));
 }
 
-/// Whether a signal was ignored from the start, as far as the system tells.
+/// Whether a signal was ignored from the start, if the system shows it.
 #[cfg(unix)]
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

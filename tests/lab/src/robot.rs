@@ -1,4 +1,4 @@
-//! A loaded robot: its document, where it is from, and how it is read.
+//! A loaded robot: its document, its source, and the options of reading it.
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,7 @@ pub struct Robot {
     pub document: Vec<u8>,
     /// How to read it, and how to generate its code.
     pub options: Options,
-    /// The scene whose effects act on it.
+    /// The scene with its effects.
     pub effects: Option<Scene>,
     /// Where the document is, if it is a file.
     pub path: Option<PathBuf>,
@@ -35,8 +35,8 @@ impl Robot {
         self
     }
 
-    /// The request for these functions. They take what the table says and no parameters, which are
-    /// constants, see [`note_of_parameters`].
+    /// The request for these functions. They take the arguments of the table and no parameters,
+    /// which are constants, see [`note_of_parameters`].
     pub fn request(&self, functions: &[String]) -> Request {
         let mut request = self.bare_request();
         request.options = self.options.clone();

@@ -16,11 +16,11 @@ use crate::console;
 use crate::error::Error;
 use crate::straight::Straight;
 
-/// A scene with its robot, as it moves, and what the command has to know besides.
+/// A scene with its moving robot, and further data for the command.
 pub struct Session {
     /// Of the scene, without folder and ending.
     pub name: String,
-    /// What code of the robot is generated from.
+    /// The request for the generated code of the robot.
     pub request: Request,
     /// Warnings about the robot.
     pub robot_warnings: Vec<String>,
@@ -38,7 +38,7 @@ impl Deref for Session {
 }
 
 impl Session {
-    /// Refuses a level whose functions take `f32`, which what calls them here has not.
+    /// Refuses a level with functions of `f32`, which the callers here do not have.
     pub fn is_of_doubles(&self) -> Result<(), Error> {
         let level = self.request.options.level;
         if !level.is_single() {
@@ -47,15 +47,15 @@ impl Session {
         Err(Error::input([format!("{}: level: found {level}, expected one whose functions take f64, as states here are", self.scene.file)]))
     }
 
-    /// The session of a scene that was read. `folder`: that of its file, for other files that it
-    /// names.
+    /// The session of a scene that was read. `folder`: the folder of its file, for other files that
+    /// it names.
     pub fn new(name: String, prepared: Prepared, folder: PathBuf) -> Result<Self, Error> {
         let Prepared { scene, mut request, robot, files } = prepared;
         let BuiltRobot { reading, model, resolved, effects, .. } = robot;
         // Variants of the request replace its effects.
         (request.scene, request.options.robot.effects) = (None, effects.clone());
         request.options.robot.frames = None;
-        // Bundled robots are odd on purpose.
+        // Bundled robots have unusual content on purpose.
         let robot_warnings = reading.warnings.iter().filter(|_| !matches!(scene.robot, Robot::Bundled(_)));
         let robot_warnings = summary(robot_warnings.chain(&reading.snapped));
         let mut session =
@@ -66,8 +66,8 @@ impl Session {
         Ok(Self { name, request, robot_warnings, folders, session })
     }
 
-    /// Where the motion starts, and what controls it; warnings are printed. Errors: all that do not
-    /// fit the robot, and tables that cannot be read.
+    /// The initial state and the control of the motion; warnings are printed. Errors: all data that
+    /// do not fit the robot, and unreadable tables.
     pub fn start(&self) -> Result<InitialState, Error> {
         let initial = self.initial_state()?;
         self.warnings(&initial).iter().for_each(|line| console::warn(line));
@@ -83,7 +83,7 @@ impl Session {
         beyond.into_iter().chain(senseless).chain(sunk).chain(self.warning_of_penetrations_at_start(&initial.q)).collect()
     }
 
-    /// The code that a simulation of the scene needs, and the frames that it gives.
+    /// The code that a simulation of the scene needs, and its frames.
     pub fn generate(&self, integrator: IntegratorId) -> Result<(Generated, Vec<String>), Error> {
         self.is_of_doubles()?;
         let frames = self.frames();
@@ -95,9 +95,9 @@ impl Session {
         Ok((articulated_codegen::generate(&request)?, frames))
     }
 
-    /// Runs the motion, by generated code or by the generic library; `look` sees the time and the
-    /// counts after each step, and returns false to stop the run. The outcome, and what the scene
-    /// looks for and the code has not.
+    /// Runs the motion, by generated code or by the generic library; `look` gets the time and the
+    /// counts after each step, and returns false to stop the run. Returns the outcome, and events
+    /// of the scene that the code lacks.
     pub fn run(
         &self,
         initial: &InitialState,
@@ -131,12 +131,12 @@ impl Session {
     }
 }
 
-/// What computes the functions of a motion.
+/// Implementation of the functions of a motion.
 #[derive(Clone, Copy)]
 pub enum Code<'a> {
     /// The generic library.
     Generic,
-    /// Generated code, and the frames that it gives.
+    /// Generated code, and its frames.
     Generated(&'a Straight, &'a [String]),
 }
 

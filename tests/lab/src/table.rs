@@ -7,7 +7,7 @@ pub struct Table {
     head: [Vec<String>; 2],
     rows: Vec<Vec<String>>,
     left: usize,
-    /// How many columns the first cell of a row may take before the others.
+    /// Maximum columns of the first cell of a row before the others.
     first: Option<usize>,
 }
 
@@ -24,7 +24,7 @@ impl Table {
         self
     }
 
-    /// A first cell of more than so many columns stands on a line of its own.
+    /// A first cell of more columns than this is on a line of its own.
     pub fn first_within(mut self, columns: usize) -> Self {
         self.first = Some(columns);
         self
@@ -70,8 +70,8 @@ impl Table {
     }
 }
 
-/// How many columns of a terminal a text takes: marks on the letter before take none, wide letters
-/// of East Asia and pictures two (Unicode Standard Annex 11, its large blocks).
+/// The number of terminal columns of a text: marks on the letter before take none, wide letters of
+/// East Asia and pictures two (Unicode Standard Annex 11, its large blocks).
 fn columns(text: &str) -> usize {
     let one = |c: char| match c {
         '\u{300}'..='\u{36f}' => 0,
@@ -86,8 +86,8 @@ fn columns(text: &str) -> usize {
 /// How many columns prose takes.
 pub const WIDTH: usize = 100;
 
-/// Prose in lines of at most [`WIDTH`] columns, as far as its spaces allow; what continues a line
-/// stands below its beginning.
+/// Prose in lines of at most [`WIDTH`] columns, as far as its spaces allow; continuation lines are
+/// aligned with its beginning.
 pub fn wrapped(text: &str) -> String {
     text.split_inclusive('\n').map(wrapped_line).collect()
 }
@@ -121,13 +121,13 @@ pub fn freedom(n: usize) -> String {
     counted(n, "degree") + " of freedom"
 }
 
-/// Whether a terminal obeys a character instead of showing it: it ends a line, moves the cursor, or
-/// turns the direction of what follows.
+/// Whether a terminal interprets a character instead of showing it: it ends a line, moves the
+/// cursor, or turns the direction of the following text.
 pub fn is_obeyed(c: char) -> bool {
     c.is_control() || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// Text on one line, whatever a name contains: what a terminal would obey is escaped.
+/// Text on one line, whatever a name contains: control characters are escaped.
 pub fn plain(text: &str) -> String {
     escaped(text, is_obeyed)
 }

@@ -1,7 +1,7 @@
-//! The frames that lists of all functions are about.
+//! The frames for lists of all functions.
 //!
-//! A robot has a frame for each link, and what a function of frames costs grows with them. Such
-//! lists take the tips: moving links that carry no other.
+//! A robot has a frame for each link, and the cost of a function of frames grows with them. Such
+//! lists use the tips: moving links that carry no other.
 
 use articulated_core::algorithm::{Function, Needs};
 use articulated_core::description::Description;
@@ -34,7 +34,7 @@ impl Tips {
         &self.all
     }
 
-    /// Those that a function is defined on; `None` if it needs some and there are none.
+    /// The frames that a function is defined on; `None` if it needs some and there are none.
     pub fn of_function<S>(&self, function: &Function<S>) -> Option<&[String]> {
         match function.needs {
             Needs::FreeFrames => Some(self.free.as_slice()).filter(|f| !f.is_empty()),

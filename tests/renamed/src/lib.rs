@@ -1,6 +1,6 @@
 //! The macro in a crate that knows `articulated` under another name only.
 //!
-//! A library, because only there the compiler asks for documentation; generated code satisfies the
+//! A library, because the compiler requires documentation only there; generated code satisfies the
 //! strictest user.
 #![deny(missing_docs, unreachable_pub, dead_code, unused, nonstandard_style, unsafe_code, clippy::all, clippy::pedantic, clippy::nursery)]
 

@@ -13,7 +13,7 @@ use crate::virtual_power::Motions;
 /// A robot with its base and gravity.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// What it is called in messages.
+    /// Its name in messages.
     pub name: String,
     /// As the file has it.
     pub description: Description,
@@ -34,7 +34,7 @@ pub struct State {
     pub v: Vec<f64>,
     /// `[nv]`.
     pub a: Vec<f64>,
-    /// Torques, `[nv]`; not those of q, v and a.
+    /// Torques, `[nv]`; independent of q, v and a.
     pub tau: Vec<f64>,
     /// Wrenches on the frames, `[frames][6]`.
     pub wrenches: Vec<f64>,
@@ -95,7 +95,7 @@ pub fn cast<S: Scalar>(x: &[f64]) -> Vec<S> {
 }
 
 impl Case {
-    /// Of a description that is a model, with standard gravity.
+    /// From a valid description, with standard gravity.
     pub fn new(name: impl Into<String>, description: Description, base: Base) -> Self {
         let model = Model::new(&description, base).expect("a tree of known joints");
         Self { name: name.into(), description, base, gravity: GRAVITY, model }
@@ -191,7 +191,7 @@ pub fn read(urdf: &str) -> Description {
     articulated_formats::read(urdf.as_bytes(), &articulated_formats::Options::default()).expect("a sound URDF").description
 }
 
-/// Says which tree it was when the test fails.
+/// Names the tree when the test fails.
 struct Announce<'a>(&'a str);
 
 impl Drop for Announce<'_> {

@@ -6,12 +6,11 @@ use articulated_reference::Big;
 
 use crate::case::{Case, State, cast};
 
-/// What the library's constants allow, which are double precision however the rest is computed.
-/// Seen: 2·10⁻¹⁵.
+/// Tolerance for the library's constants, which are double precision at every precision of the
+/// rest. Seen: 2·10⁻¹⁵.
 const NEAR: f64 = 2e-14;
 
-/// The same for what is solved with the mass matrix, whose condition number comes in. Seen:
-/// 9·10⁻¹⁵.
+/// The same for solutions with the mass matrix, which include its condition number. Seen: 9·10⁻¹⁵.
 const SOLVED: f64 = 2e-13;
 
 /// The largest [`difference`] between a function on the library's constants and its right value.

@@ -5,7 +5,7 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use articulated_core::Scalar;
 use num_traits::{One, Zero};
 
-/// x, ẋ, ẍ. What is computed with it has its exact derivatives.
+/// x, ẋ, ẍ. Results computed with it have their exact derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jet<S>(pub S, pub S, pub S);
 

@@ -1,11 +1,11 @@
-//! What the tests of the crates share.
+//! Shared code of the tests of the crates.
 //!
-//! Laws need three things: robots at random ([`random_tree`], with [`random_effects`]), a right
-//! answer that shares no formula with the library ([`virtual_power`], and the textbook form in big
-//! floats), and a yardstick for rounding errors ([`measure`]).
+//! Laws need three things: random robots ([`random_tree`], with [`random_effects`]), a reference
+//! that shares no formula with the library ([`virtual_power`], and the textbook form in big
+//! floats), and a scale for rounding errors ([`measure`]).
 //!
-//! The crate depends on the core, the reference and the reader alone: the laws of the core are
-//! tests of the core.
+//! The crate depends only on the core, the reference and the reader: the laws of the core are tests
+//! of the core.
 
 pub mod case;
 pub mod every_function;

@@ -10,10 +10,10 @@ use crate::virtual_power::Motions;
 /// Unit roundoff of double precision.
 pub const U: f64 = f64::EPSILON / 2.0;
 
-/// What an error of each result of a function is measured against. For torques and placements
-/// [`Motions::torque_scale`] and [`Motions::placement_scale`], which share nothing with the library
-/// (entries of the mass matrix are torques for a unit of one acceleration); for all else the sum of
-/// the magnitudes of the terms, by the command's [`scales`].
+/// The scale of errors for each result of a function. For torques and placements
+/// [`Motions::torque_scale`] and [`Motions::placement_scale`], which are independent of the library
+/// (entries of the mass matrix are torques for a unit of one acceleration); for all others the sum
+/// of the magnitudes of the terms, by the command's [`scales`].
 pub fn scale(case: &Case, name: &str, state: &State) -> Vec<f64> {
     let zero = vec![0.0; case.model.nv()];
     let torque = |v: &[f64], a: &[f64]| case.motions().torque_scale(&state.q, v, a);
@@ -41,9 +41,9 @@ pub fn unit(n: usize, k: usize) -> Vec<f64> {
     (0..n).map(|i| if i == k { 1.0 } else { 0.0 }).collect()
 }
 
-/// How far `found`, the result of a function in a state, is from what the generic library gives, in
-/// units of u times [`scale`]. For forward dynamics, the backward error: how far the torques that
-/// they need are from those that were given, in units of u times |M||a| + |h| + |τ|.
+/// The difference between `found`, the result of a function in a state, and the generic library's,
+/// in units of u times [`scale`]. For forward dynamics, the backward error: the difference between
+/// the torques that they need and the given ones, in units of u times |M||a| + |h| + |τ|.
 pub fn error(case: &Case, name: &str, state: &State, found: &[f64]) -> f64 {
     if name != "forward_dynamics" {
         return distance(found, &case.call(name, &arguments(name, state)), &scale(case, name, state));

@@ -2,7 +2,7 @@
 
 use articulated_reference::SplitMix64;
 
-/// The command's generator, with what random trees need besides.
+/// The command's generator, with additions for random trees.
 #[derive(Clone, Debug)]
 pub struct Random(SplitMix64);
 

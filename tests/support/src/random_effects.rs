@@ -7,7 +7,7 @@ use articulated_core::model::{FLOATING_BASE, Model};
 
 use crate::random::Random;
 
-/// Effects of the kinds that `wanted` says, each on about half of the joints or moving links that
+/// Effects of the kinds accepted by `wanted`, each on about half of the joints or moving links that
 /// can have it.
 pub fn random_effects(random: &mut Random, model: &Model<f64>, wanted: impl Fn(EffectId) -> bool) -> Vec<Applied> {
     let mut applied = Vec::new();

@@ -1,15 +1,15 @@
-//! Robots at random whose limbs are alike, or nearly: what is evaluated in lanes, and what only
-//! looks as if it could be.
+//! Random robots with limbs that are alike, or nearly: limbs that are evaluated in lanes, and limbs
+//! that only look like it.
 
 use articulated_core::description::{Description, Inertial, Joint, JointId, JointKind, Link, LinkId, Mimic, Origin};
 
 use crate::random::Random;
 use crate::random_tree::{Flavour, inertial, joint};
 
-/// How the limbs of a robot differ.
+/// Differences between the limbs of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Style {
-    /// Not at all, but for where they begin.
+    /// None, except their starting points.
     Copies,
     /// Every other one is a mirror image.
     Mirrored,
@@ -19,8 +19,8 @@ enum Style {
     Uneven,
 }
 
-/// A trunk with two to six limbs of one to four joints. Inertias are those of bodies, but for a
-/// link without mass here and there that is no limb's last.
+/// A trunk with two to six limbs of one to four joints. Inertias are physical, except some links
+/// without mass that are not the last of a limb.
 pub fn random_limbs(seed: u64) -> Description {
     let random = &mut Random::new(seed);
     let style = *random.choose(&[Style::Copies, Style::Mirrored, Style::Near, Style::Uneven]);
@@ -66,7 +66,7 @@ fn template(random: &mut Random) -> Vec<(Joint, Option<Inertial>)> {
     let length = 1 + random.below(4);
     let part = |k: usize| {
         let mut joint = one_joint(random, Flavour { every_kind, fixed: k + 1 < length, ..BODY });
-        // A limit is no matter here, and both these kinds have an axis.
+        // Limits do not matter here, and both these kinds have an axis.
         joint.kind = only.filter(|_| joint.kind.sizes() == (1, 1)).unwrap_or(joint.kind);
         (joint, inertial(random, Flavour { massless: k + 1 < length, ..BODY }))
     };
@@ -89,8 +89,8 @@ fn attach(robot: &mut Description, name: &str, parent: usize, joint: Joint, body
     child
 }
 
-/// The image in the plane y = 0: points lose the sign of y, turns those of x and z; the axis may
-/// point the other way.
+/// The image in the plane y = 0: points change the sign of y, rotations those of x and z; the axis
+/// may be reversed.
 fn mirror(random: &mut Random, joint: &mut Joint, body: &mut Option<Inertial>) {
     let [point, turn] = [|[x, y, z]: [f64; 3]| [x, -y, z], |[x, y, z]: [f64; 3]| [-x, y, -z]];
     let place = |o: Origin| Origin::new(point(o.xyz), turn(o.rotation.rpy()));

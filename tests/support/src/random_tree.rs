@@ -1,4 +1,4 @@
-//! Robots at random: trees that nobody thought of, of everything that a description can say.
+//! Random robots: arbitrary trees with everything that a description can contain.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -6,7 +6,7 @@ use articulated_core::description::{Description, Inertial, Joint, JointDynamics,
 
 use crate::random::Random;
 
-/// What may occur in a tree.
+/// Possible contents of a tree.
 #[derive(Clone, Copy, Debug)]
 pub struct Flavour {
     /// Links without mass, and point masses: the mass matrix may be singular.
@@ -28,14 +28,14 @@ pub struct Flavour {
 impl Flavour {
     /// Everything.
     pub const ANY: Self = Self { massless: true, mimic: true, floating: true, fixed: true, every_kind: true, locked: true, links: 12 };
-    /// Everything that a URDF can say.
+    /// All that a URDF can contain.
     pub const WRITTEN: Self = Self { locked: false, ..Self::ANY };
     /// Every link has a body's inertia, so that the mass matrix is positive definite.
     pub const REGULAR: Self = Self { massless: false, ..Self::ANY };
 }
 
-/// The tree of a seed. Its joints and links are listed in an order of their own, children before
-/// parents too.
+/// The tree of a seed. Its joints and links are listed in random order, also children before
+/// parents.
 pub fn random_tree(seed: u64, flavour: Flavour) -> Description {
     let random = &mut Random::new(seed);
     let links = 1 + random.below(flavour.links);
@@ -131,7 +131,7 @@ fn origin(random: &mut Random, reach: f64) -> Origin {
     Origin::new(xyz, rpy(random))
 }
 
-/// Right angles as people write them, and none.
+/// Right angles in common spellings, and zero.
 #[allow(clippy::approx_constant)]
 // Why: the approximation is the point.
 const NEARLY_RIGHT: [f64; 6] = [0.0, 0.0, 1.5708, -1.5708, 3.14159, 1.57079632679];
@@ -159,7 +159,7 @@ pub(crate) fn inertial(random: &mut Random, flavour: Flavour) -> Option<Inertial
     Some(Inertial { origin, mass, inertia })
 }
 
-/// Of a body that could be: moments of mass along three axes, at right angles or turned.
+/// The inertia of a possible body: moments of mass along three axes, at right angles or turned.
 fn inertia(random: &mut Random, mass: f64) -> [f64; 6] {
     let [x, y, z] = [(); 3].map(|()| mass * random.within(0.02, 0.3).powi(2));
     let (x, y) = if random.chance(0.3) { (x, x) } else { (x, y) };
@@ -167,7 +167,7 @@ fn inertia(random: &mut Random, mass: f64) -> [f64; 6] {
     if random.chance(0.5) {
         return [principal[0], 0.0, 0.0, principal[1], 0.0, principal[2]];
     }
-    // The axes: two directions and what is at right angles to both.
+    // The axes: two directions and the normal to both.
     let [a, b] = [random.unit::<3>(), random.unit::<3>()];
     let c = unit(cross(a, b));
     let axes = [a, cross(c, a), c];
@@ -184,7 +184,7 @@ fn unit(a: [f64; 3]) -> [f64; 3] {
     a.map(|x| x / norm)
 }
 
-/// Lets some joints follow others; those may follow further ones, but nobody follows himself.
+/// Lets some joints follow others; those may follow further ones, but no joint follows itself.
 fn follow(random: &mut Random, joints: &mut [Joint]) {
     let mut able: Vec<usize> = (0..joints.len()).filter(|&j| joints[j].kind.sizes() == (1, 1)).collect();
     random.shuffle(&mut able);

@@ -9,7 +9,7 @@ use articulated_core::spatial::{Placement, SpatialInertia};
 
 use crate::case::State;
 
-/// Of the terms of a sum.
+/// Relative to the terms of a sum.
 const BOUND: f64 = 1e-12;
 
 /// π of each moving link, `[links][10]`, from the inertial data of the description: those of all
@@ -33,8 +33,8 @@ pub fn parameters_of_links(description: &Description, model: &Model<f64>) -> Vec
     model.links().flat_map(one).collect()
 }
 
-/// Where τ = Y π, T = yᵀπ or U = yᵀπ does not hold for a model without effects, with π of the
-/// inertial data of the description, or of the model.
+/// Violations of τ = Y π, T = yᵀπ or U = yᵀπ for a model without effects, with π of the inertial
+/// data of the description, or of the model.
 pub fn broken_laws(description: &Description, model: &Model<f64>, state: &State) -> Vec<String> {
     let mut ws = model.workspace();
     let mut called = |function: FunctionId, given: &[&[f64]]| {

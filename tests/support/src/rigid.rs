@@ -1,4 +1,4 @@
-//! Rigid placements and bodies of a description, put together: what a fixed joint amounts to.
+//! Rigid placements and bodies of a description, composed as by fixed joints.
 
 use articulated_core::description::{Inertial, Origin};
 use nalgebra::{Matrix3, Vector3};
@@ -10,7 +10,8 @@ pub fn rotation(rpy: [f64; 3]) -> Matrix3<f64> {
     about(2) * about(1) * about(0)
 }
 
-/// Roll, pitch and yaw of a rotation; good at the poles too, as roll is taken after yaw is undone.
+/// Roll, pitch and yaw of a rotation; accurate at the poles too, as roll is computed after removing
+/// yaw.
 pub fn rpy(r: &Matrix3<f64>) -> [f64; 3] {
     let yaw = r.m21.atan2(r.m11);
     let (s, c) = yaw.sin_cos();
@@ -18,14 +19,14 @@ pub fn rpy(r: &Matrix3<f64>) -> [f64; 3] {
     [roll, (-r.m31).atan2(r.m11.hypot(r.m21)), yaw]
 }
 
-/// The frame `b`, given in `a`, seen from where `a` is placed.
+/// The frame `b`, given in `a`, in the frame that `a` is given in.
 pub fn compose(a: &Origin, b: &Origin) -> Origin {
     let r = rotation(a.rotation.rpy());
     let p = r * Vector3::from(b.xyz) + Vector3::from(a.xyz);
     Origin::new(p.into(), rpy(&(r * rotation(b.rotation.rpy()))))
 }
 
-/// A body given in a frame that is placed at `at`.
+/// A body given in a frame with the placement `at`.
 pub fn carried(at: &Origin, body: &Inertial) -> Inertial {
     Inertial { origin: compose(at, &body.origin), ..*body }
 }

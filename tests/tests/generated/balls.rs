@@ -57,9 +57,9 @@ fn robot(level: &str, target: Target) -> Robot {
     with("balls".into(), URDF, Base::Fixed, false, options, |name| FUNCTIONS.contains(&name))
 }
 
-/// Random states, in numbers that `f32` has too where the robot's code is of single precision; in
-/// some the hip is at its rest, or nearly half a turn away. Of a quaternion whose norm is not one
-/// some functions are not those of the generic library, so the others are not rounded.
+/// Random states, in numbers representable in `f32` if the robot's code is of single precision; in
+/// some the hip is at its rest, or nearly half a turn away. With a quaternion of norm other than
+/// one, some functions differ from those of the generic library, so the others are not rounded.
 fn states(robot: &Robot) -> Vec<State> {
     let mut random = Random::new(41);
     let short = |x: &mut Vec<f64>| x.iter_mut().for_each(|x| *x = f64::from(*x as f32));
@@ -79,8 +79,8 @@ fn states(robot: &Robot) -> Vec<State> {
     (0..24).map(one).collect()
 }
 
-/// Holds what a program gives for each function and state to 96 digits of the generic library: as a
-/// part of the largest number.
+/// Compares a program's results for each function and state with 96 digits of the generic library,
+/// relative to the largest number.
 fn hold(robot: &Robot, tolerance: f64, mut run: impl FnMut(&str, &State, &[&[f64]], usize) -> Vec<f64>) {
     let mut worst = (0.0, "");
     for state in states(robot) {
@@ -168,7 +168,7 @@ fn limbs_on_balls_go_in_lanes() {
     });
 }
 
-/// A branch on an angle would be one on a value: what is generated has none.
+/// A branch on an angle would be a branch on a value: generated code has none.
 #[test]
 fn numbers_of_springs_and_limits_of_balls_can_be_inputs() {
     let parameters = vec!["spring(hip)".into(), "limit(shoulder)".into()];

@@ -30,12 +30,12 @@ const FUNCTIONS: [&str; 13] = [
     "difference",
 ];
 
-/// Functions so long that their texts for sixteen registers say what waits in memory.
+/// Functions so long that their texts for sixteen registers contain the spills to memory.
 const LONG: [&str; 2] = ["coriolis_matrix", "inverse_dynamics_derivatives"];
 
 /// An arm, every kind of joint on a floating base, joints that follow others, a long function, and
-/// nothing at all: small ones, since they are compiled for each instruction set. What is computed
-/// is what single evaluation computes, which is tested on many robots.
+/// an empty robot: small ones, since they are compiled for each instruction set. The computation is
+/// that of single evaluation, which is tested on many robots.
 fn robots(forbid_unsafe: bool) -> Vec<Robot> {
     let robot = |name: &str, urdf: &str, base: Base, functions: &[&str]| {
         let options = Options {
@@ -56,7 +56,7 @@ fn robots(forbid_unsafe: bool) -> Vec<Robot> {
     ]
 }
 
-/// The robots, with what may be unsafe and without.
+/// The robots, with `unsafe` allowed and without it.
 static ROBOTS: LazyLock<[Vec<Robot>; 2]> = LazyLock::new(|| [robots(false), robots(true)]);
 
 /// A program of one instruction set, if this processor has that.
@@ -98,13 +98,13 @@ static WAYS: LazyLock<Vec<Way>> = LazyLock::new(|| {
     sets.into_iter().filter_map(way).collect()
 });
 
-/// What a program says.
+/// The results of a program.
 fn run(way: &Way, robot: &Robot, name: &str, real: Real, states: &[State]) -> Vec<Vec<f64>> {
     let given: Vec<Vec<&[f64]>> = states.iter().map(|s| arguments(name, s)).collect();
     way.program.run(&robot.name, name, real, &given)
 }
 
-/// Unit roundoffs of a type in those of `f64`.
+/// Unit roundoff of a type in units of that of `f64`.
 fn unit(real: Real) -> f64 {
     if real == Real::F32 { f64::from(f32::EPSILON) / f64::EPSILON } else { 1.0 }
 }
@@ -112,10 +112,10 @@ fn unit(real: Real) -> f64 {
 /// The largest error that is allowed, in unit roundoffs of the type. Seen: 3.4.
 const ALLOWED: f64 = 8.0;
 
-/// And each program holds its functions to the laws of batches. Blocks give what states one after
-/// the other give, to the bit; where states are computed one by one, they have the bits of the
-/// single function instead. So does every number of states. Slices of different lengths are refused
-/// and nothing is written.
+/// And each program checks its functions for the laws of batches. Blocks return the same bits as
+/// states one after the other; if states are computed one by one, they have the bits of the single
+/// function instead. So does every number of states. Slices of different lengths are refused
+/// without any output.
 #[test]
 fn batches_give_what_the_generic_library_gives() {
     for way in WAYS.iter() {
@@ -169,7 +169,7 @@ fn bits(numbers: &[Vec<f64>]) -> Vec<u64> {
     numbers.iter().flatten().map(|x| x.to_bits()).collect()
 }
 
-/// Angles beyond the fast reduction, and numbers that are none, are one lane's matter.
+/// Angles beyond the fast reduction, and NaN or infinity, affect only their own lane.
 #[test]
 fn a_state_takes_no_notice_of_its_neighbours() {
     for way in WAYS.iter() {

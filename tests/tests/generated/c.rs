@@ -1,4 +1,4 @@
-//! Generated C: what the generic library gives, and what the graph does, for every function.
+//! Generated C, against the generic library and the graph, for every function.
 
 use std::sync::LazyLock;
 
@@ -110,10 +110,10 @@ static WAYS: LazyLock<Vec<(Vectors, Program)>> = LazyLock::new(|| {
     ways.into_iter().map(|vectors| (vectors, c_program::build(&all, vectors, "-O0"))).collect()
 });
 
-/// States one after the other, and in blocks of which the last is not full.
+/// States one after the other, and in blocks with an incomplete last one.
 #[test]
 fn c_of_many_states_gives_what_the_generic_library_gives() {
-    // In units of roundoff of the type: 3.6 were seen in f64, and 17 in f32, of a Coriolis matrix
+    // In units of roundoff of the type: 3.6 were seen in f64, and 17 in f32, for a Coriolis matrix
     // without fused multiply-adds.
     const ALLOWED: [f64; 2] = [8.0, 32.0];
     for (vectors, program) in WAYS.iter() {
@@ -163,7 +163,7 @@ fn c_with_and_without_vectors_gives_what_the_generic_library_gives() {
     }
 }
 
-/// Angles beyond the fast reduction, and numbers that are none, change no other state.
+/// Angles beyond the fast reduction, and NaN or infinity, change no other state.
 #[test]
 fn a_state_in_c_ignores_its_neighbours() {
     let robot = &MANY[0];
@@ -228,8 +228,9 @@ fn compare(program: &Program) {
     }
 }
 
-/// With products and sums rounded one after the other, only sines of the two mathematical libraries
-/// may differ. Solutions for many columns are a loop beside the graph, which has no result of them.
+/// With products and sums rounded separately, only sines of the two mathematical libraries may
+/// differ. Solutions for many columns are a loop outside the graph, which does not contain their
+/// results.
 #[test]
 fn c_computes_what_the_graph_does() {
     for robot in ROBOTS.iter().filter(|r| !r.generated.level.is_single()) {

@@ -1,5 +1,5 @@
-//! What a request may choose besides names of functions: several in one, arguments that are
-//! constants, ways by count.
+//! Options of a request besides names of functions: several functions in one, constant arguments,
+//! forms by count.
 
 use articulated::{Dynamics, Model};
 use articulated_codegen::{Request, generate};
@@ -49,7 +49,7 @@ articulated::robot! {
 }
 
 articulated::robot! {
-    /// Four wheels in lanes, of which three are round.
+    /// Four wheels in lanes, three of them round.
     mod rover {
         urdf = "robots/rover.urdf",
         base = floating,
@@ -72,8 +72,8 @@ pub(crate) const Q: [f64; 3] = [0.4, -0.9, 1.3];
 pub(crate) const V: [f64; 3] = [1.1, 0.3, -0.8];
 pub(crate) const A: [f64; 3] = [-0.7, 2.0, 0.6];
 
-/// What is large is written into what the caller has too, whatever that held; through the trait
-/// that is how it is done.
+/// Large results can also be written into the caller's array, whatever its contents; the trait uses
+/// this form.
 #[test]
 fn a_large_result_goes_into_what_the_caller_has() {
     let q: [f64; in_lanes::NQ] =
@@ -88,7 +88,7 @@ fn a_large_result_goes_into_what_the_caller_has() {
     assert_eq!(flat, expected.as_flattened().as_flattened());
 }
 
-/// Equal but for some last digits: the same terms in another order.
+/// Equal except for some last digits: the same terms in another order.
 pub(crate) fn same(found: &[f64], expected: &[f64]) {
     assert_eq!(found.len(), expected.len());
     let size = expected.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
@@ -127,7 +127,7 @@ fn where_all_arguments_are_constants_none_is_left() {
 fn sines_that_are_given_are_taken() {
     let sines = |q: &[f64; 3]| q.map(|q| [q.sin(), q.cos()]);
     same(&arm::quick(&Q, &V, &A, &sines(&Q)), &arm::inverse_dynamics(&Q, &V, &A));
-    // They stand for the angles, whatever q says.
+    // They replace the angles, whatever the value of q.
     let other = [2.0, 0.1, -0.5];
     same(&arm::quick(&Q, &V, &A, &sines(&other)), &arm::inverse_dynamics(&other, &V, &A));
 }
@@ -143,7 +143,7 @@ pub(crate) fn states(n: usize, salt: usize) -> Vec<[f64; 3]> {
 
 #[test]
 fn a_batch_gives_what_each_state_gives() {
-    // Every remainder of a block, and more than one.
+    // Every remainder of a block, and more than one block.
     for n in 0..=35 {
         let [q, v, a] = [1, 101, 211].map(|salt| states(n, salt));
         let wrenches: Vec<[[f64; 6]; 1]> = (0..n).map(|i| [std::array::from_fn(|k| number(6 * i + k + 307))]).collect();
@@ -229,8 +229,8 @@ fn limbs_in_lanes_give_what_each_gives_for_itself() {
     }
 }
 
-/// A wheel that is out of balance stands somewhere; the three beside it in the same vectors do not
-/// care.
+/// An unbalanced wheel has a preferred angle; the three others in the same vectors do not depend on
+/// it.
 #[test]
 fn one_wheel_of_four_may_be_out_of_balance() {
     pub(crate) const URDF: &str = include_str!("../../robots/rover.urdf");
@@ -249,7 +249,7 @@ fn one_wheel_of_four_may_be_out_of_balance() {
         same(rover::mass_matrix(&q).as_flattened(), &generic(FunctionId::mass_matrix, &[&q]));
         let found = rover::inverse_dynamics_derivatives(&q, &v, &a);
         same(found.as_flattened().as_flattened(), &generic(FunctionId::inverse_dynamics_derivatives, &[&q, &v, &a]));
-        // ∂τ/∂q of the wheels that are round: nothing but rounding.
+        // ∂τ/∂q of the round wheels: only rounding errors.
         let column = |wheel: usize| found[0].map(|row| row[wheel]);
         let round = [rover::v_index::FL_ROLL, rover::v_index::FR_ROLL, rover::v_index::HL_ROLL, rover::v_index::HR_ROLL]
             .map(|k| column(k).iter().all(|x| x.abs() < 1e-15));
@@ -350,7 +350,7 @@ fn what_a_robot_cannot_have_is_said_when_it_is_built() {
     let error = refusal(&URDF.replace("\"fore\"", "\"to-ol\"").replace("\"tool\"", "\"to_ol\""), &|r| {
         r.options.parameters = vec!["payload(to-ol)".into(), "payload(to_ol)".into()];
     });
-    // Both are told: the parameters, and the links themselves.
+    // Both are reported: the parameters, and the links themselves.
     let codes: Vec<Code> = error.errors.iter().map(|error| error.code).collect();
     assert!(codes.contains(&Code::Parameter) && codes.contains(&Code::NameClash) && codes.len() == 2, "{error}");
     assert!(error.to_string().contains("TO_OL_PAYLOAD"), "{error}");

@@ -1,5 +1,4 @@
-//! Effects in generated code: those that are on are the generic library's, those that are off are
-//! not there.
+//! Effects in generated code: active ones equal the generic library's, inactive ones are absent.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -20,7 +19,7 @@ use crate::robots::{Robot, with};
 const ARM: &str = include_str!("../../robots/arm.urdf");
 const WALKER: &str = include_str!("../../robots/walker.urdf");
 
-/// What effects have a part in.
+/// Functions that depend on effects.
 const FUNCTIONS: [&str; 11] = [
     "inverse_dynamics",
     "mass_matrix",
@@ -177,7 +176,7 @@ fn every_subset_of_effects_builds_and_costs_what_the_ledger_says() {
     }
 }
 
-/// Without a single number of an effect the module is what it is without the effect, but for the
+/// Without any number of an effect the module equals the one without the effect, except for the
 /// line that names it.
 #[test]
 fn an_effect_that_is_off_costs_nothing() {
@@ -189,7 +188,7 @@ fn an_effect_that_is_off_costs_nothing() {
     };
     let bare = module(Vec::new());
     for effect in effects().iter().filter(|e| !matches!(e.id, EffectId::motor | EffectId::limit | EffectId::contact)) {
-        // No stiffness, no damping, no mass: what is not a coefficient keeps its default.
+        // No stiffness, no damping, no mass: other fields keep their defaults.
         let parameters: Vec<f64> = effect.fields.iter().flat_map(|f| f.default.map_or_else(|| vec![0.0; f.len], <[f64]>::to_vec)).collect();
         let on: &[&str] = if effect.on == On::Joint { &JOINTS } else { &["upper", "tool"] };
         assert!(module(all_of(effect.id, on, &parameters)) == bare, "{} of nothing is something", effect.name);

@@ -77,7 +77,7 @@ fn a_program_without_multiply_adds_rounds_otherwise() {
     assert_eq!(chosen != portable, std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma"));
 }
 
-/// Not even with numbers that are none; the checks of the compiler are on.
+/// Not even with NaN or infinity; the checks of the compiler are on.
 #[test]
 fn no_value_makes_generated_code_panic() {
     for robot in ROBOTS.iter().filter(|r| ["panda_like", "gripper_arm", "tree_1", "walker", "strider"].contains(&r.name.as_str())) {

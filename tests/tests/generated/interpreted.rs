@@ -20,11 +20,11 @@ const STATES: usize = 4;
 /// other, as in C. Seen: 29.
 const ALLOWED: f64 = 64.0;
 
-/// The results of a body that is complete.
+/// The results of a complete body.
 fn results(body: &Body, given: &[&[f64]]) -> Vec<f64> {
     let mut found = interpret(body, |argument, k| given[argument][k]);
     if body.is_partial {
-        // What is not stored is zero from the start.
+        // Results that are not stored are zero from the start.
         found.iter_mut().filter(|x| x.is_nan()).for_each(|x| *x = 0.0);
     }
     found
@@ -76,7 +76,7 @@ fn statements_give_what_the_generic_library_gives() {
     assert!(bodies > 800, "{bodies} bodies");
 }
 
-/// The kinds of statements of some robots: what they do, and the type of their values.
+/// The kinds of statements of some robots: their operations, and the type of their values.
 pub(crate) fn kinds<'a>(robots: impl Iterator<Item = &'a Robot>) -> BTreeSet<String> {
     robots.flat_map(|robot| robot.generated.bodies.iter().flat_map(kinds_of)).collect()
 }

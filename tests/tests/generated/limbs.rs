@@ -1,4 +1,4 @@
-//! Limbs that are alike, mirrored, nearly alike or of different lengths: whatever goes into lanes
+//! Limbs that are alike, mirrored, nearly alike or of different lengths: all code in lanes
 //! compiles, and is right.
 
 use articulated_codegen::{Generated, Options};
@@ -11,14 +11,14 @@ use crate::equals_generic::compare;
 use crate::interpreted::{self, kinds, not_compiled};
 use crate::robots::{self, Robot, is_compiled, with};
 
-/// The random robots, and those of them that are compiled: with the compiled robots of
-/// [`crate::robots`] these have every kind of statement that all of them have.
+/// The random robots, and those that are compiled: with the compiled robots of [`crate::robots`]
+/// these contain every kind of statement that all of them have.
 const ROBOTS: std::ops::Range<u64> = 0..32;
 const COMPILED: [(u64, &[&str]); 6] =
     [(0, &FUNCTIONS), (1, &FUNCTIONS), (2, &FUNCTIONS), (3, &FUNCTIONS), (5, &["inverse_dynamics_derivatives"]), (26, &["mass_matrix"])];
 
-/// One of each way in which code is made: lanes alone, matrices in lanes, pieces, frames, and what
-/// all limbs add to.
+/// One function for each form of code: lanes alone, matrices in lanes, pieces, frames, and sums
+/// over all limbs.
 const FUNCTIONS: [&str; 5] =
     ["inverse_dynamics", "mass_matrix", "inverse_dynamics_derivatives", "jacobians_body", "centroidal_momentum_matrix"];
 

@@ -1,5 +1,5 @@
 //! Generated code, compiled and run as a user's would be: against the generic library, against an
-//! independent program, and on odd input.
+//! independent program, and on unusual input.
 
 mod balls;
 mod batches;

@@ -1,4 +1,4 @@
-//! Robots at the edge: what generates, and what is refused.
+//! Robots at the limits: accepted ones, and refused ones.
 
 use std::time::Instant;
 
@@ -38,7 +38,7 @@ fn a_chain_of_a_thousand_joints_is_generated() {
     assert!(generated.warnings.is_empty(), "{:?}", generated.warnings);
 }
 
-/// A matrix has n² numbers, and each is written out: nobody should learn that from a compiler that
+/// A matrix has n² numbers, and each is written out: users should learn that before a compiler that
 /// does not end.
 #[test]
 fn code_that_is_too_long_to_be_of_use_is_a_warning() {
@@ -53,7 +53,7 @@ fn code_that_is_too_long_to_be_of_use_is_a_warning() {
     );
 }
 
-/// A serial chain of so many joints, and one function of it.
+/// A serial chain of this number of joints, and one function of it.
 fn chain(joints: usize, function: &str) -> Request {
     use std::fmt::Write;
     let mut urdf = String::from("<robot name='chain'><link name='l0'/>");
@@ -71,8 +71,7 @@ fn chain(joints: usize, function: &str) -> Request {
     request
 }
 
-/// Slides alone: no Coriolis force, and a large matrix of nothing, which compiles without a
-/// warning.
+/// Only slides: no Coriolis force, and a large matrix of zeros, which compiles without a warning.
 #[test]
 fn a_result_of_zeros_compiles() {
     use std::fmt::Write;
@@ -92,7 +91,7 @@ fn a_result_of_zeros_compiles() {
     assert_eq!(program.run("gantry", "coriolis_matrix", &[vec![&[0.5; 9], &[1.0; 9]]]), [vec![0.0; 81]]);
 }
 
-/// No function asked for: a module of constants.
+/// No function requested: a module of constants.
 #[test]
 fn a_robot_without_functions_compiles() {
     let mut request = Request::new("arm.urdf", articulated_models::robot("panda_like").unwrap().urdf);

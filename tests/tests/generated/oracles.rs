@@ -97,7 +97,7 @@ fn generated_torques_and_placements_are_the_oracles() {
 #[test]
 fn energies_are_the_oracles() {
     each(|case, reference| {
-        // What cannot move does not count in the oracle's energies.
+        // Links that cannot move do not count in the oracle's energies.
         let still = held(case).energy(&reference.states[0]);
         for s in &reference.states {
             let energy = case.motions().energy(&s.q, &s.v, &s.a);

@@ -9,7 +9,7 @@ use articulated_tests::case::read;
 use crate::choices::{A, Q, URDF, V, same, states};
 
 articulated::robot! {
-    /// Parameters that are known only when it runs.
+    /// Parameters that are known only at run time.
     mod tuned {
         urdf = "robots/arm.urdf",
         functions = [inverse_dynamics, forward_dynamics, mass_matrix, potential_energy, placements],
@@ -19,7 +19,7 @@ articulated::robot! {
 }
 
 articulated::robot! {
-    /// Gravity and a damper that are known only when it runs.
+    /// Gravity and a damper that are known only at run time.
     mod elsewhere {
         urdf = "robots/arm.urdf",
         functions = [inverse_dynamics],
@@ -109,7 +109,7 @@ fn gravity_and_numbers_of_effects_are_inputs_where_they_are_asked_for() {
     }
 }
 
-/// Of one state, of fewer and more than blocks have, and of none.
+/// For one state, for fewer and more than a block, and for none.
 #[test]
 fn states_of_a_batch_have_parameters_of_their_own_or_one_set_for_all() {
     use tuned::batch_f64::{Lanes, LengthError};

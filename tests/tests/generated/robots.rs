@@ -59,7 +59,8 @@ fn only_derivatives(name: &str, urdf: &str, base: Base) -> Robot {
     with(name.into(), urdf, base, true, Options::default(), |name| name == "inverse_dynamics_derivatives")
 }
 
-/// With every function, save those that need what the robot does not have, on one or two frames.
+/// With every function, except those that need a missing property of the robot, on one or two
+/// frames.
 fn robot(name: String, urdf: &str, base: Base, singular: bool) -> Robot {
     let small = Case::new(name.clone(), read(urdf), base).model.nv() < 18;
     with(name, urdf, base, singular, Options::default(), |name| small || !LONG.contains(&name))
@@ -81,7 +82,7 @@ pub(crate) fn with(name: String, urdf: &str, base: Base, singular: bool, options
     Robot { case, generated, name }
 }
 
-/// So many random states whose numbers are `f32`, exactly.
+/// `count` random states with numbers that are exactly `f32`.
 pub(crate) fn single_states(robot: &Robot, count: usize) -> Vec<State> {
     let mut random = Random::new(29);
     let short = |x: &mut Vec<f64>| x.iter_mut().for_each(|x| *x = f64::from(*x as f32));
@@ -101,8 +102,8 @@ fn frames(model: &Model<f64>) -> Vec<String> {
     chosen
 }
 
-/// What a compiler needs long for on large robots is generated there for wrenches only: without
-/// them it is the same with fewer terms.
+/// Functions that compile slowly for large robots are generated there only with wrenches: without
+/// them they are the same with fewer terms.
 const LONG: [&str; 2] = ["inverse_dynamics_derivatives", "forward_dynamics_derivatives"];
 
 fn has(model: &Model<f64>, frames: &[String], function: &Function<f64>, singular: bool) -> bool {

@@ -1,4 +1,4 @@
-//! Effects against MuJoCo, whose accelerations are kept in `tests/fixtures/effects`.
+//! Effects against MuJoCo, with accelerations in `tests/fixtures/effects`.
 
 use articulated_core::description::Origin;
 use articulated_core::effect::{Applied, effect};

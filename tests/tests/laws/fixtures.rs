@@ -1,4 +1,4 @@
-//! Against Pinocchio and MuJoCo, whose answers in our conventions are kept in `tests/fixtures` (see
+//! Against Pinocchio and MuJoCo, with results in our conventions in `tests/fixtures` (see
 //! `tests/oracles/README.md`).
 
 use std::collections::BTreeSet;
@@ -7,16 +7,16 @@ use articulated_core::algorithm::{function, functions};
 use articulated_tests::answers::{Answered, Answers, answers};
 use articulated_tests::case::Case;
 
-/// Error allowed, relative to the result's largest entry or to 1. Both sides round, and what solves
-/// with the mass matrix has its condition number in the error, up to 2·10⁶ (golfer). Seen: 3·10⁻¹³
-/// there, 1.2·10⁻¹³ elsewhere.
+/// Error allowed, relative to the result's largest entry or to 1. Both sides round, and solutions
+/// with the mass matrix include its condition number, up to 2·10⁶ (golfer). Seen: 3·10⁻¹³ there,
+/// 1.2·10⁻¹³ elsewhere.
 const TOLERANCE: f64 = 1e-12;
 
-/// What no engine can be asked for: the numbers that it draws are its own; and what is nothing
+/// Functions that no engine provides: random numbers are its own; and functions that are zero
 /// without effects, which have fixtures of their own (`effects_closed.rs`).
 const WITHOUT: [&str; 4] = ["random_configuration", "effect_forces", "dissipation", "motor_torques"];
 
-/// Says where results part; nothing if they do not.
+/// The first difference of results; `None` if they agree.
 fn parting(case: &Case, state: &Answered, name: &str, expected: &[f64]) -> Option<String> {
     let Some(row) = function::<f64>(name) else { return Some(format!("{name} is not in the registry")) };
     let given = |argument: &str| state.arguments.get(argument).map(Vec::as_slice);

@@ -1,4 +1,4 @@
-//! The interface: wrong input is an error, and nothing panics.
+//! The interface: wrong input is an error, and there is no panic.
 
 use articulated::{Dynamics, FunctionError};
 use articulated_core::algorithm::checked::checked_forward_dynamics;
@@ -17,8 +17,8 @@ articulated::robot! {
     }
 }
 
-/// What a function of the trait says to arguments and a result that are so much longer than they
-/// should be.
+/// The answer of a function of the trait if arguments and result are longer than required by these
+/// numbers.
 fn answer<D: Dynamics>(robot: &D, row: &Function<f64>, longer: &[isize]) -> Result<(), FunctionError> {
     let shape = robot.shape();
     let lengths = row.takes.iter().map(|a| a.len(shape)).chain([row.len(shape)]);
@@ -28,7 +28,7 @@ fn answer<D: Dynamics>(robot: &D, row: &Function<f64>, longer: &[isize]) -> Resu
     robot.call(row.id, &mut robot.workspace(), &given, &mut out)
 }
 
-/// Each argument of a wrong length is an error that names it, and so is the result.
+/// An argument or a result of a wrong length is an error that names it.
 fn each_length_counts<D: Dynamics>(robot: &D, row: &Function<f64>) {
     let n = row.takes.len() + 1;
     assert_eq!(answer(robot, row, &vec![0; n]), Ok(()), "{}", row.name);
@@ -70,8 +70,8 @@ fn a_workspace_of_another_robot_is_an_error() {
     assert_eq!(arm.gravity_torque(&mut pendulum.workspace(), &[0.0; 7], &mut out), Err(FunctionError::Workspace));
 }
 
-/// So is one of as many bodies: on other joints, in another tree, with other frames, of a joint
-/// that follows another.
+/// So is one with the same number of bodies: on other joints, in another tree, with other frames,
+/// of a joint that follows another.
 #[test]
 fn a_workspace_of_another_robot_of_that_size_is_an_error() {
     use JointKind::{Continuous, Planar, Prismatic, Universal};
@@ -102,7 +102,7 @@ fn a_workspace_of_another_robot_of_that_size_is_an_error() {
         assert_eq!(a.mass_matrix(&mut b.workspace(), &q, &mut out), Err(FunctionError::Workspace), "{a:?} {b:?}");
         assert_eq!(a.mass_matrix(&mut a.workspace(), &q, &mut out), Ok(()));
     }
-    // What a joint of as many coordinates does is not the workspace's business.
+    // The kind of a joint with the same number of coordinates does not matter to the workspace.
     let slide = two(joint("b", Prismatic, 1, 2));
     assert_eq!(slide.mass_matrix(&mut chain.workspace(), &[0.0; 2], &mut [0.0; 4]), Ok(()));
 }
@@ -135,7 +135,7 @@ fn a_wrong_number_of_arguments_is_an_error() {
     });
 }
 
-/// Neither values that are no numbers nor huge ones stop the generic library.
+/// Neither NaN nor infinite nor huge values stop the generic library.
 #[test]
 fn no_value_makes_an_algorithm_panic() {
     for_each_tree(10, Flavour::ANY, |case, _| {
@@ -185,8 +185,7 @@ fn what_is_not_a_tree_is_an_error() {
 #[test]
 fn a_joint_is_not_called_as_that_of_a_floating_base() {
     let named = tree(2, vec![joint("__floating_base__", JointKind::Continuous, 0, 1)]);
-    // Not where the base is fixed either: who reads a report, or a file of states, could not tell
-    // them apart.
+    // Also with a fixed base: they would be indistinguishable in a report or a file of states.
     for base in [Base::Floating, Base::Fixed] {
         assert!(matches!(Model::new(&named, base), Err(ModelError::NamedAsBase)));
     }
@@ -200,7 +199,8 @@ fn a_frame_that_is_not_there_is_named_with_the_nearest() {
     assert_eq!(arm.with_frames(&["hand_tcp", "hand_tcp"]).unwrap().frames().len(), 2);
 }
 
-/// Λ of a frame that less than six degrees of freedom move is no matrix, and is not given as one.
+/// Λ of a frame that fewer than six degrees of freedom move is not a matrix, and is not returned as
+/// one.
 #[test]
 fn inertia_in_all_directions_is_no_number_where_a_frame_cannot_move_in_all() {
     let arm = Case::bundled(articulated_models::robot("ur5_like").unwrap()).model;
@@ -212,7 +212,7 @@ fn inertia_in_all_directions_is_no_number_where_a_frame_cannot_move_in_all() {
     }
 }
 
-/// Six joints of which one follows another are five degrees of freedom.
+/// Six joints, one a follower, have five degrees of freedom.
 #[test]
 fn inertia_in_all_directions_is_no_number_where_joints_follow_others() {
     let chain = |follows: bool| {

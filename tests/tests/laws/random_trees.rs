@@ -1,4 +1,5 @@
-//! The random trees themselves: they reach what they should, and go through the reader unchanged.
+//! The random trees themselves: they contain all intended cases, and the reader returns them
+//! unchanged.
 
 use articulated_core::description::{JointDynamics, JointKind};
 use articulated_tests::case::{for_each_tree, read};
@@ -10,7 +11,7 @@ fn a_description_written_as_a_urdf_is_read_as_it_was() {
     for_each_tree(100, Flavour::WRITTEN, |case, _| {
         let text = urdf_text(&case.description);
         let mut found = read(&text);
-        // An axis of a joint that has none, and limits of a joint without, are not written.
+        // Axes of joints without one, and limits of joints without any, are not written.
         found.joints.iter_mut().for_each(|j| j.dynamics = JointDynamics::default());
         assert_eq!(found, case.description, "{text}");
     });

@@ -9,7 +9,7 @@ use articulated_test_support::case::{Case, for_each_bundled};
 use articulated_test_support::random::Random;
 use articulated_test_support::regressors::broken_laws;
 
-/// The law in some states, whatever the effects that the file has numbers for: the model has none.
+/// The law in some states, whatever effects have numbers in the file: the model has none.
 fn check(case: &Case, random: &mut Random) {
     for _ in 0..3 {
         let broken = broken_laws(&case.description, &case.model, &case.state(random));
@@ -22,7 +22,7 @@ fn regressors_of_bundled_robots_times_the_parameters_of_their_links_are_torques_
     for_each_bundled(check);
 }
 
-/// Robots of `tests/mjcf/models` and `tests/sdf/models`: several joints on a body, joints beside
+/// Robots of `tests/mjcf/models` and `tests/sdf/models`: several joints on a body, joints away from
 /// the origin of their body.
 #[test]
 fn regressors_of_robots_of_other_formats_times_the_parameters_of_their_links_are_torques_and_energies() {

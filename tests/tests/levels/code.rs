@@ -44,13 +44,13 @@ impl BuiltRobot {
         out
     }
 
-    /// The results in 96 digits; to be called in a scope of them.
+    /// The results in 96 digits; to be called in their scope.
     fn exact(&self, state: &[Vec<f64>]) -> Vec<Big> {
         self.generated.graphs[0].evaluate_as(|argument, k| Big::from_f64(state[argument][k]))
     }
 
-    /// The error and the guaranteed bound of each result, after one has been held to the other. The
-    /// state has numbers of single precision.
+    /// The error and the guaranteed bound of each result, after comparing them. The state has
+    /// numbers of single precision.
     fn errors(&self, state: &[Vec<f64>], exact: &[Big]) -> Vec<(f64, Option<f64>)> {
         let found = self.call(state);
         let bounds = bound::bounds(&self.generated.graphs[0], self.level, &|argument, k| (state[argument][k], 0.0));
@@ -85,7 +85,7 @@ fn states_of(model: &Model<f64>, count: usize, seed: u64) -> Vec<Vec<Vec<f64>>> 
 const LEVELS: [&str; 9] =
     ["double_double", "compensated+two", "f64", "f64+no_fma", "f64+correct", "f64+fast_10", "f64+fast_7", "f32_f64", "f32"];
 
-/// So many states, a thousand at a time; whether one is the first of its thousand.
+/// `count` states, a thousand at a time; whether one is the first of its thousand.
 fn states_in_parts(model: &Model<f64>, count: usize) -> impl Iterator<Item = (Vec<Vec<f64>>, bool)> {
     (0..count.div_ceil(PART)).flat_map(move |part| {
         let states = states_of(model, PART.min(count - part * PART), 5 + part as u64);
@@ -95,14 +95,14 @@ fn states_in_parts(model: &Model<f64>, count: usize) -> impl Iterator<Item = (Ve
 
 const PART: usize = 1000;
 
-/// Errors are within their bounds, and levels are as exact, one to another, as they promise.
+/// Errors are within their bounds, and the relative accuracy of levels is as promised.
 fn hold(robot: &str, count: usize) {
     let levels = LEVELS.map(|name| build(robot, name, Target::Own));
     let mut worst = [0.0_f64; LEVELS.len()];
     let mut single = vec![(0.0_f64, 0.0_f64); levels[0].generated.model.nv()];
     for (state, first) in states_in_parts(&levels[0].generated.model, count) {
         Big::scope(|| {
-            // Graphs of levels differ in nothing but how a node is computed: one evaluation in 96
+            // Graphs of levels differ only in the computation of a node: one evaluation in 96
             // digits serves all.
             let exact = levels[0].exact(&state);
             for (worst, level) in worst.iter_mut().zip(&levels) {

@@ -1,5 +1,5 @@
-//! Levels of accuracy: what each promises, held to 96 digits. The same on a million states, and on
-//! every `f32`, stands behind `--ignored`.
+//! Levels of accuracy: the contract of each, compared with 96 digits. The same on a million states,
+//! and on every `f32`, runs with `--ignored`.
 
 mod code;
 mod sines;

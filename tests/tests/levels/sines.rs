@@ -35,7 +35,7 @@ fn worst() -> Vec<f64> {
 /// below 10⁵, 4.2·10⁻⁹ away; 16367173·2⁷² of all, 1.6·10⁻⁹ away.
 const WORST_SINGLES: [f32; 2] = [16_573_937.0 / 65_536.0, 16_367_173.0 * (1_u128 << 72) as f32];
 
-/// Angles of every size, most of them such as joints have.
+/// Angles of every size, most of them typical for joints.
 fn angles(count: usize) -> Vec<f64> {
     let mut random = Random::new(11);
     let mut angles = worst();
@@ -47,7 +47,7 @@ fn angles(count: usize) -> Vec<f64> {
     angles
 }
 
-/// |found − exact| / |exact|, where two doubles add up to what was found.
+/// |found − exact| / |exact|, if the result is the sum of two doubles.
 fn relative(exact: Big, found: (f64, f64)) -> f64 {
     let difference = Big::from_f64(found.0) + Big::from_f64(found.1) - exact;
     (difference / exact).to_f64().abs()
@@ -61,8 +61,7 @@ fn hold(count: usize) {
             assert_eq!(two::sin_cos_correct::<false>(x), nearest, "{x:e}");
             assert_eq!(two::sin_cos_correct::<true>(x), nearest, "{x:e}");
             let (s, c) = two::sines_of_two::<false>((x, 0.0));
-            // Of what is so small that a double's remainder is subnormal there is no more to be
-            // had.
+            // If a double's remainder is subnormal, no more accuracy is possible.
             if x.abs() > 1e-200 {
                 let most = 2.0_f64.powi(-100);
                 assert!(relative(sin, s) <= most && relative(cos, c) <= most, "{x:e}: {:e} {:e}", relative(sin, s), relative(cos, c));
@@ -87,10 +86,10 @@ fn sines_are_as_exact_as_their_level_says_at_a_million_angles() {
     hold(1_000_000);
 }
 
-/// Sines of the level f32 (those of doubles, rounded) and those to the nearest, of four numbers by
-/// their bits, against the standard library's of doubles. Those are off by less than 4 ulps of
-/// doubles (known: 0.55), which decides what is nearest in all but some hundred cases in all; 96
-/// digits decide these. How many these were.
+/// Sines of the level f32 (those of doubles, rounded) and the correctly rounded ones, of four
+/// numbers by their bits, against the standard library's of doubles. Those have errors below 4 ulps
+/// of doubles (known: 0.55), which decides the rounding in all but some hundred cases in total; 96
+/// digits decide these. Returns their number.
 fn singles(bits: [u32; 4]) -> usize {
     let x = bits.map(f32::from_bits);
     let (sines, cosines) = ulp::sin_cos(x.map(f64::from));
@@ -112,7 +111,7 @@ fn singles(bits: [u32; 4]) -> usize {
     doubtful
 }
 
-/// The `f32` nearest to a number that is within 4 ulps of doubles of this, where that decides.
+/// The nearest `f32` to a number within 4 ulps of doubles of this one, if that decides it.
 fn decided(known: f64) -> Option<f32> {
     let (low, high) = (known * (1.0 - 4.0 * f64::EPSILON), known * (1.0 + 4.0 * f64::EPSILON));
     (low as f32 == high as f32).then_some(high as f32)

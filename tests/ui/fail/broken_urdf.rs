@@ -1,4 +1,4 @@
-//! A URDF with several mistakes: all of them, at the path.
+//! A URDF with several errors: all of them, at the path.
 
 articulated::robot! {
     pub mod broken {

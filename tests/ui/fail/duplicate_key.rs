@@ -1,4 +1,4 @@
-//! A key that is given twice: at the second.
+//! A duplicate key: at the second one.
 
 articulated::robot! {
     pub mod arm {

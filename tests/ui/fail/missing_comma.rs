@@ -1,4 +1,4 @@
-//! A comma left out: at what follows.
+//! A missing comma: at the next token.
 
 articulated::robot! {
     pub mod arm {

@@ -1,4 +1,4 @@
-//! A new name for what the robot does not have: at the old name.
+//! A new name for an item that the robot does not have: at the old name.
 
 articulated::robot! {
     pub mod arm {

@@ -1,4 +1,4 @@
-//! What is wrong with scenes, at the scene; what is wrong with effects, at their words.
+//! Errors of scenes, at the scene; errors of effects, at their words.
 
 articulated::robot! {
     mod wrong { scene = "scenes/wrong.toml" }

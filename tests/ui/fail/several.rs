@@ -1,4 +1,4 @@
-//! Many mistakes: all of them at once; those that only the robot shows come last.
+//! Many errors: all of them at once; those that only the robot shows come last.
 
 articulated::robot! {
     pub mod clash {

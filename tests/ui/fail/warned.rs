@@ -1,4 +1,4 @@
-//! What looks wrong in the URDF: a warning at the path, which a lint makes an error.
+//! Suspicious content of the URDF: a warning at the path, which a lint makes an error.
 #![deny(deprecated)]
 
 articulated::robot! {

@@ -18,7 +18,7 @@ articulated::robot! {
     }
 }
 
-/// Joints and frames are told as the loaded robot tells them, by number and by name.
+/// Joints and frames have the same numbers and names as those of the loaded robot.
 fn names<S: articulated::Scalar, G: Dynamics<S>, L: Dynamics<f64>>(generated: &G, loaded: &L) {
     let mut count = 0;
     while let Some(joint) = loaded.joint(count) {

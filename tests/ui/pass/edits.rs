@@ -15,7 +15,7 @@ articulated::robot! {
 fn main() {
     assert_eq!(arm::JOINT_NAMES, ["yaw", "elbow", "grip_close"]);
     assert_eq!(arm::FRAME_NAMES, ["grip_finger", "grip_left thumb", "load"]);
-    // At zero the arm stands upright, but for the wrist: the load is 0.15 m along the tool.
+    // At zero the arm is upright, except the wrist: the load is 0.15 m along the tool.
     let placements = arm::placements(&[0.0; 3]);
     let load = &placements[arm::frame::LOAD];
     assert!((load[9] - 0.15 * (-0.5_f64).sin()).abs() < 1e-15 && (load[11] - 1.05 - 0.15 * 0.5_f64.cos()).abs() < 1e-15);

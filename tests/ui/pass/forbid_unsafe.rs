@@ -1,4 +1,4 @@
-//! A crate that forbids `unsafe` asks for code without it.
+//! A crate that forbids `unsafe` requests code without it.
 #![forbid(unsafe_code)]
 
 articulated::robot! {

@@ -1,4 +1,4 @@
-//! Functions are typed by the robot's sizes, constants say what is where.
+//! The robot's sizes are types of its functions; constants are the indices.
 #![deny(warnings, missing_docs, unreachable_pub)]
 
 articulated::robot! {

@@ -1,1 +1,2 @@
-//! Cases for the macro `robot!`: `pass` compiles and runs, `fail` says what stands beside it.
+//! Cases for the macro `robot!`: `pass` compiles and runs, `fail` gives the messages in the
+//! adjacent files.

@@ -1,4 +1,4 @@
-//! What the macro `robot!` accepts, and what it says about what it does not.
+//! Inputs that the macro `robot!` accepts, and its messages for others.
 //!
 //! The expected messages are in `fail/*.stderr`;
 //! `TRYBUILD=overwrite cargo test -p articulated-tests-ui` writes them anew.

@@ -8,15 +8,15 @@ use nalgebra::Vector3;
 
 use super::figure::Figure;
 
-/// Frames in all, and frames a second, at most.
+/// Maximum number of frames, and of frames per second.
 const MOST: (usize, f64) = (120, 20.0);
 /// How long the last frame stays, s.
 const PAUSE: f64 = 1.0;
-/// Units across the picture, and in its margin; the height in parts of the width, at most.
+/// Units across the picture, and in its margin; the maximum height relative to the width.
 const WIDTH: f64 = 960.0;
 const MARGIN: f64 = 20.0;
 const ASPECT: f64 = 0.75;
-/// The eye of the page that plays a motion at its start, rad.
+/// Initial direction of the view of the page, rad.
 const AZIMUTH: f64 = -0.9;
 const ELEVATION: f64 = 0.32;
 /// Of limbs, as on that page.
@@ -24,7 +24,7 @@ const HUES: [u32; 8] = [208, 28, 150, 0, 270, 50, 190, 320];
 
 type Point = [f64; 2];
 
-/// Where up is, the height of the ground along it, and a sphere that holds the motion.
+/// Upward direction, height of the ground along it, and a sphere around the motion.
 pub(super) struct Room {
     pub(super) up: Vector3<f64>,
     pub(super) ground: f64,
@@ -145,7 +145,7 @@ impl Page {
         out
     }
 
-    /// Lines on the ground, around what moves.
+    /// Lines on the ground, around the moving bodies.
     fn grid(&self, room: &Room, eye: &Eye) -> String {
         let center = room.center + room.up * (room.ground - room.up.dot(&room.center));
         let spot = |i: i32, j: i32| {

@@ -1,22 +1,22 @@
-//! How a page tells time: how fast it plays, and how many places its clock has.
+//! The clock of a page: its speed of playing, and the number of its decimal places.
 
 use std::cmp::Ordering;
 
-/// How long a motion is seen at the fastest and at the slowest speed that is offered, s.
+/// Playing time of a motion at the fastest and at the slowest speed, s.
 const OFFERED: [f64; 2] = [1.0, 1000.0];
 
-/// How long it should be seen at first, s.
+/// Intended playing time at first, s.
 const SEEN: [f64; 2] = [5.0, 15.0];
 
 /// For rounding.
 const SLACK: f64 = 1e-9;
 
-/// Seconds of the motion a second that are offered for a motion of this length, s, from the
-/// slowest: round numbers, and 1.
+/// Playing speeds, seconds of the motion per second, for a motion of this length, s, starting with
+/// the slowest: round numbers, and 1.
 pub(super) fn speeds(length: f64) -> Vec<f64> {
     let [slowest, fastest] = [(1.0 - SLACK) * length / OFFERED[1], (1.0 + SLACK) * length / OFFERED[0]];
     let mut all = vec![1.0];
-    // Beyond these it is no motion that anybody looks at.
+    // Motions beyond these bounds are not useful to watch.
     if slowest > 1e-300 && fastest < 1e300 {
         let powers = slowest.log10().floor() as i32..=fastest.log10().floor() as i32;
         all.extend(powers.flat_map(|power| [1, 2, 5].map(|m| format!("{m}e{power}").parse::<f64>().unwrap_or(1.0))));
@@ -27,8 +27,8 @@ pub(super) fn speeds(length: f64) -> Vec<f64> {
     all
 }
 
-/// The one of them nearest to 1 at which the motion is seen as long as it should be; else the one
-/// that comes nearest to that.
+/// The speed nearest to 1 at which the motion plays for the intended time; else the one nearest to
+/// that time.
 pub(super) fn speed(length: f64, speeds: &[f64]) -> f64 {
     let off = |speed: f64| {
         let seen = length / speed;
@@ -39,8 +39,8 @@ pub(super) fn speed(length: f64, speeds: &[f64]) -> f64 {
     speeds.iter().copied().min_by(order).unwrap_or(1.0)
 }
 
-/// Decimal places that tell times of output apart, and one more, as far as doubles of their size
-/// have them.
+/// Decimal places that distinguish times of output, plus one, limited by the precision of doubles
+/// of this size.
 pub(super) fn places(t: &[f64]) -> usize {
     let (Some(first), Some(last)) = (t.first(), t.last()) else { return 0 };
     let (step, size) = ((last - first) / (t.len() - 1).max(1) as f64, first.abs().max(last.abs()));

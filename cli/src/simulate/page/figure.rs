@@ -21,7 +21,7 @@ const LABEL: (f64, f64) = (11.0, 120.0);
 #[derive(Clone, Debug, Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Figure {
-    /// One link of each body that moves: the body's placement is that of the link.
+    /// One link of each moving body: the body's placement is that of the link.
     #[serde(skip)]
     pub(super) frames: Vec<String>,
     /// The body that is followed.
@@ -34,7 +34,7 @@ pub(super) struct Figure {
     pub(super) solids: Vec<Solid>,
 }
 
-/// A line from a point of a body to one of another, or of the same.
+/// A line from a point of a body to a point of another, or of the same.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Stick {
     pub(super) from: usize,
@@ -49,7 +49,7 @@ pub(super) struct Mark {
     body: usize,
     place: [f64; 3],
     name: String,
-    /// The name, or as much of it as there is room for.
+    /// The name, cut to the available room.
     label: String,
 }
 
@@ -62,24 +62,24 @@ pub(super) struct Box {
     pub(super) half: [f64; 3],
     name: String,
     mass: f64,
-    /// Which of the base's limbs it belongs to, for its colour.
+    /// Index of its limb of the base, for its colour.
     pub(super) limb: usize,
-    /// No visual shape of the link is drawn: the box is all there is to see of it.
+    /// No visual shape of the link is drawn: the box is its only drawing.
     alone: bool,
 }
 
-/// A shape of a link: its place in the body, and what it looks like.
+/// A shape of a link: its place in the body, and its appearance.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Solid {
     pub(super) body: usize,
     kind: Kind,
-    /// Which of [`Figure::geometries`].
+    /// Index in [`Figure::geometries`].
     pub(super) geometry: usize,
     pub(super) center: [f64; 3],
     /// As columns of a rotation.
     axes: [[f64; 3]; 3],
     name: String,
-    /// Empty where it has none.
+    /// Empty if it has none.
     material: String,
     color: Option<[f64; 4]>,
     limb: usize,
@@ -101,8 +101,8 @@ pub(super) struct Ball {
 }
 
 impl Figure {
-    /// Of a robot; `model` has a frame for each link. The shapes of its links are drawn if `meshes`
-    /// are there.
+    /// For a robot; `model` has a frame for each link. The shapes of its links are drawn if
+    /// `meshes` are given.
     pub(super) fn of(description: &Description, model: &Model<f64>, base: Base, meshes: Option<&Meshes<'_>>) -> Self {
         let mut figure = Self::default();
         let links = figure.links(description, model);
@@ -184,10 +184,9 @@ impl Figure {
         index
     }
 
-    /// Points of a body that hold all that is drawn of it, each with how far around it that
-    /// reaches, m.
+    /// Points that enclose all drawings of a body, each with a radius, m.
     pub(super) fn points(&self, body: usize) -> Vec<(Vector3<f64>, f64)> {
-        // Of a link that is seen otherwise the box is hidden at first.
+        // Boxes of links with another drawing are hidden at first.
         let corners = self.boxes.iter().filter(|b| b.body == body && b.alone).flat_map(Box::corners).map(|p| (p, 0.0));
         let starts = self.sticks.iter().filter(|s| s.from == body).map(|s| (Vector3::from(s.start), 0.0));
         let ends = self.sticks.iter().filter(|s| s.to == body).map(|s| (Vector3::from(s.end), 0.0));
@@ -209,7 +208,7 @@ impl Figure {
         }
     }
 
-    /// Where each link is in its body; the first link of each body stands for it.
+    /// The place of each link in its body, relative to the body's first link.
     fn links(&mut self, description: &Description, model: &Model<f64>) -> ById<LinkId, Option<Linked>> {
         let mut drawn: ById<BodyId, Option<(usize, Placement<f64>)>> = vec![None; model.bodies().len()].into();
         drawn[BodyId::BASE] = Some((0, Placement::identity()));

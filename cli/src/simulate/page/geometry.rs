@@ -13,7 +13,7 @@ use super::track::base64;
 const AROUND: usize = 24;
 /// Rings of half a ball, its pole among them.
 const RINGS: usize = 6;
-/// The finest grid of a decimated mesh has this many cells along its longest side.
+/// Maximum number of cells of a decimated mesh along its longest side.
 const FINEST: usize = 256;
 
 /// A mesh of triangles, each with its corners counterclockwise seen from outside.
@@ -24,7 +24,7 @@ pub(super) struct Geometry {
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
-/// As the player reads it: numbers of 32 bits.
+/// In the player's format: numbers of 32 bits.
 impl Serialize for Geometry {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         let points = base64(&self.points.iter().flatten().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>());
@@ -34,7 +34,7 @@ impl Serialize for Geometry {
 }
 
 impl Geometry {
-    /// Of a shape other than a mesh; `None` of a mesh, or of what could not be read.
+    /// For shapes other than meshes; `None` for a mesh or an unreadable shape.
     pub(super) fn of(shape: &CollisionShape) -> Option<Self> {
         match shape {
             CollisionShape::Box { size } => Some(Self::cuboid(size.map(|side| side / 2.0))),
@@ -56,8 +56,8 @@ impl Geometry {
         Self { points: (0..8).map(corner).collect(), triangles }
     }
 
-    /// The surface that a line of points (distance from the z axis, height), from below, makes
-    /// about that axis.
+    /// The surface of revolution of a line of points (distance from the z axis, height), from
+    /// below.
     fn turned(line: &[[f64; 2]]) -> Self {
         let around = |k: usize| (k as f64 * TAU / AROUND as f64).sin_cos();
         let point = |&[r, z]: &[f64; 2], k: usize| {
@@ -81,7 +81,7 @@ impl Geometry {
         self.clustered(|point| point.map(|x| (x + 0.0).to_bits()))
     }
 
-    /// With at most this many triangles: points in a cell of a grid become one, the mean of them.
+    /// With at most this many triangles: points in a cell of a grid are merged to their mean.
     pub(super) fn decimated(self, most: usize) -> Self {
         if self.triangles.len() <= most {
             return self;
@@ -101,7 +101,7 @@ impl Geometry {
         found
     }
 
-    /// With one point for each key, the mean of those that have it.
+    /// With one point for each key, the mean of its points.
     fn clustered(&self, key: impl Fn([f32; 3]) -> [u32; 3]) -> Self {
         let mut found: HashMap<[u32; 3], u32> = HashMap::new();
         let mut sums: Vec<(Vector3<f64>, f64)> = Vec::new();
@@ -121,7 +121,7 @@ impl Geometry {
         let triangle = |t: &[u32; 3]| Some([corner(t[0])?, corner(t[1])?, corner(t[2])?]);
         let is_flat = |[a, b, c]: &[u32; 3]| a == b || b == c || c == a;
         let mut triangles: Vec<[u32; 3]> = self.triangles.iter().filter_map(triangle).filter(|t| !is_flat(t)).collect();
-        // Many of a decimated mesh fall together.
+        // Many triangles of a decimated mesh coincide.
         let smallest_first = |t: &[u32; 3]| (0..3).map(|k| [t[k], t[(k + 1) % 3], t[(k + 2) % 3]]).min().unwrap_or(*t);
         triangles.iter_mut().for_each(|t| *t = smallest_first(t));
         triangles.sort_unstable();

@@ -1,4 +1,4 @@
-//! Meshes of a robot's file: where they are, and what is in them.
+//! Meshes of a robot's file: their paths, and their contents.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -16,7 +16,7 @@ use super::geometry::Geometry;
 /// Triangles of one mesh, and of all meshes together, at most.
 const MOST: usize = 20_000;
 const MOST_OF_ALL: usize = 120_000;
-/// A mesh of a larger robot still has this many.
+/// Minimum number of triangles of a mesh in a large robot.
 const LEAST: usize = 200;
 
 /// Finds and reads meshes; each is read once.
@@ -29,17 +29,17 @@ pub(crate) struct Meshes<'a> {
 }
 
 impl<'a> Meshes<'a> {
-    /// Of a robot in these folders. `file`: its name in warnings.
+    /// For a robot in these folders. `file`: its name in warnings.
     pub(crate) fn new(folders: Vec<PathBuf>, packages: &'a [Package], file: &str) -> Self {
         Self { folders, packages, read: RefCell::default(), log: RefCell::new(Diagnostics::new(file)) }
     }
 
-    /// What could not be drawn as it is.
+    /// Warnings about inexact drawings.
     pub(crate) fn into_warnings(self) -> Diagnostics {
         self.log.into_inner()
     }
 
-    /// The mesh of a link, with at most this share of all triangles; a warning, if there is none.
+    /// The mesh of a link, with at most this share of all triangles; a warning if there is none.
     pub(super) fn mesh(&self, link: &str, name: &str, pieces: usize) -> Option<Geometry> {
         let most = (MOST_OF_ALL / pieces.max(1)).clamp(LEAST, MOST);
         let found = self.find(name).and_then(|path| self.read(&path).map_err(|why| (format!("{}: {why}", path.display()), EXPECTED)));
@@ -58,7 +58,7 @@ impl<'a> Meshes<'a> {
         Some(drawn)
     }
 
-    /// A warning about what a link looks like.
+    /// A warning about a link's appearance.
     pub(super) fn warn(&self, link: &str, found: &str, expected: &str) {
         let subject = Subject::Link(link.to_owned());
         let place = Place { subject: &subject, ..Place::DOCUMENT };
@@ -94,7 +94,7 @@ const EXPECTED: &str = "a mesh in STL, OBJ or COLLADA (.dae)";
 const BESIDE: &str = "one relative to the robot's file";
 const IN_PACKAGE: &str = "one in the folder of its package: --package NAME=FOLDER, or `packages` of the scene, says where that is";
 
-/// Folders of a package that contain this one, or that stand in one of those around it.
+/// Folders of a package that contain this folder, or that are in a surrounding folder.
 fn upward(folder: &Path, package: &str) -> Vec<PathBuf> {
     let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let own = |around: &Path| around.file_name().is_some_and(|name| name == package).then(|| around.to_owned());
@@ -102,7 +102,7 @@ fn upward(folder: &Path, package: &str) -> Vec<PathBuf> {
     folders.filter(|found| found.is_dir()).collect()
 }
 
-/// The mesh of a file, m. Errors: why it cannot be read.
+/// The mesh of a file, m. Errors: the reason why it is unreadable.
 fn read(path: &Path) -> Result<Geometry, String> {
     let bytes = Disk.read(path).map_err(|e| e.to_string())?;
     let known = path.extension().is_some_and(|e| ["stl", "obj", "dae"].iter().any(|known| e.eq_ignore_ascii_case(known)));
@@ -122,7 +122,7 @@ fn read(path: &Path) -> Result<Geometry, String> {
     if mesh.triangles.is_empty() { Err("no triangle".to_owned()) } else { Ok(mesh) }
 }
 
-/// With z up, where a COLLADA file says that another axis is.
+/// With z up, if a COLLADA file has another axis up.
 fn upright(mut mesh: Geometry, bytes: &[u8]) -> Geometry {
     let says = |word: &[u8]| bytes.windows(word.len()).any(|part| part == word);
     let turn: fn([f32; 3]) -> [f32; 3] = match () {

@@ -1,5 +1,5 @@
-//! A motion as one page that plays it in three dimensions: everything is in the file, and nothing
-//! is fetched.
+//! A motion as one page that plays it in three dimensions: the file contains all data, and loads
+//! none.
 
 mod animation;
 mod clock;
@@ -29,7 +29,7 @@ const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 const PLAYER: &str = include_str!("player.js");
 
-/// What the page shows beside the motion.
+/// Contents of the page besides the motion.
 pub(super) struct Setting<'a> {
     pub(super) title: &'a str,
     /// Under the title.
@@ -53,7 +53,7 @@ pub(super) struct Projectile {
     pub(super) place: [f64; 3],
     /// m.
     pub(super) radius: f64,
-    /// When it is there, s from the start on; none, if it is not hit and rests.
+    /// The time of its hit, s from the start on; `None` if it is not hit and rests.
     pub(super) time: Option<f64>,
     /// m/s.
     pub(super) before: [f64; 3],
@@ -77,7 +77,7 @@ struct Motion<'a> {
     size: f64,
     #[serde(flatten)]
     figure: &'a Figure,
-    /// Seconds of the motion a second that are offered, and the one that it begins with.
+    /// Playing speeds, seconds of the motion per second, and the initial one.
     speeds: Vec<f64>,
     speed: f64,
     /// Decimal places of the clock.
@@ -97,7 +97,7 @@ struct Motion<'a> {
     projectile: Option<Projectile>,
 }
 
-/// The page's text. What cannot be drawn is a warning of `meshes`.
+/// The page's text. `meshes` gets a warning for anything that cannot be drawn.
 pub(super) fn html(r: &Recording, setting: &Setting<'_>, meshes: &Meshes<'_>) -> Result<String, FunctionError> {
     let mut figure = Figure::of(setting.description, setting.model, setting.base, Some(meshes));
     for (link, center, radius) in &setting.balls {
@@ -142,7 +142,7 @@ pub(super) fn html(r: &Recording, setting: &Setting<'_>, meshes: &Meshes<'_>) ->
         events: &r.events,
         projectile: setting.projectile,
     };
-    // A name cannot end the script that it stands in.
+    // A name cannot end the script that contains it.
     let data = serde_json::to_string(&motion).unwrap_or_default().replace('<', "\\u003c");
     let parts = [("title", escaped(setting.title)), ("style", STYLE.to_owned()), ("data", data), ("script", PLAYER.to_owned())];
     Ok(filled(PAGE, &parts))
@@ -186,7 +186,7 @@ fn placements(r: &Recording, chosen: &[usize], model: &Model<f64>, frames: &[Str
     Ok(all)
 }
 
-/// What the motion needs room for, and where up is.
+/// The space of the motion, and the upward direction.
 struct Space {
     up: Vector3<f64>,
     ground: f64,
@@ -217,7 +217,7 @@ impl Space {
     }
 }
 
-/// The box that holds all of these.
+/// The box around all of these.
 fn bounds(all: impl Iterator<Item = (Vector3<f64>, f64)>) -> (Vector3<f64>, Vector3<f64>) {
     let mut ends: Option<(Vector3<f64>, Vector3<f64>)> = None;
     for (p, r) in all {
@@ -277,7 +277,7 @@ mod tests {
         assert_eq!(motion["placements"].as_str().unwrap().len(), (14 * 13 * frames).div_ceil(3) * 4);
     }
 
-    /// A clock that has been running for years tells its frames apart.
+    /// Frames are distinguished by a clock that has run for years.
     #[test]
     fn times_are_kept_from_the_start_on() {
         let early = example(&bundled_model("quadruped"), 20);

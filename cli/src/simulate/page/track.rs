@@ -1,4 +1,4 @@
-//! Where the bodies are in each frame of the animation, in 14 bytes a body.
+//! Places of the bodies in each frame of the animation, in 14 bytes per body.
 
 use articulated_core::spatial::Placement;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
@@ -8,8 +8,8 @@ const RATE: f64 = 60.0;
 /// Bodies times frames, at most: some 6 MB of the page.
 const MOST: usize = 300_000;
 
-/// Indices of the times that become frames: as many as are seen at so many seconds per second,
-/// first and last among them.
+/// Indices of the times that become frames: as many as are seen at this speed, including the first
+/// and the last.
 pub(super) fn chosen(t: &[f64], bodies: usize, speed: f64) -> Vec<usize> {
     let (Some(first), Some(last)) = (t.first(), t.last()) else { return Vec::new() };
     let frames = (MOST / bodies.max(1)).max(2) as f64;

@@ -16,7 +16,7 @@ pub(super) const UNITS: Units = Units(&[
     ("functions[].error", "the sum of the magnitudes of the terms"),
 ]);
 
-/// What to take for each function, as programs read it.
+/// The recommended level for each function, as data.
 #[derive(Clone, Debug, Serialize)]
 pub struct Whole<'a> {
     robot: &'a str,
@@ -29,22 +29,22 @@ pub struct Whole<'a> {
     functions: Vec<Advice>,
 }
 
-/// All of a report.
+/// Advice for a whole report.
 pub(super) fn whole(report: &Report, wish: f64) -> Whole<'_> {
     let Report { robot, scene, base, states, seed, .. } = report;
     let functions = all(report, wish);
     Whole { robot, scene: scene.as_deref(), base, states: *states, seed: *seed, wish, units: UNITS, functions }
 }
 
-/// What to take for one function.
+/// The recommended level for one function.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Advice {
     function: &'static str,
-    /// None that was measured is accurate enough.
+    /// `None` if no measured level is accurate enough.
     level: Option<String>,
     ns: Option<f64>,
     error: Option<f64>,
-    /// The most accurate there is, where none is enough.
+    /// The most accurate level, if none is accurate enough.
     best: Option<(String, f64)>,
 }
 
@@ -66,7 +66,7 @@ fn one(function: &'static str, points: &[Point], wish: f64) -> Advice {
     }
 }
 
-/// The functions of which nothing measured is accurate enough, in a sentence.
+/// The functions without an accurate enough level, in a sentence.
 pub(super) fn short(report: &Report, wish: f64) -> Option<String> {
     let names: Vec<&str> = all(report, wish).iter().filter(|a| a.level.is_none()).map(|a| a.function).collect();
     (!names.is_empty()).then(|| format!("nothing measured is accurate to {wish:e}: {}", names.join(", ")))

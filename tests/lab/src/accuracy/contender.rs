@@ -19,7 +19,7 @@ pub(super) struct Contender {
 }
 
 impl Contender {
-    /// None where the library does not have the function.
+    /// `None` if the library does not have the function.
     pub(super) fn new(compiled: &Compiled, level: Precision, function: &Function<f64>, states: &[Vec<&[f64]>]) -> Option<Self> {
         let single = level.is_single();
         let form = |x: &&[f64]| if single { packed(x) } else { x.to_vec() };
@@ -44,7 +44,7 @@ impl Contender {
         self.arguments.iter().take(states).map(|x| x.iter().map(Vec::as_slice).collect()).collect()
     }
 
-    /// What the clock is held to.
+    /// The timed run.
     pub(super) fn run<'a>(&'a self, states: &'a [Vec<&'a [f64]>]) -> Run<'a> {
         let mut out = self.room();
         Run::new(states.len(), move |rounds| {

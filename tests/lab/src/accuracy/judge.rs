@@ -1,9 +1,9 @@
 //! Errors of all levels of a function in one state.
 //!
 //! Two references, each of 320 bits: the textbook's formulas on the numbers of the robot's file,
-//! which share nothing with what is judged (with effects, which they do not know, the generic
-//! library), and the very graph that is emitted, in the constants that it has. The difference to
-//! the second is rounding alone.
+//! which are independent of the judged code (with effects, which they do not include, the generic
+//! library), and the emitted graph itself, with its constants. The difference to the second is
+//! rounding alone.
 
 use articulated_codegen::graph::Graph;
 use articulated_codegen::{Generated, Precision, bound};
@@ -15,7 +15,7 @@ use articulated_reference::{Big, Exact, ROUNDOFF, scales};
 use crate::compare::accuracy::worse;
 use crate::compare::accuracy::{above_residues, backward, exact, inverse_of, largest, singular};
 
-/// What one state says of one contender.
+/// The result of one state for one contender.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Verdict {
     /// Against the first, relative to the scale.
@@ -27,7 +27,7 @@ pub(super) struct Verdict {
     pub(super) backward: Option<f64>,
     /// The largest guaranteed error, relative to the scale.
     pub(super) bound: Option<f64>,
-    /// The largest part of a bound that an error is.
+    /// The largest ratio of an error to its bound.
     pub(super) reached: Option<f64>,
 }
 
@@ -37,13 +37,13 @@ pub(super) struct Found<'a> {
     pub(super) own: Option<(&'a Graph, Precision)>,
 }
 
-/// The graph of a function, where it is all of it.
+/// The graph of a function, if it is complete.
 pub(super) fn graph<'a>(generated: &'a Generated, function: &str) -> Option<&'a Graph> {
     let place = generated.ledger.functions.iter().position(|f| f.function == function)?;
     generated.graphs.get(place).filter(|graph| !graph.outputs.is_empty())
 }
 
-/// What a state says of each; `None` where there is no right answer. `state`: the arguments in the
+/// The results of a state for each; `None` without a valid reference. `state`: the arguments in the
 /// function's order.
 pub(super) fn verdicts(
     reference: &Exact,
@@ -90,7 +90,7 @@ fn one(
     let given = |argument: usize, k: usize| (state[argument][k], 0.0);
     if let Some(bounds) = bound::bounds(graph, level, &given) {
         verdict.bound = Some(bounds.iter().zip(scale).map(|(b, s)| if *b == 0.0 { 0.0 } else { b / s }).fold(0.0, f64::max));
-        // What has overflowed is beyond every bound, and no part of one.
+        // An overflow exceeds every bound, so it has no ratio to it.
         let finite = by_graph.iter().zip(&found.result).zip(&bounds).filter(|((_, f), _)| f.is_finite());
         let parts = finite.map(|((e, f), b)| e.error_of(*f, *b));
         verdict.reached = Some(parts.fold(0.0, worse));
@@ -102,7 +102,7 @@ fn one(
 fn in_ulps(exact: &[Big], found: &[f64]) -> f64 {
     let one = |(e, f): (&Big, &f64)| {
         let size = e.to_f64().abs();
-        // What 96 digits left of nothing is nothing.
+        // A remainder of the 96 digits counts as zero.
         if size < 1e-60 { 0.0 } else { e.error_of(*f, size.next_up() - size) }
     };
     exact.iter().zip(found).map(one).fold(0.0, worse)

@@ -1,4 +1,4 @@
-//! Names beside their marks.
+//! Names next to their marks.
 
 use crate::plot::{Anchor, Point, SMALL};
 
@@ -8,19 +8,19 @@ pub(super) type Area = [f64; 4];
 /// The size of names.
 pub(super) const SIZE: f64 = SMALL;
 
-/// How far a name's edge stands from its mark.
+/// Distance of a name's edge from its mark.
 const GAP: f64 = 7.0;
 
-/// Where a name stands.
+/// The place of a name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Place {
     pub(super) at: Point,
     pub(super) anchor: Anchor,
-    /// Where a line from the mark ends, if the name stands too far off to be known by its place.
+    /// The end of a line from the mark, if the name is too far away to be identified by its place.
     pub(super) leader: Option<Point>,
 }
 
-/// What is taken of a picture.
+/// The occupied areas of a picture.
 #[derive(Clone, Debug)]
 pub(super) struct Labels {
     within: Area,
@@ -30,13 +30,13 @@ pub(super) struct Labels {
 }
 
 impl Labels {
-    /// All names stand within this area, and beside what is taken.
+    /// All names are placed within this area, and outside the occupied ones.
     pub(super) fn new(within: Area, taken: Vec<Area>) -> Self {
         Self { within, taken, leaders: Vec::new() }
     }
 
-    /// Beside a mark, or the nearest free place from which a line leads to it, one that crosses no
-    /// other if there is any. It is taken then.
+    /// A place next to a mark, or the nearest free place with a line to it, which crosses no other
+    /// line if possible. The place is then occupied.
     pub(super) fn place(&mut self, mark: Point, name: &str) -> Place {
         let free = |p: &Place| {
             let area = area(p, name);
@@ -54,7 +54,7 @@ impl Labels {
         place
     }
 
-    /// Whether the outer part of a line leads through nothing that is taken.
+    /// Whether the outer part of a line crosses no occupied area.
     fn clear(&self, mark: Point, end: Point) -> bool {
         let outer = [on([mark, end], 0.4), end];
         !self.taken.iter().any(|t| through(outer, t))
@@ -66,7 +66,7 @@ impl Labels {
     }
 }
 
-/// A point of a line, from 0 at its begin to 1 at its end.
+/// A point of a line, from 0 at its start to 1 at its end.
 fn on([[x, y], end]: [Point; 2], part: f64) -> Point {
     [x + part * (end[0] - x), y + part * (end[1] - y)]
 }
@@ -79,7 +79,7 @@ fn through(line: [Point; 2], area: &Area) -> bool {
 
 /// Whether two lines cross.
 fn cross(a: [Point; 2], b: [Point; 2]) -> bool {
-    // Twice the area of a triangle, positive where the point is on one side of the line.
+    // Twice the area of a triangle, positive if the point is on one side of the line.
     let side = |[from, to]: [Point; 2], p: Point| (to[0] - from[0]) * (p[1] - from[1]) - (to[1] - from[1]) * (p[0] - from[0]);
     let apart = |line, [p, q]: [Point; 2]| side(line, p) * side(line, q) < 0.0;
     apart(a, b) && apart(b, a)
@@ -104,7 +104,7 @@ fn farther([x, y]: Point) -> impl Iterator<Item = Place> {
     })
 }
 
-/// What a name takes.
+/// The area of a name.
 pub(super) fn area(place: &Place, name: &str) -> Area {
     let [x, y] = place.at;
     let wide = width(name);
@@ -116,7 +116,7 @@ pub(super) fn area(place: &Place, name: &str) -> Area {
     [left, y - 0.8 * SIZE, left + wide, y + 0.25 * SIZE]
 }
 
-/// About how wide a name is: letters of a sans serif are.
+/// Approximate width of a name, for letters of a sans serif.
 pub(super) fn width(name: &str) -> f64 {
     0.61 * SIZE * name.chars().count() as f64
 }
@@ -168,7 +168,7 @@ mod tests {
         let mut labels = Labels::new([0.0, 0.0, 100.0, 100.0], vec![]);
         assert_eq!(labels.place([95.0, 50.0], "f64"), beside([95.0, 50.0])[1]);
         assert_eq!(labels.place([5.0, 50.0], "f64").anchor, Anchor::Start);
-        // Where there is no room at all it stands beside its mark nevertheless.
+        // Without any room it is placed next to its mark nevertheless.
         assert_eq!(Labels::new([0.0; 4], vec![]).place([50.0, 50.0], "f64"), beside([50.0, 50.0])[0]);
     }
 }

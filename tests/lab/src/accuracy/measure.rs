@@ -99,7 +99,7 @@ fn report(robot: &Robot, reference: &Reference, model: &Model<f64>, rustc: &Rust
     }
 }
 
-/// One function and what it is measured on.
+/// One function and the objects that it is measured on.
 struct One<'a> {
     f: &'static Function<f64>,
     model: &'a Model<f64>,
@@ -171,7 +171,7 @@ impl One<'_> {
         Entry { point, verdicts: Vec::new() }
     }
 
-    /// The errors of all that take these states. States are shared out among the threads.
+    /// The errors of all contenders for these states. Threads share the states.
     fn judge(
         &self,
         single: bool,
@@ -269,7 +269,7 @@ impl Theirs {
         self.arguments.iter().take(states).map(|x| x.iter().map(Vec::as_slice).collect()).collect()
     }
 
-    /// The result in our order; not a number where the peer keeps it to itself.
+    /// The result in our order; NaN if the peer does not return it.
     fn call(&self, k: usize, peer: &Peer, ours: &[f64], f: &Function<f64>, model: &Model<f64>) -> Vec<f64> {
         let arguments: Vec<&[f64]> = self.arguments[k].iter().map(Vec::as_slice).collect();
         let result = self.contender.call(&arguments);

@@ -1,4 +1,4 @@
-//! What accuracy costs: error and time of each function at each level.
+//! The cost of accuracy: error and time of each function at each level.
 
 mod advise;
 mod contender;
@@ -25,7 +25,7 @@ use crate::json::json;
 use crate::robot::Robot;
 pub use report::{Report, Settings};
 
-/// What is measured unless functions are named.
+/// Default functions.
 const FUNCTIONS: [&str; 4] = ["placements", "inverse_dynamics", "mass_matrix", "forward_dynamics"];
 
 /// Measures a robot.
@@ -54,7 +54,7 @@ impl Report {
         text::text(self)
     }
 
-    /// The cheapest level of each function whose largest error is at most `wish`.
+    /// The cheapest level of each function with a largest error of at most `wish`.
     pub fn advice(&self, wish: f64) -> advise::Whole<'_> {
         advise::whole(self, wish)
     }
@@ -64,7 +64,7 @@ impl Report {
         advise::text(self, wish)
     }
 
-    /// The functions of which no level is accurate enough, in a sentence.
+    /// The functions without an accurate enough level, in a sentence.
     pub fn short_of(&self, wish: f64) -> Option<String> {
         advise::short(self, wish)
     }

@@ -1,4 +1,4 @@
-//! The report as one page that needs nothing else.
+//! The report as one self-contained page.
 
 use std::fmt::Write;
 
@@ -51,8 +51,7 @@ const CHOICE: &str = "<h2>What to choose when</h2><ul>\
 <li><b>Long orbits</b> of conservative systems: <code>compensated</code> for the right-hand side only if the integrator's own error is below 1e-13; see the report of the integrators.</li>\
 <li><b>Checking other code</b>: <code>double_double</code>; it is right to the last bit of its result save for constants.</li></ul>\n";
 
-/// What the longest call of plain doubles takes of a cycle of 1 ms; nothing where none was
-/// measured.
+/// The part of a cycle of 1 ms for the longest call of plain doubles; empty if none was measured.
 fn cycle(report: &Report) -> String {
     let calls = report.functions.iter().flat_map(|f| f.points.iter().filter(|p| p.level == "f64").map(|p| (f.function, p.time.median)));
     let longest = calls.max_by(|a, b| a.1.total_cmp(&b.1));
@@ -104,7 +103,7 @@ fn row(out: &mut String, p: &Point) {
     let _ = writeln!(out, "<tr{}><td>{}</td></tr>", if p.front { " class=\"front\"" } else { "" }, cells.join("</td><td>"));
 }
 
-/// What each level promises.
+/// The contract of each level.
 fn contracts(out: &mut String, report: &Report) {
     *out += "<h2>What each level promises</h2>\n<dl>";
     let mut seen: Vec<&str> = Vec::new();

@@ -8,7 +8,7 @@ pub(super) const WIDTH: f64 = 720.0;
 pub(super) const HEIGHT: f64 = 430.0;
 /// Left, right, top and bottom of the field.
 pub(super) const FIELD: [f64; 4] = [70.0, 530.0, 44.0, 380.0];
-/// Where the line about colours stands.
+/// Position of the line about colours.
 const LEGEND: f64 = 38.0;
 const OURS: &str = "#1b6ca8";
 const FRONT: &str = "#c03d20";
@@ -72,7 +72,7 @@ fn diamond(out: &mut Drawing, [a, b]: [f64; 2], colour: &'static str) {
     out.path(vec![[a - 2.0, b], [a, b - 2.0], [a + 2.0, b], [a, b + 2.0], [a - 2.0, b], [a, b - 2.0]], colour, 4.0);
 }
 
-/// The names beside their marks; where there is no room, farther off with a line.
+/// The names next to their marks; without room, farther off with a line.
 fn names(out: &mut Drawing, x: &Axis, y: &Axis, points: &[Point]) {
     let [left, _, top, bottom] = FIELD;
     let at = |p: &Point| [x.at(p.time.median), y.at(p.relative.largest)];
@@ -88,14 +88,14 @@ fn names(out: &mut Drawing, x: &Axis, y: &Axis, points: &[Point]) {
     }
 }
 
-/// What a mark takes, with its line down to the median.
+/// The area of a mark, with its line down to the median.
 fn taken(x: &Axis, y: &Axis, p: &Point) -> Area {
     let [low, high, at] = [p.time.lower_quartile, p.time.upper_quartile, p.time.median].map(|t| x.at(t));
     let (largest, median) = (y.at(p.relative.largest), y.at(p.relative.median));
     [low.min(at - 4.0), largest - 4.0, high.max(at + 4.0), median.max(largest + 4.0)]
 }
 
-/// What the colours mean, in a line below the title.
+/// The meaning of the colours, in a line below the title.
 fn legend(out: &mut Drawing, points: &[Point]) {
     let lines = [
         (FRONT, "nothing else is both faster and more accurate", true),

@@ -1,4 +1,4 @@
-//! What was measured.
+//! The results of a measurement.
 
 use std::path::PathBuf;
 
@@ -9,12 +9,12 @@ use crate::compare::accuracy::Against;
 use crate::compare::timing::Summary;
 use crate::json::Units;
 
-/// What is measured, and how.
+/// Settings of the measurement.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// The functions; none are four of kinematics and dynamics.
+    /// The functions; if empty, four of kinematics and dynamics.
     pub functions: Vec<String>,
-    /// The levels; none are all.
+    /// The levels; if empty, all.
     pub levels: Vec<Precision>,
     /// How many random states.
     pub states: u32,
@@ -74,10 +74,10 @@ pub struct Report {
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct FunctionReport {
     pub(super) function: &'static str,
-    /// What the result is.
+    /// Description of the result.
     pub(super) summary: &'static str,
     pub(super) points: Vec<Point>,
-    /// What is worth knowing.
+    /// Notable results.
     pub(super) surprises: Vec<String>,
 }
 
@@ -97,37 +97,37 @@ pub(super) struct Point {
     pub(super) peer: bool,
     /// ns per call.
     pub(super) time: Summary,
-    /// Of each state the largest error of a result, relative to the sum of the magnitudes of its
+    /// For each state, the largest error of a result, relative to the sum of the magnitudes of its
     /// terms; against [`Report::reference`].
     pub(super) relative: Spread,
     /// The same in units in the last place of a double.
     pub(super) ulps: Spread,
     /// As `relative`, against the graph that is emitted, in the reference's digits: rounding alone.
     pub(super) rounding: Option<Spread>,
-    /// How far the torques that a solution needs are from those given, relative to the magnitudes
-    /// of their terms.
+    /// Difference between the torques that a solution needs and the given ones, relative to the
+    /// magnitudes of their terms.
     pub(super) backward: Option<Spread>,
-    /// The largest relative error on the hard states, not a number where the result is none, and
-    /// what is hard about it.
+    /// The largest relative error on the hard states, NaN if the result is not a number, and the
+    /// name of the hard state.
     #[serde(serialize_with = "hard")]
     pub(super) hard: Option<(f64, &'static str)>,
     /// The largest guaranteed bound on `rounding`, over the random states.
     pub(super) bound: Option<f64>,
-    /// How much of its bound an error reached at most.
+    /// The largest ratio of an error to its bound.
     pub(super) reached: Option<f64>,
     pub(super) instructions: Option<u64>,
     pub(super) operations: Option<u64>,
     pub(super) code_bytes: Option<u64>,
     /// rustc's time for all functions of the level.
     pub(super) compilation_seconds: Option<f64>,
-    /// Whether nothing else is both faster and more accurate.
+    /// Whether no other point is both faster and more accurate.
     pub(super) front: bool,
 }
 
 impl Spread {
     /// Of the largest errors of states.
     pub(super) fn of(mut errors: Vec<f64>) -> Self {
-        // What is not a number may have a sign, and would be the least with it.
+        // A NaN may have a sign, and a negative one would be sorted first.
         errors.iter_mut().filter(|e| e.is_nan()).for_each(|e| *e = f64::NAN);
         errors.sort_by(f64::total_cmp);
         let at = |part: f64| errors.get(((errors.len().max(1) - 1) as f64 * part).ceil() as usize).copied().unwrap_or(f64::NAN);
@@ -135,7 +135,7 @@ impl Spread {
     }
 }
 
-/// JSON has nothing that is not a number.
+/// JSON has no NaN.
 fn hard<S: serde::Serializer>(hard: &Option<(f64, &'static str)>, to: S) -> Result<S::Ok, S::Error> {
     match hard {
         Some((error, name)) if !error.is_finite() => ("overflow", name).serialize(to),

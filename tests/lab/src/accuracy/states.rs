@@ -5,14 +5,14 @@ use articulated_core::model::{JointInfo, Model};
 
 use crate::states::{self, State};
 
-/// A state, and what is hard about it; nothing for one at random.
+/// A state, and the reason why it is hard; none for a random one.
 #[derive(Clone, Debug)]
 pub(super) struct Case {
     pub(super) state: State,
     pub(super) hard: Option<&'static str>,
 }
 
-/// What a hard state does to one at random.
+/// A hard state's change of a random one.
 type Change = fn(&Model<f64>, &mut State);
 
 const HARD: [(&str, Change); 13] = [

@@ -24,7 +24,7 @@ pub(super) fn text(report: &Report) -> String {
     out + &wrapped(&EXPLAINED.replace("REFERENCE", reference).replace("BACKWARD", backward))
 }
 
-/// What was measured where.
+/// The description of the measurement and the machine.
 pub(super) fn head(report: &Report) -> String {
     let mut out = format!(
         "{}, {} base: {}, {}; frames: {}\n{} (seed {}) and {}, {} in turns; reference of {} bits\n{}; {} {}; articulated {} ({})\n",
@@ -116,7 +116,7 @@ fn row(p: &Point, backward: bool) -> Vec<String> {
     cells
 }
 
-/// An error on a hard state, which may have none.
+/// An error on a hard state, which may be infinite.
 pub(super) fn hardest(x: f64) -> String {
     if x.is_finite() { number(x) } else { "overflow".into() }
 }

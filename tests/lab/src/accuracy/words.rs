@@ -1,8 +1,8 @@
-//! A sentence for what one would not have guessed.
+//! Sentences about unexpected results.
 
 use super::report::Point;
 
-/// What the points of one function say that is worth knowing.
+/// Notable results among the points of one function.
 pub(super) fn surprises(points: &[Point]) -> Vec<String> {
     let Some(plain) = points.iter().find(|p| p.level == "f64") else { return Vec::new() };
     let seen = Seen { points, plain };
@@ -22,7 +22,7 @@ impl Seen<'_> {
         self.points.iter().find(|p| p.level == level)
     }
 
-    /// How many times the time of plain doubles.
+    /// Ratio of its time to that of plain doubles.
     fn times(&self, p: &Point) -> f64 {
         p.time.median / self.plain.time.median
     }
@@ -105,7 +105,7 @@ fn hardest(plain: &Point) -> Option<String> {
     Some(format!("The hardest state for f64 is \u{201c}{name}\u{201d}: {error:.1e}, {random}."))
 }
 
-/// A peer that a hard state puts far off.
+/// A peer with a large error on a hard state.
 fn far_off(p: &Point, plain: &Point) -> Option<String> {
     let (error, name) = p.hard.filter(|(error, _)| p.peer && *error > 1e-6 && *error > 1e3 * p.relative.largest)?;
     Some(format!(
@@ -119,7 +119,7 @@ fn bound_and_seen(plain: &Point) -> Option<String> {
     against_the_bound(plain.bound?, plain.rounding?.largest)
 }
 
-/// How far the guaranteed bound is from the rounding that was seen.
+/// Ratio of the guaranteed bound to the observed rounding error.
 fn against_the_bound(bound: f64, seen: f64) -> Option<String> {
     let said = match seen {
         _ if bound == 0.0 => return None,

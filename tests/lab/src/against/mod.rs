@@ -26,7 +26,7 @@ pub use report::Report;
 use report::{Reached, Target};
 use search::{Effort, search};
 
-/// Errors of the last state, rad, m, and those a second: the largest of all.
+/// Errors of the last state, rad, m, and the same per second: the largest of all.
 const TARGETS: [f64; 3] = [1e-3, 1e-6, 1e-9];
 const REPETITIONS: usize = 15;
 
@@ -36,9 +36,9 @@ trait Runner {
     fn order(&self) -> u32;
     /// Whether it is `articulated`.
     fn is_ours(&self) -> bool;
-    /// From the least to the most that makes sense.
+    /// From the least to the largest sensible effort.
     fn effort(&self, level: usize) -> Option<Effort>;
-    /// Simulates to the end; (q, v) there, or `None` if it diverged.
+    /// Simulates to the end; returns (q, v) there, or `None` if it diverged.
     fn run(&mut self, effort: Effort) -> Option<Vec<f64>>;
     /// Steps and evaluations of forward dynamics of the last run.
     fn spent(&self) -> (u64, u64);
@@ -89,7 +89,7 @@ impl Report {
     }
 }
 
-/// Whether the scene has nothing that peers do not know.
+/// Checks that peers know everything in the scene.
 fn known_to_peers(session: &Session) -> Result<(), Error> {
     let file = &session.scene.file;
     let told = |what| format!("{file}: found {what}, expected none for --against: peers know the robot's file and its gravity only");

@@ -67,5 +67,5 @@ impl Runner for Ours<'_> {
     }
 }
 
-/// What is measured is generated code: a robot without a workspace.
+/// Generated code is measured: a robot without a workspace.
 const _: fn(&Straight) = |robot| robot.workspace();

@@ -1,4 +1,4 @@
-//! Libraries that take steps of their own, behind the C interface of a peer.
+//! Libraries that make steps of their own, behind the C interface of a peer.
 
 use std::path::Path;
 
@@ -25,8 +25,8 @@ pub(crate) struct Peer {
     steps: usize,
 }
 
-/// Those of the libraries that make steps and read the robot, and why others do not. They start at
-/// (q, v), in our order, and go on for so many seconds.
+/// The peers of the libraries that make steps and read the robot, and the reasons why others do
+/// not. They start at (q, v), in our order, and simulate for `seconds`.
 pub(crate) fn open(
     session: &Session,
     libraries: &[Library],
@@ -54,7 +54,7 @@ pub(crate) fn open(
 }
 
 impl Peer {
-    /// `None`: it is no engine of simulation.
+    /// `None`: it is not a simulation engine.
     fn open(session: &Session, library: &Library, urdf: &Path, start: (&[f64], &[f64]), seconds: f64) -> Result<Option<Self>, String> {
         let opened = Native::open(&library.path)?;
         let engine = library.engine.clone().or_else(|| opened.peer_name()).ok_or("it has no function peer_name")?;
@@ -70,7 +70,7 @@ impl Peer {
         Ok(Some(Self { engine, native, orders, start, length: seconds, method, steps: 0 }))
     }
 
-    /// Whose it is.
+    /// The name of its engine.
     pub(crate) fn engine(&self) -> &str {
         &self.engine
     }
@@ -80,8 +80,8 @@ impl Peer {
         self.native.methods()
     }
 
-    /// Goes to the end in so many equal steps; q and v there in our order, or nothing if it went
-    /// astray.
+    /// Runs to the end in this number of equal steps; q and v there in our order, or `None` if it
+    /// diverged.
     pub(crate) fn go(&self, method: &Stepping, steps: usize) -> Option<(Vec<f64>, Vec<f64>)> {
         let (mut q, mut v) = self.start.clone();
         self.native.simulate(method, &mut q, &mut v, self.length / steps as f64, steps)?;

@@ -4,13 +4,13 @@ use serde::Serialize;
 
 use super::search::Effort;
 
-/// What was measured.
+/// The results of the measurement.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     pub(super) scene: String,
     pub(super) robot: String,
     pub(super) simulated_s: f64,
-    /// What errors are measured against.
+    /// Reference for errors.
     pub(super) reference: String,
     pub(super) compiler: String,
     pub(super) notes: Vec<String>,
@@ -20,7 +20,7 @@ pub struct Report {
 /// Everybody at the same error.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Target {
-    /// Of the last state, the largest difference of a coordinate or rate: rad, m, and those a
+    /// For the last state, the largest difference of a coordinate or rate: rad, m, and the same per
     /// second.
     pub(super) error: f64,
     pub(super) reached: Vec<Reached>,

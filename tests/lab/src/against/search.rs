@@ -35,8 +35,8 @@ pub(super) fn tolerances(level: usize) -> Option<Effort> {
     (level < 49).then(|| Effort::Tolerance(10_f64.powf(-1.5 - level as f64 / 4.0)))
 }
 
-/// The first level at which the error is no more than the target and from which on it stays so for
-/// another: a lucky hit counts for nothing.
+/// The first level whose error is at most the target, and stays so at the next level: a lucky hit
+/// does not count.
 pub(super) fn search(runner: &mut dyn Runner, best: &[f64], target: f64, from: usize) -> Option<(usize, Effort, f64)> {
     let mut before: Option<(usize, Effort, f64)> = None;
     for level in from.. {
@@ -54,7 +54,7 @@ pub(super) fn search(runner: &mut dyn Runner, best: &[f64], target: f64, from: u
 mod tests {
     use super::*;
 
-    /// Its error falls as the fourth power of the step, but for one lucky hit.
+    /// Its error decreases with the fourth power of the step, except for one lucky hit.
     struct Fourth;
 
     impl Runner for Fourth {

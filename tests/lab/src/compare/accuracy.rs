@@ -1,9 +1,9 @@
-//! Errors against a reference of 96 digits: the textbook's form, which shares no formula with what
-//! it judges; of a robot with effects, which that does not know, the generic library.
+//! Errors against a reference of 96 digits: the textbook's form, which shares no formula with the
+//! judged code; for a robot with effects, which that does not include, the generic library.
 //!
 //! A result is compared with the textbook form's. The accelerations of forward dynamics are judged
-//! by their backward error instead: how far the torques that they need are from those that were
-//! given.
+//! by their backward error instead: the difference between the torques that they need and the given
+//! ones.
 
 use articulated_codegen::Options;
 use articulated_core::Scalar;
@@ -34,7 +34,7 @@ pub(super) struct Errors {
 pub(crate) enum Against {
     /// The textbook's form, on the numbers of the robot's file.
     Textbook,
-    /// The generic library, on those of the model: the textbook's form knows no effects.
+    /// The generic library, on the numbers of the model: the textbook's form includes no effects.
     Library,
 }
 
@@ -57,13 +57,13 @@ impl Reference {
         Self { description: description.clone(), options: robot.options.clone(), against: Against::of(robot) }
     }
 
-    /// What the robot's results are held to.
+    /// The reference of the robot's results.
     pub(crate) fn against(&self) -> Against {
         self.against
     }
 
-    /// Said in reports: where results are not held to the textbook, and what of the scene has no
-    /// part in them.
+    /// Notes for reports: if the reference is not the textbook, and which parts of the scene it
+    /// does not use.
     pub(crate) fn note(&self) -> Vec<String> {
         let note = "the textbook's form knows no effects: the reference is the generic library in 320 bits, which tells roundings, not whether its formulas are right";
         let effects = (self.against() == Against::Library).then(|| note.into());
@@ -79,18 +79,17 @@ impl Reference {
     }
 }
 
-/// On how many of the states errors are looked at: a derivative in 96 digits takes its time.
+/// Maximum number of states whose errors are computed: a derivative in 96 digits is slow.
 const JUDGED: usize = 16;
 
-/// The function that says what torques the result of a function needs, where it is judged by those.
+/// The function for the torques that a function's result needs, if it is judged by them.
 pub(crate) fn inverse_of(function: &Function<f64>) -> Option<&'static str> {
     let inverse = FunctionId::inverse_dynamics_with_wrenches.row::<f64>();
     let solves = function.general == FunctionId::forward_dynamics_with_wrenches;
     solves.then(|| inverse.at_zero(|argument| argument == Argument::Wrenches && !function.takes.contains(&argument)).name)
 }
 
-/// The largest errors over some of the states; `None` where the reference does not have the
-/// function.
+/// The largest errors over some of the states; `None` if the reference does not have the function.
 pub(super) fn errors(
     reference: &Reference,
     model: &Model<f64>,
@@ -126,13 +125,13 @@ pub(super) fn errors(
     })
 }
 
-/// Whether the reference divided by nothing, or by what its 96 digits left of nothing: no answer is
-/// right there.
+/// Whether the reference divided by zero, or by a remainder of its 96 digits: no result is valid
+/// there.
 pub(crate) fn singular(exact: &[Big]) -> bool {
     exact.iter().map(|x| x.to_f64()).any(|x| x.is_nan() || x.abs() >= 1e40)
 }
 
-/// Errors beyond this are looked at once more: see [`scales_of_generated`].
+/// Larger errors are checked again: see [`scales_of_generated`].
 const SUSPECT: f64 = 16.0;
 
 /// |found − exact| over the scale of the result, of each that was found.
@@ -147,13 +146,13 @@ fn forward(exact: &[Big], model: &Model<f64>, name: &str, state: &[&[f64]], foun
     Some([largest(exact, &found[0], &where_suspect(&own, &moved, is_suspect)), generic])
 }
 
-/// How much of the scale of a result may be left of its zeros by the roundings of the reference's
-/// 96 digits, and more than that.
+/// Upper bound for remainders of zeros due to rounding in the reference's 96 digits, relative to
+/// the scale of a result.
 const RESIDUE: f64 = 1e-60;
 
-/// Scales that are no less than what is left in the reference where the model knows that a result
-/// is zero. Where all of it is, there is no scale to go by: that of numbers near one is taken, and
-/// any number that is not tiny beyond that is wrong.
+/// Scales, at least as large as the reference's remainders of results that are exactly zero in the
+/// model. If all are zero, there is no scale: that of numbers near one is used, and any number
+/// above its remainders is wrong.
 pub(crate) fn above_residues(mut scale: Vec<f64>) -> Vec<f64> {
     let largest = scale.iter().copied().fold(0.0, f64::max);
     let floor = RESIDUE * if largest == 0.0 { 1.0 } else { largest };
@@ -167,8 +166,8 @@ fn both([a, b]: [Option<f64>; 2]) -> Option<[f64; 2]> {
 }
 
 /// η = maxᵢ |ID_exact(q, v, a) − τ|ᵢ / (scale of ID + that of τ)ᵢ, in units of 2⁻⁵³, for the state
-/// (q, v, τ, …) and accelerations that were found; τ is what the motors deliver when commanded that
-/// of the state.
+/// (q, v, τ, …) and the accelerations found; τ are the torques that the motors deliver for those of
+/// the state.
 pub(crate) fn backward(reference: &Exact, model: &Model<f64>, inverse: &str, state: &[&[f64]], found: &[f64]) -> Option<f64> {
     residual(reference, model, inverse, state, found).map(|residual| residual.units)
 }
@@ -183,7 +182,7 @@ pub struct Residual {
 }
 
 impl Residual {
-    /// Whether it is the larger one in units; what is not a number is the largest.
+    /// Whether it is the larger one in units; NaN is the largest.
     #[must_use]
     pub fn is_larger(&self, other: &Self) -> bool {
         worse(self.units, other.units).to_bits() == self.units.to_bits()
@@ -195,8 +194,8 @@ impl Residual {
     }
 }
 
-/// That of a solution with the mass matrix, against the generic library in 320 bits; `None` for
-/// another function.
+/// The residual of a solution with the mass matrix, against the generic library in 320 bits; `None`
+/// for another function.
 #[must_use]
 pub fn residual_of(model: &Model<f64>, function: &Function<f64>, state: &[&[f64]], found: &[f64]) -> Option<Residual> {
     let inverse = inverse_of(function);
@@ -237,8 +236,8 @@ fn residual(reference: &Exact, model: &Model<f64>, inverse: &str, state: &[&[f64
     Some(Residual::of(&exact(reference, model, inverse, &state)?, &tau, &scale))
 }
 
-/// What the reference gives. A double's quaternion has a norm of one to 16 digits only, and what
-/// the rest does is nobody's error: it is of norm one here.
+/// The result of the reference. A double's quaternion has a norm of one to 16 digits only; it is
+/// normalised here, so that the rest does not count as an error.
 pub(crate) fn exact(reference: &Exact, model: &Model<f64>, function: &str, state: &[&[f64]]) -> Option<Vec<Big>> {
     let row = articulated_core::algorithm::function::<f64>(function)?;
     let precise = |(argument, x): (&Argument, &&[f64])| {
@@ -263,7 +262,7 @@ pub(crate) fn largest(exact: &[Big], found: &[f64], scale: &[f64]) -> f64 {
     errors.fold(0.0, worse)
 }
 
-/// The larger of two errors, and not a number if either is not.
+/// The larger of two errors; NaN if one is.
 pub fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || a >= b { a } else { b }
 }
@@ -299,7 +298,7 @@ mod tests {
         let a = (tau - 9.81 * q.sin()) / 1.001;
         let error = |a: f64| backward(&textbook, &model, "inverse_dynamics", &[&[q], &[0.0], &[tau]], &[a]).unwrap();
         assert!(error(a) < 4.0, "{}", error(a));
-        // 1e-10 of what accelerates, over the sizes of the terms and of τ.
+        // 1e-10 of the accelerating torque, over the sizes of the terms and of τ.
         let scale = scales(&model, "inverse_dynamics", &[&[q], &[0.0], &[a]]).unwrap()[0];
         let expected = 1e-10 * (1.001 * a).abs() / (ROUNDOFF * (scale + tau));
         let found = error(a * (1.0 + 1e-10));

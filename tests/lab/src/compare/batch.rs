@@ -1,4 +1,4 @@
-//! Generated functions of many states at once, beside all others and on one core.
+//! Generated functions of many states at once, compared with all others, on one core.
 
 use articulated_core::algorithm::Function;
 use articulated_core::lanes::Real;
@@ -65,7 +65,7 @@ impl<'a> Many<'a> {
         compiled.batches.iter().map(|batch| Self::of(batch, seconds, states, out_len)).collect()
     }
 
-    /// A last block that is not full has the last state again and again.
+    /// An incomplete last block is filled with repetitions of the last state.
     fn of(batch: &'a Batch, compilation_seconds: f64, states: &[Vec<&[f64]>], out_len: usize) -> Self {
         let lanes = batch.layout.states(batch.real);
         let count = states.len().div_ceil(lanes);
@@ -79,7 +79,7 @@ impl<'a> Many<'a> {
         Self { batch, compilation_seconds, count, states: states.len(), arguments, out, out_len }
     }
 
-    /// What the clock is held to: so many rounds through all states.
+    /// The timed run: `rounds` rounds through all states.
     pub(super) fn run(&self) -> Run<'_> {
         let mut out = self.out.clone();
         Run::new(self.states, move |rounds| clock(|| self.batch.kernel.repeat(rounds, self.count, &self.arguments, &mut out)))
@@ -93,7 +93,7 @@ impl<'a> Many<'a> {
         (0..self.states).map(|state| (0..self.out_len).map(|k| number(state, k)).collect()).collect()
     }
 
-    /// The largest difference from generic code on the numbers that the function was given.
+    /// The largest difference from generic code on the numbers given to the function.
     fn difference(&self, f: &'static Function<f64>, model: &Model<f64>, states: &[Vec<&[f64]>], generic: &Contender<'_>) -> Option<f64> {
         let round = |x: &f64| if self.batch.real == Real::F32 { f64::from(*x as f32) } else { *x };
         let rounded: Vec<Vec<Vec<f64>>> = states.iter().map(|s| s.iter().map(|x| x.iter().map(round).collect()).collect()).collect();
@@ -103,7 +103,7 @@ impl<'a> Many<'a> {
     }
 }
 
-/// What the reports are made of besides the batches.
+/// Further inputs of the reports.
 pub(super) struct Beside<'a> {
     pub(super) function: &'static Function<f64>,
     pub(super) model: &'a Model<f64>,

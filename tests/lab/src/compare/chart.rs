@@ -1,5 +1,5 @@
 //! The medians as dots, in SVG: a panel for each function, a row for each contender, on a
-//! logarithmic axis. A bar would have a length, which says nothing there.
+//! logarithmic axis. A bar's length would be meaningless there.
 
 use super::batch::BatchReport;
 use super::report::{FunctionReport, Report};
@@ -7,7 +7,7 @@ use crate::plot::{Anchor, Axis, Drawing, GREY, GRID, INK, Text};
 use crate::robot::named;
 use crate::table::{counted, freedom};
 
-/// A row: whose time, ns, how many times that of generated code it is, and the colour.
+/// A row: name, time in ns, ratio to generated code, and colour.
 struct Row {
     label: String,
     time: f64,
@@ -18,7 +18,7 @@ struct Row {
 const WIDTH: f64 = 860.0;
 /// From the left edge to the axis.
 const LABELS: f64 = 250.0;
-/// From the end of the axis to the right edge, for the numbers beside the dots.
+/// From the end of the axis to the right edge, for the numbers next to the dots.
 const NUMBERS: f64 = 110.0;
 /// The height of a row.
 const ROW: f64 = 19.0;
@@ -99,8 +99,8 @@ fn head(out: &mut Drawing, report: &Report) {
     out.text([12.0, 42.0], Anchor::Start, 11.0, GREY, &how);
 }
 
-/// A dot with its name before the axis, a dotted line from one to the other, and its numbers beside
-/// it. `y` is the middle of the row.
+/// A dot with its name before the axis, a dotted line between them, and its numbers next to it. `y`
+/// is the middle of the row.
 fn draw(out: &mut Drawing, axis: &Axis, row: &Row, y: f64) {
     let (x, line) = (axis.at(row.time), y + 4.0);
     out.text([LABELS - 8.0, line], Anchor::End, SIZE, INK, &row.label);

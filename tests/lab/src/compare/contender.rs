@@ -11,8 +11,8 @@ use super::timing::Run;
 use crate::compiled::Compiled;
 use crate::native::{Kernel, PeerKernel};
 
-/// One way to compute a function. What is timed is a run through all states, so that those that
-/// take several at once have their time a state too.
+/// One way to compute a function. A run through all states is timed, so that contenders that
+/// compute several at once have a time per state too.
 pub struct Contender<'a> {
     way: Way<'a>,
     out: usize,
@@ -42,7 +42,7 @@ impl<'a> Contender<'a> {
         Self { way: Way::Generic { function, model, workspace }, out: function.len(model.shape()) }
     }
 
-    /// The result in one state; empty where a peer keeps it to itself.
+    /// The result in one state; empty if a peer does not return it.
     pub fn call(&self, arguments: &[&[f64]]) -> Vec<f64> {
         let mut out = vec![0.0; self.out];
         match &self.way {
@@ -60,7 +60,7 @@ impl<'a> Contender<'a> {
         out
     }
 
-    /// Whether the result of a call is where the next call can wait for it.
+    /// Whether the next call can wait for the result of a call.
     pub fn can_wait(&self) -> bool {
         self.out > 0
             && match &self.way {
@@ -69,7 +69,7 @@ impl<'a> Contender<'a> {
             }
     }
 
-    /// What is timed: so many rounds through the states, or as many of the states as are near.
+    /// The timed run: `rounds` rounds through the nearest states.
     pub fn run<'b>(&'b self, states: &'b [Vec<&'b [f64]>]) -> Run<'b> {
         self.timed(states, Calls::Independent)
     }
@@ -89,7 +89,8 @@ impl<'a> Contender<'a> {
                 (Way::Generated(kernel), Calls::Dependent) => clock(|| kernel.repeat_waiting(rounds, states, out)),
                 (Way::Peer(kernel), Calls::Independent) => clock(|| kernel.repeat(rounds, states, out)),
                 (Way::Peer(kernel), Calls::Dependent) => clock(|| kernel.repeat_waiting(rounds, states, out)),
-                // A generic call is a hundred times as long as what a processor begins early.
+                // A generic call is a hundred times as long as the work that a processor starts
+                // early.
                 (Way::Generic { function, model, workspace }, _) => {
                     let workspace = &mut workspace.borrow_mut();
                     clock(|| {
@@ -113,8 +114,8 @@ enum Calls {
     Dependent,
 }
 
-/// Bytes of arguments that a round goes through at most, half of a small first-level cache: a
-/// caller has usually just computed the arguments.
+/// Maximum bytes of arguments in a round, half of a small first-level cache: a caller has usually
+/// just computed the arguments.
 const NEAR: usize = 16 << 10;
 
 /// The first of the states, as many as are near.
@@ -123,10 +124,9 @@ fn near<'s, 'x>(states: &'s [Vec<&'x [f64]>]) -> &'s [Vec<&'x [f64]>] {
     &states[..states.len().min((NEAR / bytes.max(1)).max(1))]
 }
 
-/// Where results go. A processor takes what it reads for what it has just written if the last
-/// twelve bits of both addresses agree, and waits: a function that writes much takes up to a third
-/// longer wherever its result happens to lie so. So the place moves from batch to batch, through a
-/// page.
+/// Buffer for results. A processor waits if the last twelve bits of an address that it reads equal
+/// those of one just written: a function that writes much then takes up to a third longer,
+/// depending on the place of its result. So the place moves from batch to batch, through a page.
 struct Room {
     numbers: Vec<f64>,
     out: usize,
@@ -135,7 +135,7 @@ struct Room {
 
 impl Room {
     const PAGE: usize = 4096 / size_of::<f64>();
-    /// Some cache lines, and as many as there are in a page before a place comes again.
+    /// A step of some cache lines, so that all lines of a page are used before a place repeats.
     const STEP: usize = 5 * 64 / size_of::<f64>();
 
     fn new(out: usize) -> Self {

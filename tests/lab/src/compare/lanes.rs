@@ -1,4 +1,4 @@
-//! Peers that compute several states a call, one in each lane of a vector: timed beside batches.
+//! Peers that compute several states per call, one in each lane of a vector: timed with batches.
 
 use articulated_core::algorithm::Function;
 use articulated_core::model::Model;
@@ -14,7 +14,7 @@ use crate::native::PeerKernel;
 pub(super) struct LanesReport {
     pub(super) peer: String,
     pub(super) engine: String,
-    /// States of a call.
+    /// States per call.
     pub(super) lanes: usize,
     /// ns per state.
     pub(super) time: Summary,
@@ -37,8 +37,8 @@ pub(super) struct Lanes<'a> {
 }
 
 impl<'a> Lanes<'a> {
-    /// `None` of a peer that computes one state a call, or does not have the function. A last block
-    /// that is not full has the last state again and again.
+    /// `None` for a peer that computes one state per call, or does not have the function. The last
+    /// block is filled with repetitions of the last state.
     pub(super) fn of(peer: &'a Peer, f: &Function<f64>, model: &Model<f64>, states: &[Vec<&[f64]>]) -> Option<Self> {
         let (kernel, lanes) = peer.in_lanes(f, model)?;
         let theirs: Vec<Vec<Vec<f64>>> = states.iter().map(|x| peer.arguments(f, model, x)).collect();
@@ -59,7 +59,7 @@ impl<'a> Lanes<'a> {
         Aligned::new(std::iter::repeat_n(0.0, self.out * self.lanes))
     }
 
-    /// What the clock is held to: so many rounds through all states, each call into the same place.
+    /// The timed run: `rounds` rounds through all states, each call into the same place.
     pub(super) fn run(&self) -> Run<'_> {
         let (calls, mut out) = (self.calls(), self.room());
         Run::new(self.states, move |rounds| clock(|| self.kernel.repeat(rounds, &calls, out.numbers_mut())))
@@ -97,7 +97,7 @@ impl<'a> Lanes<'a> {
     }
 }
 
-/// Numbers from the start of a cache line, which vectors are read from fastest.
+/// Numbers from the start of a cache line, the fastest place for vectors.
 struct Aligned {
     room: Vec<f64>,
     start: usize,

@@ -1,5 +1,5 @@
-//! What it takes to make code: generation and compilation of several functions together, ours
-//! beside the peers'.
+//! Times to make code: generation and compilation of several functions together, ours and the
+//! peers'.
 
 use std::time::Instant;
 
@@ -12,11 +12,10 @@ use crate::error::Error;
 
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Making {
-    /// All those that were compared of which these generators have code.
+    /// The compared functions for which these generators have code.
     pub(super) functions: Vec<&'static str>,
     pub(super) generation_seconds: f64,
-    /// `rustc` on one module to its object file, start included: what the peers' compilers are
-    /// timed for.
+    /// `rustc` on one module to its object file, start included, as the peers' compilers are timed.
     pub(super) compilation_seconds: f64,
     pub(super) peers: Vec<PeerMaking>,
 }
@@ -24,18 +23,18 @@ pub(super) struct Making {
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct PeerMaking {
     pub(super) peer: String,
-    /// `None` of a library that serves any robot.
+    /// `None` for a library that serves any robot.
     pub(super) generation_seconds: Option<f64>,
-    /// The sum over files of one function each; of a library that serves any robot, all of it.
+    /// The sum over files of one function each; for a library that serves any robot, all of it.
     pub(super) compilation_seconds: f64,
-    /// Of both together; `None` of a library that serves any robot, whose other functions were
-    /// compiled too.
+    /// For both together; `None` for a library that serves any robot, since its other functions
+    /// were compiled too.
     pub(super) peer_over_ours: Option<f64>,
 }
 
 impl Making {
-    /// One for each set of functions of which a generator among the peers has code. Ours are made
-    /// again, with nothing else going on.
+    /// One for each set of functions of a generator among the peers. Ours are made again, without
+    /// other load.
     pub(super) fn all(plan: &Plan, prepared: &[Prepared], peers: &[Peer]) -> Result<Vec<Self>, Error> {
         let mut sets: Vec<(Vec<&'static str>, Vec<PeerMaking>)> = Vec::new();
         for peer in peers {

@@ -9,12 +9,12 @@ use serde_json::Value;
 
 use crate::error::Error;
 
-/// A library, with what is known of its making. Only the path has to be there.
+/// A library, with details of its making. Only the path is required.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub(crate) struct Library {
     pub(crate) name: Option<String>,
     pub(crate) path: PathBuf,
-    /// Whose code it is, and its version: builds of the same engine are told apart by the rest.
+    /// The name and the version of its engine: other fields distinguish builds of the same engine.
     pub(crate) engine: Option<String>,
     pub(crate) compiler: Option<String>,
     pub(crate) version: Option<String>,
@@ -29,7 +29,7 @@ pub(crate) struct Library {
     pub(crate) text_bytes: Option<u64>,
     /// Of all of it.
     pub(crate) compilation_seconds: Option<f64>,
-    /// Of a generator: the robots that it has code for.
+    /// For a generator: the robots that it has code for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) robots: Vec<Code>,
 }
@@ -44,7 +44,7 @@ pub(crate) struct Code {
     pub(crate) functions: BTreeMap<String, Cost>,
 }
 
-/// What a generated function cost to make, and how long it became.
+/// Cost of making a generated function, and its length.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub(crate) struct Cost {
     /// Arithmetic in the code that was generated, sines and moves included.
@@ -66,7 +66,7 @@ impl Library {
         self.robots.iter().find(|r| r.hash == hash && r.floating == floating)
     }
 
-    /// How far its results may be from ours, relative to the magnitude.
+    /// Tolerated difference of its results from ours, relative to the magnitude.
     pub(crate) fn bound(&self) -> f64 {
         if self.element.as_deref() == Some("f32") { SINGLE_BOUND } else { BOUND }
     }

@@ -159,7 +159,7 @@ fn function_report(ready: &Prepared, peers: &[Peer], repetitions: usize) -> Func
     let mut waits = |contender: &Contender<'_>| contender.can_wait().then(|| waiting.next()).flatten();
     let own_waiting = waits(&generated);
     let peers_waiting: Vec<Option<&[f64]>> = known.iter().map(|(_, c)| waits(c)).collect();
-    // Where the robot is singular nobody's result is right.
+    // No result is valid if the robot is singular.
     let regular = ready.errors.is_none_or(|e| e.states > 0);
     let (own, rest) = times.split_at(2);
     let (other, rest) = rest.split_at(variants.len());

@@ -15,13 +15,13 @@ use crate::robot::Robot;
 use crate::states::quaternions;
 use crate::table::counted;
 
-/// The least scale of a difference, as a part of the largest in the same result.
+/// The smallest scale of a difference, relative to the largest in the same result.
 const FLOOR: f64 = 1e-3;
 
 /// A robot open in a peer library.
 pub(crate) struct Peer {
     pub(crate) name: String,
-    /// What the manifest says of the library.
+    /// The library's entry in the manifest.
     pub(crate) library: Library,
     /// Its code for this robot, if it is a generator's.
     code: Option<Code>,
@@ -69,12 +69,12 @@ impl Peer {
         Ok(Self { name, library, code, native, q, v, links })
     }
 
-    /// What its builds have in common.
+    /// The common name of its builds.
     pub(super) fn engine(&self) -> &str {
         self.library.engine.as_deref().unwrap_or(&self.name)
     }
 
-    /// What the function's code cost to make, if it was generated.
+    /// The cost of making the function's code, if it was generated.
     pub(super) fn cost(&self, function: &str) -> Option<&Cost> {
         self.code.as_ref()?.functions.get(function)
     }
@@ -86,8 +86,8 @@ impl Peer {
         self.library.lanes.is_none().then(|| Some(Contender::peer(self.kernel(function, model, 1)?, out)))?
     }
 
-    /// The same of a peer that computes several states a call, and how many; of results that it
-    /// writes out.
+    /// The same for a peer that computes several states per call, and their number; for results
+    /// that it writes out.
     pub(super) fn in_lanes(&self, function: &Function<f64>, model: &Model<f64>) -> Option<(PeerKernel, usize)> {
         let lanes = self.library.lanes?.get();
         let kernel = self.kernel(function, model, lanes)?;
@@ -120,7 +120,7 @@ impl Peer {
     }
 
     /// The largest difference between the peer's results and ours, relative to the sum of the
-    /// magnitudes of the terms; `None` where the peer keeps its results to itself.
+    /// magnitudes of the terms; `None` if the peer does not return its results.
     pub(super) fn difference(
         &self,
         function: &'static Function<f64>,
@@ -137,8 +137,8 @@ impl Peer {
         difference(function, model, ours, generic, told)
     }
 
-    /// The peer's result as ours is laid out. Of a configuration's quaternions, which are rotations
-    /// with either sign, with the signs of ours.
+    /// The peer's result in our layout. Quaternions of a configuration are rotations with either
+    /// sign; they get the signs of ours.
     pub(crate) fn in_our_order(&self, theirs: &[f64], ours: &[f64], function: &Function<f64>, model: &Model<f64>) -> Vec<f64> {
         let mut result = vec![f64::NAN; ours.len()];
         for (k, x) in theirs.iter().enumerate() {
@@ -169,9 +169,9 @@ impl Peer {
     }
 }
 
-/// The largest difference between what generic code and others give in these states, relative to
-/// the sum of the magnitudes of the terms. `other` gets the number of the state and the generic
-/// result; `None` where it does not tell.
+/// The largest difference between the results of generic code and others in these states, relative
+/// to the sum of the magnitudes of the terms. `other` gets the index of the state and the generic
+/// result; `None` if it has no result.
 pub(super) fn difference(
     function: &'static Function<f64>,
     model: &Model<f64>,
@@ -184,7 +184,7 @@ pub(super) fn difference(
         let a = generic.call(x);
         let b = other(k, &a)?;
         let scale = scales(model, function.name, x).ok()?;
-        // A zero of ours that is a rounding of theirs is no difference.
+        // Our zero and their rounding error count as equal.
         let floor = scale.iter().copied().fold(0.0, f64::max) * FLOOR;
         for (scale, (a, b)) in scale.iter().zip(a.iter().zip(b)) {
             let difference = (a - b).abs();
@@ -195,8 +195,8 @@ pub(super) fn difference(
     Some(worst)
 }
 
-/// Whether a peer gives a result of these dimensions only when asked: all but rows of numbers and
-/// square matrices, which it writes out each time.
+/// Whether a peer returns a result of these dimensions only on request: all except rows of numbers
+/// and square matrices, which it writes out each time.
 fn is_kept(gives: &[Dim]) -> bool {
     let row = gives.len() < 2 && !gives.contains(&Dim::Frames) && !gives.contains(&Dim::Links);
     !row && gives != [Dim::Nv, Dim::Nv]

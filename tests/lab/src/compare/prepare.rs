@@ -1,5 +1,5 @@
-//! All about a function but its time: generated, compiled, judged. Functions are prepared several
-//! at once; the clock runs when all are done.
+//! Everything about a function except its time: generated, compiled, judged. Functions are prepared
+//! in parallel; they are timed when all are ready.
 
 use std::time::{Duration, Instant};
 
@@ -18,7 +18,7 @@ use crate::robot::Robot;
 use crate::states::{self, State};
 use crate::tips::{FEW, Tips};
 
-/// What functions are prepared from.
+/// Inputs of the prepared functions.
 pub(super) struct Plan {
     pub(super) robot: Robot,
     /// The frames of each function, unless the user chose them.
@@ -31,8 +31,7 @@ pub(super) struct Plan {
     pub(super) batch: Vec<Real>,
     /// The compilers of the same functions in C.
     pub(super) compilers: Vec<Cc>,
-    /// Whether the user named the functions: otherwise those that rustc needs minutes for are left
-    /// out.
+    /// Whether the user named the functions: otherwise those that take rustc minutes are left out.
     pub(super) named: bool,
 }
 
@@ -50,8 +49,7 @@ pub(super) struct Prepared {
     pub(super) model: Model<f64>,
     pub(super) states: Vec<State>,
     pub(super) compiled: Compiled,
-    /// Other code of ours, with its name: the same source for any processor where that is
-    /// something else, and C.
+    /// Our other code, with its name: the same source for any processor, if that differs, and C.
     pub(super) variants: Vec<(String, Compiled)>,
     /// Of many states at once.
     pub(super) batches: Option<CompiledBatches>,

@@ -1,4 +1,4 @@
-//! What was measured, as data.
+//! The results of a measurement, as data.
 
 use std::borrow::Cow;
 use std::path::PathBuf;
@@ -62,10 +62,10 @@ const UNITS: Units = Units(&[
     ("making[].peers[].peer_over_ours", RATIO),
 ]);
 
-/// What is compared, and how.
+/// Settings of the comparison.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// The functions; none are all that the robot has and that rustc compiles in seconds.
+    /// The functions; if empty, all that the robot has and that rustc compiles in seconds.
     pub functions: Vec<String>,
     /// The types in which many states at once are compared too.
     pub batch: Vec<Real>,
@@ -81,11 +81,11 @@ pub struct Settings {
     pub states: u32,
     /// Their seed.
     pub seed: u64,
-    /// The largest error that is right, in units of 2⁻⁵³ of the sum of the magnitudes of the terms.
+    /// Largest accepted error, in units of 2⁻⁵³ of the sum of the magnitudes of the terms.
     pub bound: f64,
 }
 
-/// What was measured.
+/// The results of the measurement.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     pub(super) robot: String,
@@ -104,22 +104,21 @@ pub struct Report {
     pub(super) repetitions: u32,
     pub(super) compiler: String,
     pub(super) flags: String,
-    /// What errors are against.
+    /// Reference for errors.
     pub(super) reference: Against,
     /// Bits of its numbers.
     pub(super) reference_bits: usize,
-    /// The largest error that is right, in units of 2⁻⁵³ of the magnitude.
+    /// Largest accepted error, in units of 2⁻⁵³ of the magnitude.
     pub(super) bound: f64,
     /// Whether the command itself is optimised; generic code and generation are as fast as it is.
     pub(super) optimised: bool,
     pub(super) units: Units,
-    /// Bytes of machine code, operations and seconds of peers are of each build; what a generator
-    /// made of this robot is with the functions.
+    /// Bytes of machine code, operations and seconds of peers are per build; those of generated
+    /// code for this robot are listed with the functions.
     pub(super) peers: Vec<PeerLibrary>,
     pub(super) notes: Vec<String>,
     pub(super) functions: Vec<FunctionReport>,
-    /// What it took to make the functions of which generators among the peers have code, all
-    /// together.
+    /// Time to make the functions of the peers' generators, all together.
     pub(super) making: Vec<Making>,
 }
 
@@ -135,7 +134,7 @@ pub(super) struct PeerLibrary {
 pub(super) struct FunctionReport {
     pub(super) function: &'static str,
     pub(super) group: &'static str,
-    /// The ways that the generator chose by count, where it had a choice.
+    /// The forms that the generator chose by count, if it had a choice.
     pub(super) ways: Vec<Cow<'static, str>>,
     /// The frames that it was evaluated on, if it is a function of frames.
     pub(super) frames: Option<Vec<String>>,
@@ -149,7 +148,7 @@ pub(super) struct FunctionReport {
     pub(super) compilation_seconds: f64,
     /// ns per call.
     pub(super) generated: Summary,
-    /// ns per call that waits for the result of the call before; none where there is no result.
+    /// ns per call that waits for the result of the previous call; `None` without a result.
     pub(super) dependent: Option<Summary>,
     /// ns per call.
     pub(super) generic: Summary,
@@ -161,7 +160,7 @@ pub(super) struct FunctionReport {
     pub(super) peers: Vec<PeerReport>,
     /// Times of peers that compute several states a call; empty unless batches are requested.
     pub(super) peers_in_lanes: Vec<LanesReport>,
-    /// In units of 2⁻⁵³ of the magnitude; `None` where there is no reference for the function.
+    /// In units of 2⁻⁵³ of the magnitude; `None` without a reference for the function.
     pub(super) errors: Option<Errors>,
 }
 
@@ -185,12 +184,12 @@ pub(super) struct PeerReport {
     pub(super) engine: String,
     /// ns per call.
     pub(super) time: Summary,
-    /// ns per call that waits for the result of the call before; none where the peer keeps its
-    /// result.
+    /// ns per call that waits for the result of the previous call; `None` if the peer does not
+    /// return its result.
     pub(super) dependent: Option<Summary>,
     pub(super) generic_over_peer: Summary,
     pub(super) generated_over_peer: Summary,
-    /// Relative to the magnitude; `None` where the peer keeps its results to itself.
+    /// Relative to the magnitude; `None` if the peer does not return its results.
     pub(super) largest_difference: Option<f64>,
     /// The largest that is right.
     pub(super) bound: f64,

@@ -1,5 +1,5 @@
-//! Times that can be compared: everybody is timed in every repetition, so that what drifts drifts
-//! for all, and from its second round on, so that all find their caches warm.
+//! Comparable times: all contenders are timed in every repetition, so that drifts affect all of
+//! them, and from their second round on, so that all have warm caches.
 
 use std::time::Duration;
 
@@ -7,18 +7,18 @@ use serde::Serialize;
 
 /// A timed contender.
 pub struct Run<'a> {
-    /// How many states a round goes through.
+    /// Number of states of a round.
     states: usize,
     clocked: Box<dyn FnMut(usize) -> Duration + 'a>,
 }
 
 impl<'a> Run<'a> {
-    /// `clocked` goes so many rounds, each through so many states, and says how long it took.
+    /// `clocked` runs a number of rounds, each through `states` states, and returns the time.
     pub fn new(states: usize, clocked: impl FnMut(usize) -> Duration + 'a) -> Self {
         Self { states: states.max(1), clocked: Box::new(clocked) }
     }
 
-    /// How long so many rounds take.
+    /// Time of this number of rounds.
     pub fn go(&mut self, rounds: usize) -> Duration {
         (self.clocked)(rounds)
     }
@@ -46,7 +46,7 @@ pub fn interleaved(runs: &mut [Run<'_>], repetitions: usize) -> Vec<Vec<f64>> {
         for turn in 0..runs.len() {
             // Everybody is first in turn.
             let k = (turn + repetition) % runs.len();
-            // What the others have put into the caches is not for this one to pay.
+            // Contents of the caches left by others must not count.
             runs[k].go(1);
             let time = runs[k].go(rounds[k]);
             times[k].push(time.as_secs_f64() * 1e9 / (rounds[k] * runs[k].states) as f64);
@@ -55,11 +55,11 @@ pub fn interleaved(runs: &mut [Run<'_>], repetitions: usize) -> Vec<Vec<f64>> {
     times
 }
 
-/// How many rounds make a batch; finding out warms up.
+/// Number of rounds in a batch; the measurement also warms up.
 fn rounds_of_a_batch(run: &mut Run<'_>) -> usize {
     let mut rounds = 1;
     loop {
-        // The least of three: a machine with other work to do interrupts.
+        // The minimum of three: other processes interrupt.
         let time = (0..3).map(|_| run.go(rounds)).min().unwrap_or_default();
         if time * 4 >= BATCH || rounds > 1 << 24 {
             let scale = BATCH.as_secs_f64() / time.as_secs_f64().max(1e-9);

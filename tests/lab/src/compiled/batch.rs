@@ -30,7 +30,7 @@ pub(crate) struct CompiledBatches {
 }
 
 impl CompiledBatches {
-    /// Compiles and loads the first function of what was generated.
+    /// Compiles and loads the first generated function.
     pub(crate) fn build(rustc: &Rustc, generated: &Generated, reals: &[Real]) -> Result<Self, CompileError> {
         let missing = || CompileError::Load("there are no batches in the library that was compiled".into());
         let name = &generated.ledger.functions.first().ok_or_else(missing)?.function;

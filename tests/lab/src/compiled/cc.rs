@@ -14,13 +14,13 @@ use crate::process::{self, Folder};
 /// A compiler of C that was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cc {
-    /// What to call.
+    /// The command to call.
     program: &'static str,
-    /// The first line of what it says of its version.
+    /// The first line of its version text.
     pub version: String,
 }
 
-/// How long a compiler may take, s.
+/// Maximum time of a compiler.
 const LIMIT: Duration = Duration::from_secs(3600);
 
 impl Cc {
@@ -47,8 +47,8 @@ impl Cc {
     pub fn flags(&self) -> Vec<&'static str> {
         let mut flags = vec!["-std=gnu99", "-O2", "-ffp-contract=fast", "-fno-math-errno"];
         if self.program == "gcc" {
-            // GCC 12 puts numbers of a result together in vectors at a loss: a mass matrix takes
-            // half as long again.
+            // GCC 12 combines numbers of a result into vectors at a loss: a mass matrix takes half
+            // as long again.
             flags.push("-fno-tree-slp-vectorize");
         }
         if Processors::differ() {
@@ -68,7 +68,7 @@ impl Compiled {
     /// Compiles and loads C that was generated for [`Compiled::c_target`].
     ///
     /// # Errors
-    /// If the compiler refuses the code, or what it makes cannot be loaded.
+    /// The compiler refuses the code, or its output cannot be loaded.
     pub(crate) fn build_c(cc: &Cc, generated: &Generated) -> Result<Self, CompileError> {
         let folder = Folder::new().map_err(CompileError::Folder)?;
         for file in &generated.files {

@@ -1,4 +1,4 @@
-//! Code that is in the way: so much of it that nothing else stays in the caches of instructions.
+//! Code that fills the instruction caches, so that no other code stays there.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use crate::process::Folder;
 /// Instructions of the filler. One each is a byte on x86-64 and four elsewhere.
 pub(crate) const INSTRUCTIONS: usize = 1 << 20;
 
-/// Straight-line code that does nothing.
+/// Straight-line code without effect.
 #[derive(Debug)]
 pub(crate) struct Filler {
     kernel: Kernel,

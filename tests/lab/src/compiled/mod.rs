@@ -1,4 +1,4 @@
-//! Generated source, compiled and loaded: what a user's program would run.
+//! Generated source, compiled and loaded, as in a user's program.
 
 mod batch;
 mod cc;
@@ -57,8 +57,8 @@ impl Compiled {
         Self::build_for(Target::Own, rustc, generated)
     }
 
-    /// As [`Compiled::build`], for certain processors. Where numbers are `f32`, arrays of kernels
-    /// hold two of them in the place of a double.
+    /// As [`Compiled::build`], for certain processors. With `f32` numbers, arrays of kernels hold
+    /// two of them in place of a double.
     pub fn build_for(target: Target, rustc: &Rustc, generated: &Generated) -> Result<Self, CompileError> {
         let names: Vec<&str> = generated.ledger.functions.iter().map(|f| f.function.as_str()).collect();
         let library = Library::build(target, rustc, &generated.source, &wrapper::source(&names, &generated.source))?;
@@ -99,8 +99,8 @@ impl Compiled {
         Ok(())
     }
 
-    /// Bytes of machine code of a function with everything that belongs to it alone, where the
-    /// library says so. Sines and cosines of the mathematics library are not in it.
+    /// Bytes of machine code of a function with everything that belongs to it alone, if the library
+    /// contains them. Sines and cosines of the mathematics library are not included.
     pub fn code_bytes(&self, name: &str) -> Option<u64> {
         self.functions.iter().find(|f| f.name == name)?.bytes
     }
@@ -116,7 +116,7 @@ impl Compiled {
 }
 
 impl Library {
-    /// A generated module and what wraps it.
+    /// A generated module and its wrapper.
     fn build(target: Target, rustc: &Rustc, module: &str, wrapper: &str) -> Result<Self, CompileError> {
         let folder = sources(module, wrapper)?;
         let file: PathBuf = folder.path().join(format!("{}generated{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX));
@@ -126,7 +126,7 @@ impl Library {
     }
 }
 
-/// A folder with a generated module, `robot.rs`, and what wraps it, `lib.rs`.
+/// A folder with a generated module, `robot.rs`, and its wrapper, `lib.rs`.
 fn sources(module: &str, wrapper: &str) -> Result<Folder, CompileError> {
     let folder = Folder::new().map_err(CompileError::Folder)?;
     for (name, text) in [("robot.rs", module), ("lib.rs", wrapper)] {
@@ -135,7 +135,7 @@ fn sources(module: &str, wrapper: &str) -> Result<Folder, CompileError> {
     Ok(folder)
 }
 
-/// Single precision numbers, two in the place of a double.
+/// Single precision numbers, two in place of a double.
 pub fn packed(numbers: &[f64]) -> Vec<f64> {
     let bits = |x: Option<&f64>| u64::from(x.map_or(0, |x| (*x as f32).to_bits()));
     let pair = |two: &[f64]| {
@@ -145,7 +145,7 @@ pub fn packed(numbers: &[f64]) -> Vec<f64> {
     numbers.chunks(2).map(pair).collect()
 }
 
-/// The way back, of so many numbers.
+/// The inverse, for `count` numbers.
 pub fn unpacked(pairs: &[f64], count: usize) -> Vec<f64> {
     let two = |pair: &f64| {
         let bytes = pair.to_ne_bytes();
@@ -154,7 +154,7 @@ pub fn unpacked(pairs: &[f64], count: usize) -> Vec<f64> {
     pairs.iter().flat_map(two).take(count).collect()
 }
 
-/// With so many numbers in the place of a double.
+/// With `per` numbers in place of a double.
 fn load(native: &Native, sizes: &symbols::Sizes, name: &str, shape: Shape, per: usize) -> Result<Loaded, CompileError> {
     let missing = || CompileError::Load(format!("{name} is not in the library that was compiled"));
     let row = function::<f64>(name).ok_or_else(missing)?;

@@ -12,16 +12,16 @@ use crate::process;
 #[derive(Clone, Debug)]
 pub struct Rustc {
     program: PathBuf,
-    /// What it says of its version.
+    /// Its version text.
     pub version: String,
 }
 
 /// The processors that code is compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
-    /// Those of the command itself, so that generated and generic code are compared alike.
+    /// The processor of the command itself, so that generated and generic code are compared alike.
     Own,
-    /// Any of this kind: what `rustc` compiles for unless it is told.
+    /// Any processor of this kind: the default of `rustc`.
     Any,
 }
 
@@ -32,12 +32,12 @@ impl Target {
     }
 }
 
-/// What the compiler makes of a source file.
+/// Output of the compiler for a source file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Makes {
     /// A library that can be loaded.
     Library,
-    /// Its object file, as a C compiler's `-c` makes it: nothing is linked.
+    /// Its object file, as a C compiler's `-c` makes it: it is not linked.
     Object,
 }
 
@@ -46,19 +46,19 @@ pub(super) enum Makes {
 pub enum CompileError {
     /// No compiler.
     NotFound {
-        /// What was called.
+        /// The called program.
         program: PathBuf,
-        /// What the system said.
+        /// The system's message.
         reason: String,
     },
     /// The compiler refused the source.
     Refused {
-        /// The first lines of what it said.
+        /// The first lines of its message.
         message: String,
     },
     /// The compiler was ended before it was done: by a signal, or by the limit of its time.
     Ended {
-        /// By what.
+        /// The reason.
         reason: String,
     },
     /// The temporary folder could not be written.
@@ -84,7 +84,7 @@ impl std::error::Error for CompileError {}
 /// The variable that limits the time of a compiler, s.
 const LIMIT: &str = "ARTICULATED_RUSTC_SECONDS";
 
-/// How long a compiler may take: an hour, unless the user sets another limit.
+/// Maximum time of a compiler: an hour, unless the user sets another limit.
 fn limit() -> Duration {
     let seconds = std::env::var(LIMIT).ok().and_then(|text| text.parse().ok()).filter(|seconds| *seconds > 0);
     Duration::from_secs(seconds.unwrap_or(3600))

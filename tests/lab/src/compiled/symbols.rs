@@ -1,4 +1,4 @@
-//! How much machine code a function is.
+//! Size of a function's machine code.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use object::{Object, ObjectSymbol, SymbolKind};
 pub(super) struct Sizes(Vec<(String, u64)>);
 
 impl Sizes {
-    /// Those of the file; none where it cannot be read.
+    /// The symbols of the file; empty if it is unreadable.
     pub(super) fn of(library: &Path) -> Self {
         let Ok(bytes) = std::fs::read(library) else { return Self::default() };
         let Ok(file) = object::File::parse(&*bytes) else { return Self::default() };
@@ -23,7 +23,7 @@ impl Sizes {
         let own = self.0.iter().find(|(n, _)| n == symbol)?.1;
         // A mangled path holds each name with its length in front.
         let mut paths = ["", "_into"].map(|form| format!("5robot{}{name}{form}", name.len() + form.len())).to_vec();
-        // The private module has the body and the loop over columns, where there is one.
+        // The private module has the body and the loop over columns, if there is one.
         let inside = |item: &str| format!("5robot14implementation{}{item}", item.len());
         paths.extend([inside(name), inside("columns")]);
         // The pieces of C.

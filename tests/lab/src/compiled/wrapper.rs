@@ -70,12 +70,12 @@ pub(super) fn batch_symbol(function: &str, real: Real, layout: Layout) -> String
     format!("{}_{}{}", symbol(function), real.name(), layout.suffix())
 }
 
-/// The crate's source; the generated module, `robot.rs` beside it, is this.
+/// The crate's source; its generated module is `robot.rs`, in the same folder.
 pub(super) fn source(functions: &[&str], module: &str) -> String {
     functions.iter().fold(HEAD.to_owned(), |text, name| text + &one(name, module.contains(&format!("pub fn {name}_into("))))
 }
 
-/// What is large is written where it goes.
+/// Large results are written in place.
 fn one(name: &str, into: bool) -> String {
     let takes = function::<f64>(name).map_or(&[][..], |f| f.takes);
     let parameters: String = takes.iter().map(|a| format!("{}: *const f64, ", a.name())).collect();

@@ -48,8 +48,8 @@ impl Numbers {
     }
 }
 
-/// A function on slices of so many states or blocks, with the numbers of each that it was promised
-/// to have. Keeps its library open.
+/// A function on slices of a number of states or blocks, with the promised number of numbers of
+/// each. Keeps its library open.
 #[derive(Clone, Debug)]
 pub(crate) struct BatchKernel {
     entry: OfStates,
@@ -60,21 +60,21 @@ pub(crate) struct BatchKernel {
 }
 
 impl Native {
-    /// The function `name`, which takes so many numbers of each state, or block of states, and
+    /// The function `name`, which reads `arguments` numbers of each state, or block of states, and
     /// writes `out` of each.
     pub(crate) fn batch_kernel(&self, name: &str, real: Real, arguments: &[usize], out: usize) -> Option<BatchKernel> {
-        // SAFETY: compiled functions of many states take their arguments' arrays, the one of the
-        // result, and how many states there are.
+        // SAFETY: compiled functions of many states take their arguments' arrays, the result's
+        // array, and the number of states.
         let entry = unsafe { OfStates::open(self, name, arguments.len())? };
         Some(BatchKernel { entry, real, arguments: arguments.to_vec(), out, _library: self.clone() })
     }
 }
 
 impl BatchKernel {
-    /// Calls the function on all states, so many rounds.
+    /// Calls the function on all states, for `rounds` rounds.
     ///
     /// # Panics
-    /// If a length is not the one promised.
+    /// If a length differs from the promised one.
     pub(crate) fn repeat(&self, rounds: usize, count: usize, x: &[Numbers], out: &mut Numbers) {
         let is = |numbers: &Numbers, each: usize| numbers.real == self.real && numbers.len == count * each;
         assert!(x.len() == self.arguments.len() && is(out, self.out));

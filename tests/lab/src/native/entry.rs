@@ -5,8 +5,8 @@ use std::mem::transmute;
 use super::peer::H;
 use super::{Native, O, P};
 
-/// A type of functions that take what stands before the semicolon, then the arrays that they read,
-/// then the rest.
+/// A type of functions that take the arguments before the semicolon, then the arrays that they
+/// read, then the rest.
 macro_rules! entry {
     ($(#[$doc:meta])* $name:ident($($first:ident: $First:ty)?; $($rest:ident: $Rest:ty),*)) => {
         $(#[$doc])*
@@ -19,18 +19,18 @@ macro_rules! entry {
         }
 
         impl $name {
-            /// The function `symbol` of a library, if there is one and it reads so many arrays.
+            /// The function `symbol` of a library, if there is one and it reads `arrays` arrays.
             ///
             /// # Safety
-            /// By its library's interface it takes that many arrays, and beside them what this type
-            /// says.
+            /// By its library's interface it takes that many arrays, and the other arguments of
+            /// this type.
             pub(super) unsafe fn open(library: &Native, symbol: &str, arrays: usize) -> Option<Self> {
-                // SAFETY: a function's address is a pointer; the rest is what this function asks
-                // for.
+                // SAFETY: a function's address is a pointer; the caller satisfies the other
+                // conditions.
                 unsafe { Self::at(library.symbol::<P>(symbol)?, arrays) }
             }
 
-            /// The function at this address, which takes so many arrays.
+            /// The function at this address, which takes `arrays` arrays.
             ///
             /// # Safety
             /// As [`open`](Self::open); the address is null or that of such a function.
@@ -38,7 +38,7 @@ macro_rules! entry {
                 if address.is_null() {
                     return None;
                 }
-                // SAFETY: what this function asks for: the address has the type that it gets here.
+                // SAFETY: by the caller's promise, the address has the type that it gets here.
                 unsafe {
                     Some(match arrays {
                         1 => Self::One(transmute::<P, unsafe extern "C" fn($($First,)? P, $($Rest),*)>(address)),
@@ -50,15 +50,15 @@ macro_rules! entry {
                 }
             }
 
-            /// Calls the function on all states, so many rounds: one loop for each number of
-            /// arrays, so that nothing is chosen inside.
+            /// Calls the function on all states, for `rounds` rounds: one loop for each number of
+            /// arrays, so that there is no choice inside.
             ///
             /// # Safety
             /// The library is open, each state has as many arrays as the function reads, and all
             /// arrays are as long as it reads or writes.
             #[inline(always)]
             pub(super) unsafe fn run(self, rounds: usize, states: &[[P; 4]], $($first: $First,)? $($rest: $Rest),*) {
-                // SAFETY: what this function asks for is what they ask for.
+                // SAFETY: the caller satisfies the conditions of the called functions.
                 unsafe {
                     match self {
                         Self::One(f) => each(rounds, states, |[q, ..]| f($($first,)? q, $($rest),*)),
@@ -72,7 +72,7 @@ macro_rules! entry {
     };
 }
 
-/// For types of functions whose result the next call can wait for.
+/// For types of functions with a result that the next call can wait for.
 macro_rules! waiting {
     ($name:ident($($first:ident: $First:ty)?; $($rest:ident: $Rest:ty),*)) => {
         impl $name {
@@ -84,7 +84,7 @@ macro_rules! waiting {
             /// result.
             #[inline(always)]
             pub(super) unsafe fn run_waiting(self, rounds: usize, states: &[[P; 4]], waiting: &mut Waiting, $($first: $First,)? $($rest: $Rest),*) {
-                // SAFETY: what this function asks for is what they ask for.
+                // SAFETY: the caller satisfies the conditions of the called functions.
                 unsafe {
                     match self {
                         Self::One(f) => each(rounds, states, |[q, ..]| f($($first,)? waiting.after(q), $($rest),*)),
@@ -138,7 +138,7 @@ entry! {
 waiting!(OfState(; out: O));
 
 entry! {
-    /// A function of so many states at once, which the command has compiled.
+    /// A function of many states at once, compiled by the command.
     OfStates(; out: O, count: usize)
 }
 
@@ -150,7 +150,7 @@ entry! {
 waiting!(Writing(robot: H; out: O));
 
 entry! {
-    /// A peer's function of its robot that keeps its result until it is asked for.
+    /// A peer's function of its robot that keeps its result until it is requested.
     Keeping(robot: H; )
 }
 

@@ -41,11 +41,11 @@ impl Kernel {
         self.lengths.fit(x, out)
     }
 
-    /// Calls the function on all states, so many rounds: lengths are checked once, and then only
-    /// called.
+    /// Calls the function on all states, for `rounds` rounds: lengths are checked once, before the
+    /// calls.
     ///
     /// # Panics
-    /// If a length is not the one promised.
+    /// If a length differs from the promised one.
     pub(crate) fn repeat(&self, rounds: usize, states: &[Vec<&[f64]>], out: &mut [f64]) {
         assert!(states.iter().all(|x| self.fits(x, out)));
         // SAFETY: as in `call`.

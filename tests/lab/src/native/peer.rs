@@ -33,20 +33,20 @@ impl Opened {
     /// The peer's function `peer_<name>`.
     ///
     /// # Safety
-    /// T is the type that the interface gives it.
+    /// T is its type in the interface.
     pub(super) unsafe fn function<T: Copy>(&self, name: &str) -> Option<T> {
-        // SAFETY: what this function asks for is what the peer promises.
+        // SAFETY: the caller's condition is the peer's promise.
         unsafe { self.native.symbol(&format!("peer_{name}")) }
     }
 
-    /// What `peer_<name>` says of the robot.
+    /// The number `peer_<name>` of the robot.
     fn ask(&self, name: &str) -> Option<c_int> {
         // SAFETY: numbers of a robot have this type in the interface.
         let ask: extern "C" fn(H) -> c_int = unsafe { self.function(name)? };
         Some(ask(self.handle))
     }
 
-    /// What `peer_<name>` calls the k-th of its robot's joints or frames.
+    /// The name, by `peer_<name>`, of the k-th of its robot's joints or frames.
     fn name(&self, name: &str, k: usize) -> Option<String> {
         // SAFETY: names of the parts of a robot have this type in the interface.
         let ask: extern "C" fn(H, c_int) -> *const c_char = unsafe { self.function(name)? };
@@ -101,12 +101,12 @@ impl NativePeer {
         }
     }
 
-    /// A number that the peer says of its robot: `nq`, `nv`, `joint_count`.
+    /// A number of the peer's robot: `nq`, `nv`, `joint_count`.
     pub(crate) fn number(&self, what: &str) -> Option<usize> {
         usize::try_from(self.0.ask(what)?).ok()
     }
 
-    /// A number that the peer says of a joint: `iq`, `iv`, `nq`, `nv`.
+    /// A number of the peer's joint: `iq`, `iv`, `nq`, `nv`.
     pub(crate) fn joint_number(&self, what: &str, joint: usize) -> Option<usize> {
         // SAFETY: numbers of joints have this type in the interface.
         let ask: extern "C" fn(H, c_int) -> c_int = unsafe { self.0.function(&format!("joint_{what}"))? };
@@ -118,13 +118,13 @@ impl NativePeer {
         self.0.name("joint_name", joint)
     }
 
-    /// Names of the frames that the peer has, in its order; none if it does not tell.
+    /// Names of the peer's frames, in its order; empty if it does not return them.
     pub(crate) fn frames(&self) -> Vec<String> {
         (0..self.number("frame_count").unwrap_or(0)).filter_map(|k| self.0.name("frame_name", k)).collect()
     }
 
-    /// Has the peer give the functions of frames for these links only, in this order; `false` if it
-    /// cannot.
+    /// Makes the peer compute functions of frames for these links only, in this order; `false` if
+    /// it cannot.
     pub(crate) fn choose_frames(&self, names: &[&str]) -> bool {
         type Choose = extern "C" fn(H, c_int, *const *const c_char) -> c_int;
         // SAFETY: the type of the interface.
@@ -134,8 +134,8 @@ impl NativePeer {
         c_int::try_from(pointers.len()).is_ok_and(|n| choose(self.0.handle, n, pointers.as_ptr()) != 0)
     }
 
-    /// The methods by which the peer makes steps: their names, orders, and evaluations of forward
-    /// dynamics a step. None if it makes no steps or does not tell.
+    /// The peer's methods for steps: their names, orders, and evaluations of forward dynamics per
+    /// step. Empty if it makes no steps or does not list them.
     pub(crate) fn methods(&self) -> Vec<Stepping> {
         // SAFETY: the type of the interface.
         let name: Option<extern "C" fn(c_int) -> *const c_char> = unsafe { self.0.function("method_name") };
@@ -150,8 +150,8 @@ impl NativePeer {
         (0..).map_while(one).collect()
     }
 
-    /// Has the peer make so many steps from the state (q, v), which it replaces by the last one;
-    /// `None` if it cannot or if it went astray.
+    /// Makes the peer compute this number of steps from the state (q, v), which the last state
+    /// replaces; `None` if it cannot or if it diverged.
     pub(crate) fn simulate(&self, method: &Stepping, q: &mut [f64], v: &mut [f64], step: f64, steps: usize) -> Option<()> {
         type Simulate =
             unsafe extern "C" fn(H, c_int, *const c_double, *const c_double, c_double, c_int, *mut c_double, *mut c_double) -> c_int;
@@ -162,7 +162,7 @@ impl NativePeer {
         }
         let (from_q, from_v) = (q.to_vec(), v.to_vec());
         let (number, steps) = (method.number, c_int::try_from(steps).ok()?);
-        // SAFETY: the arrays are as long as the peer says that they are, and the robot is open.
+        // SAFETY: the arrays have the peer's lengths, and the robot is open.
         let right =
             unsafe { simulate(self.0.handle, number, from_q.as_ptr(), from_v.as_ptr(), step, steps, q.as_mut_ptr(), v.as_mut_ptr()) };
         (right != 0).then_some(())

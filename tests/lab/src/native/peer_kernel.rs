@@ -11,7 +11,7 @@ use super::{Lengths, O, P, all_pointers, pointers};
 #[derive(Clone, Debug)]
 pub(crate) struct PeerKernel {
     entry: Entry,
-    /// The function's name, where it keeps its result until it is asked for.
+    /// The function's name, if it keeps its result until it is requested.
     kept: Option<CString>,
     lengths: Lengths,
     robot: Rc<Opened>,
@@ -29,7 +29,7 @@ impl Entry {
     /// reads, and `out` is as long as it writes.
     #[inline(always)]
     unsafe fn run(self, rounds: usize, states: &[[P; 4]], robot: H, out: O) {
-        // SAFETY: what this function asks for is what they ask for.
+        // SAFETY: the caller satisfies the conditions of the called functions.
         unsafe {
             match self {
                 Self::Writing(f) => f.run(rounds, states, robot, out),
@@ -40,8 +40,8 @@ impl Entry {
 }
 
 impl NativePeer {
-    /// The peer's function, which takes arrays of these lengths and gives `out` numbers: into an
-    /// array, or, if `kept`, when asked for them.
+    /// The peer's function, which takes arrays of these lengths and returns `out` numbers: in an
+    /// array, or, if `kept`, on request.
     pub(crate) fn kernel(&self, function: &str, arguments: &[usize], out: usize, kept: bool) -> Option<PeerKernel> {
         let (robot, symbol) = (&self.0, format!("peer_{function}"));
         let told = CString::new(function).ok()?;
@@ -56,7 +56,7 @@ impl NativePeer {
         // SAFETY: the type of the interface.
         let at: Option<extern "C" fn(H, *const c_char) -> P> = unsafe { robot.function("entry") };
         // SAFETY: by the interface a function takes the arrays of its arguments, and one for its
-        // result where it does not keep it, whether it is known by its name or by its address.
+        // result unless it keeps it, for a function by name or by address.
         let entry = unsafe {
             match (kept, at.map(|at| at(robot.handle, told.as_ptr()))) {
                 (false, None) => Entry::Writing(Writing::open(&robot.native, &symbol, arguments.len())?),
@@ -71,10 +71,11 @@ impl NativePeer {
 }
 
 impl PeerKernel {
-    /// Calls the function, and asks for its result if it is kept. Whether there is a result.
+    /// Calls the function, and requests its result if it is kept. Returns whether there is a
+    /// result.
     ///
     /// # Panics
-    /// If a length is not the one promised.
+    /// If a length differs from the promised one.
     pub(crate) fn call(&self, x: &[&[f64]], out: &mut [f64]) -> bool {
         assert!(self.lengths.fit(x, out));
         let (robot, out) = (self.robot.handle, out.as_mut_ptr().cast());
@@ -88,11 +89,11 @@ impl PeerKernel {
         unsafe { self.robot.function::<Read>("read").is_some_and(|read| read(robot, name.as_ptr(), out) != 0) }
     }
 
-    /// Calls the function on all states, so many rounds: lengths are checked once, and then only
-    /// called.
+    /// Calls the function on all states, for `rounds` rounds: lengths are checked once, before the
+    /// calls.
     ///
     /// # Panics
-    /// If a length is not the one promised.
+    /// If a length differs from the promised one.
     pub(crate) fn repeat(&self, rounds: usize, states: &[Vec<&[f64]>], out: &mut [f64]) {
         assert!(states.iter().all(|x| self.lengths.fit(x, out)));
         // SAFETY: as in `call`.

@@ -5,13 +5,13 @@ use std::fmt::Write;
 /// The axes of the joints, one after the other.
 const AXES: [&str; 4] = ["0 0 1", "0 1 0", "1 0 0", "0 -1 0"];
 
-/// Every joint of this number stands askew, as at a wrist.
+/// Every joint with a multiple of this number is oblique, as at a wrist.
 const ASKEW: usize = 5;
 
 /// The URDF of a serial arm of `joints` revolute joints: axes that change from joint to joint,
-/// every fifth joint askew by angles that are no multiples of π/2, and links with a centre of mass
-/// off every axis and a full inertia. The same number always gives the same arm; a shorter one is
-/// the beginning of a longer one.
+/// every fifth joint oblique by angles that are not multiples of π/2, and links with a centre of
+/// mass off every axis and a full inertia. The same number always gives the same arm; a shorter one
+/// is the beginning of a longer one.
 pub fn chain(joints: usize) -> String {
     let mut out = format!("<robot name=\"chain_{joints}\">\n");
     out += "  <link name=\"link_0\"/>\n";
@@ -25,7 +25,7 @@ pub fn chain(joints: usize) -> String {
 fn link(out: &mut String, k: usize) {
     let mass = 0.5 + vary(k, 1);
     let [x, y, z] = [2, 3, 4].map(|n| 0.1 * vary(k, n) - 0.05);
-    // Second moments about the centre of mass, and from them what a body of those can have.
+    // Second moments about the centre of mass, and from them a physical inertia.
     let [a, b, c] = [5, 6, 7].map(|n| mass * (1e-3 + 2e-3 * vary(k, n)));
     let [xy, xz, yz] = [8, 9, 10].map(|n| mass * (4e-4 * vary(k, n) - 2e-4));
     let (xx, yy, zz) = (b + c, a + c, a + b);
@@ -68,7 +68,7 @@ mod tests {
         generate(&request).unwrap()
     }
 
-    /// Operations asked for while tracing, instructions emitted, and bytes of source, for each
+    /// Operations requested while tracing, instructions emitted, and bytes of source, for each
     /// joint added between 80 and 120, and between 120 and 200: long enough that all of it is
     /// written in pieces.
     fn per_joint(function: &str) -> [[f64; 2]; 3] {
@@ -92,8 +92,8 @@ mod tests {
     #[test]
     fn a_matrix_grows_with_the_square_of_the_chain_and_no_faster() {
         let work = [20, 40, 80].map(|n| generated("mass_matrix", n).ledger.functions[0].emitted().instructions() as f64);
-        // Of a n² + b n + c with positive a, the ratio of second differences is exactly 4 for these
-        // lengths when b and c are out of it.
+        // For a n² + b n + c with positive a, the ratio of second differences is exactly 4 for
+        // these lengths, independent of b and c.
         let second = [work[1] - 2.0 * work[0], work[2] - 2.0 * work[1]];
         assert!((second[1] / second[0] - 4.0).abs() < 0.2, "{work:?}");
     }

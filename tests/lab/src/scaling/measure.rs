@@ -15,7 +15,7 @@ use crate::error::Error;
 use crate::states::{self, State};
 use crate::table::counted;
 
-/// Random states that evaluations go through: enough that no branch is learnt by heart, few enough
+/// Random states of the evaluations: enough that branches are not predicted from memory, few enough
 /// that those of a long chain stay in the cache.
 pub(super) const STATES: usize = 8;
 
@@ -71,7 +71,7 @@ pub(super) fn point(
     })
 }
 
-/// The largest difference of the results, relative to the largest of them.
+/// The largest difference of the results, relative to the largest result.
 fn difference(contenders: &[Contender<'_>; 2], arguments: &[&[f64]]) -> f64 {
     let [a, b] = contenders.each_ref().map(|c| c.call(arguments));
     let largest = b.iter().map(|x| x.abs()).fold(f64::MIN_POSITIVE, f64::max);
@@ -93,12 +93,12 @@ fn chilled(contenders: &[Contender<'_>; 2], arguments: &[Vec<&[f64]>], repetitio
     times
 }
 
-/// More than the caches of a core and what it shares with its neighbours.
+/// More than the private and the shared caches of a core.
 pub(super) const BUFFER: usize = 64 << 20;
 
 const LINE: usize = 64;
 
-/// Data and code that take the place of whatever is in the caches.
+/// Data and code that replace the contents of the caches.
 pub(super) struct Cold {
     buffer: Vec<u8>,
     filler: Filler,

@@ -18,8 +18,8 @@ use crate::table::counted;
 use measure::Cold;
 pub use report::Report;
 
-/// Lengths of chains, and the most numbers that a result may have: a matrix grows with the square
-/// of the chain, and so does all that it costs.
+/// Lengths of chains, and the maximum length of a result: a matrix and its costs grow with the
+/// square of the chain.
 struct Extent {
     joints: &'static [usize],
     numbers: usize,
@@ -32,12 +32,12 @@ const WHOLE: Extent = Extent { joints: &[7, 14, 30, 60, 125, 250, 500, 1000], nu
 
 const FUNCTIONS: [&str; 3] = ["inverse_dynamics", "mass_matrix", "forward_dynamics"];
 
-/// What is measured.
+/// Settings of the measurement.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Numbers of joints; none are a short list.
+    /// Numbers of joints; if empty, a short list.
     pub joints: Vec<usize>,
-    /// The functions; none are three of dynamics.
+    /// The functions; if empty, three of dynamics.
     pub functions: Vec<String>,
     /// A long list of lengths instead of the short one.
     pub all: bool,
@@ -123,7 +123,7 @@ fn plan(settings: &Settings, notes: &mut Vec<String>) -> Vec<(&'static Function<
     plan
 }
 
-/// Of a chain with the frame of its tip.
+/// The shape of a chain with the frame of its tip.
 fn shape(joints: usize) -> Shape {
     Shape { nq: joints, nv: joints, frames: 1, links: joints }
 }

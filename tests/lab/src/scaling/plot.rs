@@ -40,7 +40,7 @@ pub(super) fn svg(report: &Report) -> String {
     out.svg()
 }
 
-/// A panel of which the left edge is at `x0`.
+/// A panel with its left edge at `x0`.
 fn panel(out: &mut Drawing, x0: f64, function: &str, points: &[&Point], crossover: &Crossover) {
     let [left, right, top, bottom] = [x0 + MARGIN[0], x0 + PANEL - MARGIN[1], MARGIN[2], HEIGHT - MARGIN[3]];
     let joints = Axis::logarithmic(points.iter().map(|p| p.joints as f64), [left, right], ROOM);

@@ -1,4 +1,4 @@
-//! What was measured, as data.
+//! The results of a measurement, as data.
 
 use std::borrow::Cow;
 
@@ -26,7 +26,7 @@ pub(super) const UNITS: Units = Units(&[
 pub(super) struct Point {
     pub(super) function: &'static str,
     pub(super) joints: usize,
-    /// The way that the generator chose by count, where it had a choice.
+    /// The form that the generator chose by count, if it had a choice.
     pub(super) ways: Vec<Cow<'static, str>>,
     pub(super) instructions: u64,
     pub(super) source_bytes: usize,
@@ -35,7 +35,7 @@ pub(super) struct Point {
     pub(super) generation_seconds: f64,
     /// `rustc`, start and linking included.
     pub(super) compilation_seconds: f64,
-    /// Of generated and generic results, relative to the largest of them.
+    /// Difference of generated and generic results, relative to the largest one.
     pub(super) difference: f64,
     /// ns per call, these four.
     pub(super) generated_hot: Summary,
@@ -48,14 +48,14 @@ pub(super) struct Point {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Crossover {
     pub(super) function: &'static str,
-    /// `None`: at no length that was measured.
+    /// `None`: at no measured length.
     pub(super) hot: Option<f64>,
     pub(super) cold: Option<f64>,
     /// The longest chain that was measured.
     pub(super) up_to: usize,
 }
 
-/// By how much the costs of a joint grow from the shortest chain to the longest.
+/// Growth of the costs per joint from the shortest chain to the longest.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Growth {
     pub(super) function: &'static str,
@@ -66,7 +66,7 @@ pub(super) struct Growth {
     pub(super) compilation: f64,
 }
 
-/// What was measured.
+/// The results of the measurement.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     pub(super) compiler: String,
@@ -75,7 +75,7 @@ pub struct Report {
     pub(super) optimised: bool,
     pub(super) states: usize,
     pub(super) repetitions: u32,
-    /// What is written to, and what is run, before an evaluation with cold caches.
+    /// Size of the buffer and the filler that run before an evaluation with cold caches.
     pub(super) buffer_bytes: usize,
     pub(super) filler_instructions: usize,
     pub(super) units: Units,
@@ -86,7 +86,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Takes the points in, and what follows from them.
+    /// Adds the points, and the conclusions from them.
     pub(super) fn conclude(&mut self, points: Vec<Point>) {
         let mut rest = points.as_slice();
         while let Some(first) = rest.first() {
@@ -117,8 +117,7 @@ fn crossover(points: &[Point]) -> Crossover {
     }
 }
 
-/// Where a curve (n, ratio) rises above 1 for good; between two points as a straight line of both
-/// logarithms.
+/// Where a curve (n, ratio) last rises above 1; linear in both logarithms between two points.
 fn last_crossing(curve: &[(f64, f64)]) -> Option<f64> {
     let below = curve.iter().rposition(|(_, ratio)| *ratio < 1.0);
     let (n, above) = *curve.get(below.map_or(0, |k| k + 1))?;

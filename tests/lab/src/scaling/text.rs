@@ -32,7 +32,7 @@ instructions: of generated code (a multiply-add is one; sines and cosines apart)
 linking included. Beside a number of joints stand the ways of computing that the generator chose by count.
 ";
 
-/// Titles and units of what is said of a chain; the last row is [`cells`].
+/// Titles and units of the columns of a chain; the last row is [`cells`].
 pub(super) const COLUMNS: [(&str, &str); 12] = [
     ("joints", ""),
     ("generated, hot", "µs"),

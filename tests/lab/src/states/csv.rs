@@ -8,7 +8,7 @@ use super::read::{Found, Gathering};
 use super::{State, owner, slots};
 use crate::table::counted;
 
-/// What a column holds.
+/// Content of a column.
 struct Column {
     argument: Argument,
     /// Index in it.
@@ -53,7 +53,7 @@ fn column(title: &str, found: &mut Found<'_>) -> Option<Column> {
     Some(Column { argument, at: slot.at + number.unwrap_or(0), title: title.to_owned() })
 }
 
-/// `name` or `name[k]`; a joint or link whose own name ends so comes first.
+/// `name` or `name[k]`; a joint or link with the whole text as its name has precedence.
 fn part(place: &str, argument: Argument, text: &str, found: &mut Found<'_>) -> Option<(usize, Option<usize>)> {
     if let Some(slot) = slots(argument, found.model).iter().position(|s| s.name == text) {
         return Some((slot, None));

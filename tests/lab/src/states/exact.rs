@@ -1,6 +1,6 @@
 //! For tests: doubles that are hard to read and to write, and their spellings.
 
-/// So many random doubles per format.
+/// Number of random doubles per format.
 const COUNT: usize = 100_000;
 
 /// Finite doubles: every second one of any size, subnormal too; the others of sizes that robots
@@ -42,7 +42,7 @@ mod tests {
         assert_eq!(wrong, 0, "of {} numbers", expected.len());
     }
 
-    /// The rates of all states that a text gives a cart and pole, one behind the other.
+    /// The rates of all states in a text for a cart and pole, concatenated.
     fn rates(text: &str) -> Vec<f64> {
         let states = read(text.as_bytes(), &bundled_model("cart_pole")).unwrap().states;
         states.iter().flat_map(|state| state.get(Argument::V).unwrap().to_vec()).collect()

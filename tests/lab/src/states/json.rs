@@ -38,7 +38,7 @@ pub(super) fn read(text: &str, found: &mut Found<'_>) {
     }
 }
 
-/// An error for each key beside the one that there is.
+/// An error for each key other than the known one.
 fn alone(known: &str, object: &[(String, Json)], found: &mut Found<'_>) {
     for (key, _) in object.iter().filter(|(key, _)| key != known) {
         found.errors.push(format!("found the key {key:?}, expected {known:?} alone"));
@@ -99,7 +99,7 @@ fn by_name(place: &str, argument: Argument, parts: &[(String, Json)], state: &mu
         }
         given.into_iter().enumerate().for_each(|(k, x)| gathering.set(slot.at + k, x));
     }
-    // One mistake is one message: what is missing is said only where nothing else was wrong.
+    // One error is one message: missing values are reported only without other errors.
     if found.errors.len() == before {
         gathering.finish(state, place, found);
     }

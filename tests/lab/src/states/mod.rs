@@ -15,7 +15,7 @@ pub use random::random;
 use read::Found;
 pub use read::{States, listed};
 
-/// One state: a vector for each argument that is known of it, laid out as the functions take it.
+/// One state: a vector for each known argument, in the layout of the functions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct State {
     values: Vec<(Argument, Vec<f64>)>,
@@ -27,12 +27,12 @@ impl State {
         self.values.iter().find(|(a, _)| *a == argument).map(|(_, x)| x.as_slice())
     }
 
-    /// The arguments of a function in its order; the first that is missing otherwise.
+    /// The arguments of a function in its order; otherwise the first missing one.
     pub fn arguments<S>(&self, function: &Function<S>) -> Result<Vec<&[f64]>, Argument> {
         function.takes.iter().map(|&a| self.get(a).ok_or(a)).collect()
     }
 
-    /// Gives an argument its vector.
+    /// Sets the vector of an argument.
     pub fn set(&mut self, argument: Argument, vector: Vec<f64>) {
         self.values.retain(|(a, _)| *a != argument);
         self.values.push((argument, vector));
@@ -79,7 +79,7 @@ pub fn slots(argument: Argument, model: &Model<f64>) -> Vec<Slot<'_>> {
     }
 }
 
-/// What the parts of an argument are.
+/// The owners of an argument's parts.
 pub fn owner(argument: Argument) -> &'static str {
     if argument == Argument::Wrenches { "link" } else { "joint" }
 }

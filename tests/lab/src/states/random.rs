@@ -9,8 +9,8 @@ use super::State;
 /// Rates, accelerations, torques, wrenches and steps lie in ± this.
 const RATE: f64 = 2.0;
 
-/// `count` states: configurations as [`random_configuration`] makes them, numbers in [0, 1) where
-/// that is asked for, all else in ±2.
+/// `count` states: configurations by [`random_configuration`], numbers in [0, 1) for arguments that
+/// require it, all others in ±2.
 pub fn random(model: &Model<f64>, count: usize, seed: u64) -> Vec<State> {
     let mut numbers = SplitMix64::new(seed);
     let mut workspace = Workspace::new(model);

@@ -10,27 +10,27 @@ use super::random::normalise;
 use super::{Slot, State, owner, quaternions, slots};
 use crate::table::counted;
 
-/// Norms of quaternions so near to one are not spoken of: the rounding of the four numbers.
+/// Quaternions with norms this close to one cause no warning: the rounding of the four numbers.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// At most this many errors are listed.
 const MOST: usize = 100;
 
-/// States that were read, and what there is to say about them.
+/// States that were read, with warnings.
 #[derive(Clone, Debug, Default)]
 pub struct States {
     /// The states in the order of the file.
     pub states: Vec<State>,
-    /// What was mended, a line each.
+    /// Corrections, a line each.
     pub warnings: Vec<String>,
 }
 
-/// What has been read so far.
+/// Contents and errors so far.
 pub(super) struct Found<'a> {
     pub(super) model: &'a Model<f64>,
     pub(super) errors: Vec<String>,
     warnings: Vec<String>,
     states: Vec<State>,
-    /// The first coordinate beyond any sense, and how many other states have one.
+    /// The first implausibly large coordinate, and the number of other states with one.
     beyond: Option<(String, usize)>,
 }
 

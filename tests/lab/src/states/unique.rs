@@ -1,4 +1,4 @@
-//! JSON in which no key stands twice: `serde_json` would take the last and say nothing.
+//! JSON without duplicate keys: `serde_json` would silently take the last one.
 
 use std::collections::HashSet;
 use std::fmt;
@@ -25,7 +25,7 @@ impl Json {
     }
 }
 
-/// The value of a text. Errors: those of `serde_json`; a key that stands twice is one of data.
+/// The value of a text. Errors: those of `serde_json`; a duplicate key is a data error.
 pub(super) fn parse(text: &str) -> Result<Json, serde_json::Error> {
     serde_json::from_str(text)
 }

@@ -8,7 +8,7 @@ pub(super) fn diagonal(m: &[f64]) -> Vec<f64> {
     (0..n).map(|k| m[k * (n + 1)].sqrt()).collect()
 }
 
-/// ‖x‖₂; no square of a small number is lost.
+/// ‖x‖₂, without underflow of squares of small numbers.
 pub(super) fn norm(x: &[f64]) -> f64 {
     let most = x.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     if most == 0.0 { 0.0 } else { most * x.iter().map(|x| (x / most) * (x / most)).sum::<f64>().sqrt() }
@@ -19,8 +19,8 @@ pub(super) fn condition(m: &[f64], s: &[f64]) -> f64 {
     sensitivity(m, m, s)
 }
 
-/// ‖M⁻¹‖₂ ‖T‖₂, both scaled by s_i s_k: how far a solution moves, over a relative change of the
-/// terms T that M is summed of. By power iteration, never more than it is.
+/// ‖M⁻¹‖₂ ‖T‖₂, both scaled by s_i s_k: the relative change of a solution for a relative change of
+/// M's terms T. By power iteration, so it is a lower bound.
 pub(super) fn sensitivity(m: &[f64], terms: &[f64], s: &[f64]) -> f64 {
     let n = s.len();
     let mut factor = Factor::<f64>::new(n);

@@ -1,16 +1,16 @@
 //! Functions on a hard robot, judged in many digits.
 //!
-//! The reference is the generic library on the constants that the judged program has, in 320 bits
-//! (it is held to the textbook's form elsewhere, which shares no formula with it). What is solved
-//! for is judged by the torques that it needs:
+//! The reference is the generic library on the constants of the judged program, in 320 bits (other
+//! tests compare it with the textbook's form, which shares no formula with it). Solutions are
+//! judged by the torques that they need:
 //!
 //! ```text
 //! η = max_i |ID_exact(q, v, a) − τ|_i / (|M| |a| + |h| + |τ|)_i
 //! ```
 //!
-//! with τ what the motors deliver. Where joints follow others, or effects act, terms of M and h may
-//! cancel: then the sums of their magnitudes stand for |M| and |h|; so they do in every robot of a
-//! user's ([`Case::by_terms`]).
+//! with τ the torques that the motors deliver. If joints follow others, or effects act, terms of M
+//! and h may cancel: then |M| and |h| mean the sums of their magnitudes; so they do for every
+//! user's robot ([`Case::by_terms`]).
 
 use articulated_codegen::model_pass::View;
 use articulated_core::algorithm::checked::{Factor, Singular, Solver};
@@ -24,12 +24,11 @@ use super::row::{Case, Row};
 use crate::compare::accuracy::worse;
 use crate::table::counted;
 
-/// Robots of more degrees of freedom than this are judged without derivatives: 96 digits of a cube
-/// of it take minutes.
+/// Robots of more degrees of freedom than this are judged without derivatives: 96 digits of its
+/// cube take minutes.
 pub(super) const DERIVATIVES: usize = 12;
 
-/// η allowed, and errors allowed of what is not solved for, in units of u times the magnitude of
-/// the terms.
+/// Allowed η, and allowed errors of other results, in units of u times the magnitude of the terms.
 pub const BACKWARD: f64 = 64.0;
 
 /// Forward errors of solutions with the mass matrix allowed, ‖x − x_exact‖₂/‖x_exact‖₂: in units of
@@ -52,10 +51,10 @@ pub struct State {
     pub tau: Vec<f64>,
 }
 
-/// Accelerations and what is left of the smallest pivot, or the joint that gave way.
+/// Accelerations and the remainder of the smallest pivot, or the singular joint.
 type Outcome<F> = Result<(Vec<F>, f64), Singular<F>>;
 
-/// What comes out of forward dynamics.
+/// Outcome of forward dynamics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
     /// A solution.
@@ -80,7 +79,7 @@ impl<'a, F: Machine> Judge<'a, F> {
         Self { case, wide: wide(&model), model }
     }
 
-    /// Right up to the limit; of one that is infinite, to be seen.
+    /// A row with a limit; one with an infinite limit is only shown.
     fn row(&self, what: &str, measured: f64, limit: f64, unit: &'static str) -> Row {
         let what = format!("{what}, {}", F::NAME);
         if limit.is_finite() { self.case.row(what, measured, limit, unit) } else { self.case.shown(what, measured, unit) }
@@ -102,8 +101,8 @@ impl<'a, F: Machine> Judge<'a, F> {
         rows
     }
 
-    /// Inverse dynamics, and forward dynamics by ABA: functions that take a time in proportion to
-    /// the number of joints.
+    /// Inverse dynamics, and forward dynamics by ABA: functions of linear time in the number of
+    /// joints.
     pub fn recursions(&self, states: &[State]) -> Vec<Row> {
         let worst = |f: &dyn Fn(&State) -> f64| states.iter().map(f).fold(0.0, worse);
         let by_aba = |s: &State| self.checked(s).map_or(f64::NAN, |(a, _)| self.solution(&a, s)[0]);
@@ -165,7 +164,7 @@ impl<'a, F: Machine> Judge<'a, F> {
         call(FunctionId::mass_matrix, &self.wide, &[widened::<F>(&cast(&state.q))])
     }
 
-    /// Accelerations, and what is left of the smallest pivot.
+    /// Accelerations, and the remainder of the smallest pivot.
     pub(super) fn checked(&self, state: &State) -> Outcome<F> {
         let [q, v, tau] = [&state.q, &state.v, &state.tau].map(|x| cast::<F>(x));
         let mut a = vec![F::zero(); self.model.nv()];
@@ -275,8 +274,8 @@ fn either<F: Machine>(outcomes: &[Outcome<F>]) -> String {
     }
 }
 
-/// The largest error of what was found in units of u times the magnitude of its terms; the model's
-/// constants and the arguments as the judged program has them.
+/// The largest error of a result in units of u times the magnitude of its terms, with the model's
+/// constants and the arguments of the judged program.
 pub fn exact_error<F: Machine>(function: FunctionId, model: &Model<f64>, given: &[Vec<f64>], found: &[F]) -> f64 {
     let slices: Vec<&[f64]> = given.iter().map(Vec::as_slice).collect();
     let Some(scale) = scale(function, model, &slices) else { return f64::NAN };
@@ -315,7 +314,7 @@ pub fn call<S: articulated_core::Scalar>(function: FunctionId, model: &Model<S>,
     out
 }
 
-/// The same of a view of the generator.
+/// The same for a view of the generator.
 pub fn call_on_view(function: FunctionId, view: &View<f64>, arguments: &[Vec<f64>]) -> Vec<f64> {
     let row = function.row::<f64>();
     let arguments: Vec<&[f64]> = arguments.iter().map(Vec::as_slice).collect();
@@ -324,7 +323,7 @@ pub fn call_on_view(function: FunctionId, view: &View<f64>, arguments: &[Vec<f64
     out
 }
 
-/// The same of a robot in many digits.
+/// The same for a robot in many digits.
 pub fn called(robot: &Exact, function: FunctionId, arguments: &[Vec<Big>]) -> Vec<Big> {
     let arguments: Vec<&[Big]> = arguments.iter().map(Vec::as_slice).collect();
     robot.call(function, &arguments).expect("arguments of the lengths that the robot says")

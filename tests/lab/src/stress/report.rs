@@ -13,29 +13,29 @@ use crate::console::Progress;
 use crate::error::Error;
 use crate::robot::{Robot, note_of_parameters};
 
-/// What was measured.
+/// The results of the measurement.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Every row is right.
     pub(super) pass: bool,
-    /// How many were measured, and how many of them are wrong.
+    /// Number of measured rows, and of failed ones.
     pub(super) rows_measured: usize,
     pub(super) rows_failed: usize,
-    /// What was left out, and why.
+    /// Omitted measurements, with the reasons.
     pub(super) notes: Vec<String>,
     pub(super) rows: Vec<Row>,
 }
 
-/// What is measured.
+/// Settings of the measurement.
 #[derive(Clone, Debug, Default)]
 pub struct Settings {
-    /// The chapters of the corpus; none are all.
+    /// The chapters of the corpus; if empty, all.
     pub chapters: Vec<String>,
     /// All of the corpus, which takes minutes.
     pub full: bool,
     /// Generated code too, compiled by rustc.
     pub generated: bool,
-    /// At these levels; none are all of the corpus, and the default one of robots.
+    /// The levels; if empty, all of the corpus, and the default one of robots.
     pub levels: Vec<Precision>,
 }
 
@@ -89,8 +89,8 @@ fn of_robots(settings: &Settings) -> Vec<Precision> {
     }
 }
 
-/// Measures a robot: on states at random, on hard ones, and on those given. `model`: with a frame
-/// for each link.
+/// Measures a robot: on random states, on hard ones, and on given ones. `model`: with a frame for
+/// each link.
 pub fn of_robot(robot: &Robot, model: &Model<f64>, given: &[State], settings: &Settings) -> Result<Report, Error> {
     let mut found = user_robot::rows(robot, model, given, &of_robots(settings))?;
     found.notes.extend(note_of_parameters(&robot.options));

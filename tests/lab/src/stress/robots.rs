@@ -24,8 +24,8 @@ pub struct Body {
 }
 
 impl Body {
-    /// A rod along x from the link's origin, with inertia about its own axis only as far as
-    /// `thickness`, m, says: m r²/2, and m l²/12 across.
+    /// A rod along x from the link's origin, with inertia about its own axis due to `thickness`, m,
+    /// alone: m r²/2, and m l²/12 across.
     pub fn rod(mass: f64, length: f64, thickness: f64) -> Self {
         let across = mass * length * length / 12.0;
         let own = mass * thickness * thickness / 2.0;
@@ -82,7 +82,7 @@ impl Builder {
     }
 }
 
-/// The model of a description that is right.
+/// The model of a valid description.
 pub fn built(description: &Description, base: Base) -> Model<f64> {
     Model::new(description, base).expect("the corpus consists of trees of known joints")
 }
@@ -108,7 +108,7 @@ pub enum Shape {
     Straight,
     /// Half a turn each, so that every rod lies on the one before.
     Folded,
-    /// A sixth of a turn to and fro.
+    /// A sixth of a turn, in alternating directions.
     ZigZag,
 }
 
@@ -122,7 +122,7 @@ impl Shape {
         }
     }
 
-    /// q, the first joint hanging at an angle that is no special one.
+    /// q, with the first joint hanging at a general angle.
     pub fn angles(self, n: usize) -> Vec<f64> {
         let bend = |k: usize| match self {
             Self::Straight => 0.0,
@@ -186,7 +186,7 @@ pub fn far_off(k: f64) -> Description {
     Builder::new("far").turn([0.0, 0.0, 1.0], [0.0; 3], small([1.0, 0.0, 0.0])).turn([0.0, 1.0, 0.0], [1.0, 0.0, 0.0], outer).done()
 }
 
-/// Thin bodies, their inertias given in frames that are turned by any angles.
+/// Thin bodies, with inertias given in arbitrarily turned frames.
 pub fn turned() -> Description {
     let mut out = Builder::new("turned");
     for k in 0..4 {

@@ -1,22 +1,22 @@
-//! A row of the report: what was measured of a hard case, and what it may be.
+//! A row of the report: a measurement of a hard case, and its limit.
 
 use serde::Serialize;
 
 /// One measurement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// What the case is about.
+    /// The topic of the case.
     pub chapter: &'static str,
     /// The case.
     pub case: String,
     /// Why it is hard, in a sentence.
     pub why: &'static str,
-    /// What was measured.
+    /// The measured quantity.
     pub what: String,
-    /// What was found; not a number where nothing that can be measured came out.
+    /// The measured value; NaN if the result is not measurable.
     #[serde(serialize_with = "number")]
     pub measured: f64,
-    /// The most that is right; none of a measurement that is shown only.
+    /// The allowed maximum; `None` for a value that is only shown.
     pub limit: Option<f64>,
     /// The unit of both.
     pub unit: &'static str,
@@ -24,12 +24,12 @@ pub struct Row {
     pub pass: bool,
 }
 
-/// JSON has no infinity and nothing that is not a number.
+/// JSON has no infinity and no NaN.
 fn number<S: serde::Serializer>(x: &f64, to: S) -> Result<S::Ok, S::Error> {
     if x.is_finite() { to.serialize_f64(*x) } else { to.serialize_str(&x.to_string()) }
 }
 
-/// A case: what its rows have in common.
+/// A case: the common data of its rows.
 #[derive(Clone, Debug)]
 pub struct Case {
     /// As [`Row::chapter`].
@@ -48,20 +48,20 @@ impl Case {
         Self { chapter, name: name.into(), why, by_terms: false }
     }
 
-    /// Of a robot that may have numbers of h that cancel to the last digit, as that of a round tool
-    /// about its own axis does.
+    /// For a robot whose numbers of h may cancel to the last digit, as for a round tool about its
+    /// own axis.
     pub fn by_terms(self) -> Self {
         Self { by_terms: true, ..self }
     }
 
     /// Right up to the limit.
     pub fn row(&self, what: impl Into<String>, measured: f64, limit: f64, unit: &'static str) -> Row {
-        // What is not a number is not right.
+        // NaN fails.
         let pass = measured <= limit;
         self.of(what.into(), measured, Some(limit), unit, pass)
     }
 
-    /// Right between two limits, of which the upper is shown.
+    /// Passes between two limits; the upper one is shown.
     pub fn between(&self, what: impl Into<String>, measured: f64, [least, most]: [f64; 2], unit: &'static str) -> Row {
         self.of(what.into(), measured, Some(most), unit, (least..=most).contains(&measured))
     }
@@ -71,7 +71,7 @@ impl Case {
         self.of(what.into(), f64::from(u8::from(!holds)), Some(0.0), "wrong", holds)
     }
 
-    /// To be seen beside the value from which on it is worth a look.
+    /// Shown with the value from which on it is notable.
     pub fn remark(&self, what: impl Into<String>, measured: f64, limit: f64, unit: &'static str) -> Row {
         self.of(what.into(), measured, Some(limit), unit, true)
     }

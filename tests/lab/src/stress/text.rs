@@ -25,7 +25,7 @@ pub(super) fn text(report: &Report, all: bool) -> String {
     out
 }
 
-/// What letters and names mean, each with the mark by which it is found in the tables.
+/// The meaning of letters and names, each with its mark in the tables.
 const LEGEND: [(&str, &str); 6] = [
     (
         " u  ",
@@ -41,13 +41,13 @@ const LEGEND: [(&str, &str); 6] = [
     ("ABA", "ABA: by the articulated-body algorithm, which forms no mass matrix"),
 ];
 
-/// The lines for what is in the tables, and an empty one.
+/// The lines for the marks in the tables, and an empty one.
 fn legend(tables: &str) -> String {
     let lines: String = LEGEND.iter().filter(|(mark, _)| tables.contains(mark)).map(|(_, line)| wrapped(&format!("{line}\n"))).collect();
     if lines.is_empty() { lines } else { lines + "\n" }
 }
 
-/// A table's first column is no wider.
+/// Maximum width of a table's first column.
 const FIRST: usize = 60;
 
 fn table(rows: &[Row], all: bool) -> String {

@@ -23,7 +23,7 @@ pub const NAME: &str = "robots";
 
 const TAU: f64 = 20.0;
 
-/// What was measured of a robot, and what could not be.
+/// The measurements of a robot, and the ones that failed.
 #[derive(Default)]
 pub(super) struct Found {
     pub(super) rows: Vec<Row>,
@@ -66,7 +66,7 @@ fn left_out(robot: &Robot, model: &Model<f64>, generated: &[Precision]) -> Resul
 
 type Set = (&'static str, &'static str, Vec<State>);
 
-/// Sets of states: those given, some at random, and hard ones.
+/// Sets of states: given ones, random ones, and hard ones.
 fn sets(model: &Model<f64>, given: &[State]) -> Vec<Set> {
     let alike = |x: f64| {
         let mut q = vec![x; model.nq()];
@@ -76,7 +76,7 @@ fn sets(model: &Model<f64>, given: &[State]) -> Vec<Set> {
     let bound = |upper: bool| {
         let mut s = alike(0.0);
         for joint in model.joints().iter().filter(|j| j.q.1 == 1) {
-            // An open bound is no place to stand.
+            // A state cannot be at an infinite bound.
             s[0].q[joint.q.0] = joint.limit.map_or(0.0, |l| if upper { l.upper } else { l.lower }).clamp(-1e3, 1e3);
         }
         s
@@ -147,10 +147,10 @@ fn watched(model: &Model<f64>, sets: &[Set]) -> Vec<Row> {
         condition = worse(condition, scaled_condition(model, &mut ws, &s.q));
         let mut left = vec![0.0; model.nv()];
         pivot_cancellation(model, &mut ws, &s.q, &mut left);
-        // What comes after a pivot that is nothing is not a number.
+        // Numbers after a pivot of zero are NaN.
         least = left.into_iter().enumerate().map(|(k, x)| (x, k)).fold(least, |a, b| if b.0 < a.0 { b } else { a });
     }
-    // A rotation is off by twice what the quaternion's norm² is.
+    // The error of a rotation is twice that of the quaternion's norm².
     let allowed = 4.0 * (depth + 1.0) * roundoff + 2.0 * quaternions(model).count() as f64 * norm;
     let distance = model.outward().map(|i| model.bodies()[i].placement.position.norm()).fold(0.0, f64::max);
     let mut rows = vec![

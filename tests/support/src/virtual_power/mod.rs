@@ -7,8 +7,8 @@
 //!
 //! τ_k = Σ_i ∫ (r̈ − g)·∂ṙ/∂v_k dm = Σ_i m (c̈ − g)·∂ċ/∂v_k + tr(R̈ Σ_c (∂Ṙ/∂v_k)ᵀ),   Σ_c = ½ tr(I)·1 − I
 //!
-//! It starts from the numbers of the file and shares nothing with the crates that it judges but the
-//! scalar.
+//! It starts from the numbers of the file and shares only the scalar with the crates that it
+//! judges.
 
 mod pose;
 mod scale;
@@ -33,7 +33,7 @@ pub struct Motions<'a> {
     pub size: (usize, usize),
 }
 
-/// Energies and what changes them.
+/// Energies and their rates.
 #[derive(Clone, Copy, Debug)]
 pub struct Energy<S> {
     /// T, J.
@@ -45,7 +45,7 @@ pub struct Energy<S> {
 }
 
 impl<'a> Motions<'a> {
-    /// Of a description that is a tree; gravity in the world frame, m/s².
+    /// From a description that is a tree; gravity in the world frame, m/s².
     pub fn new(description: &'a Description, base: Base, gravity: [f64; 3]) -> Self {
         let mut this = Self { description, base, gravity, coordinates: Vec::new(), size: (0, 0) };
         if base == Base::Floating {
@@ -78,8 +78,8 @@ impl<'a> Motions<'a> {
         self.coordinates.iter().filter_map(|(j, ..)| j.map(|j| self.description.joints[JointId(j)].name.as_str())).collect()
     }
 
-    /// [R | p] of every link in the world frame, in the order of the file, moving as q, v and a
-    /// say.
+    /// [R | p] of every link in the world frame, in the order of the file, for the motion q, v and
+    /// a.
     fn poses<S: Scalar>(&self, q: &[S], v: &[S], a: &[S]) -> ById<LinkId, Option<Pose<S>>> {
         let mut poses: ById<LinkId, Option<Pose<S>>> = vec![None; self.description.links.len()].into();
         let Some(root) = self.description.root() else { return poses };

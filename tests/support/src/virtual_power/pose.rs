@@ -1,4 +1,4 @@
-//! The placements of joints in motion, each as the doc comments of [`JointKind`] say.
+//! The placements of moving joints, each according to the doc comments of [`JointKind`].
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -43,8 +43,7 @@ fn plane<S: Scalar>(normal: [f64; 3]) -> [Vector3<Jet<S>>; 2] {
     let x = match along {
         Some(k) if normal[k] > 0.0 || k == 0 => e[(k + 1) % 3],
         Some(_) => e[0],
-        // The coordinate axis that leans most away from the normal, the first of them, gives x = e
-        // × z.
+        // The coordinate axis furthest from the normal, the first of several, gives x = e × z.
         None => {
             let farthest = (0..3).fold(0, |best, k| if normal[k].abs() < normal[best].abs() { k } else { best });
             let x = e[farthest].cross(&z);
@@ -68,8 +67,8 @@ pub(super) fn place<S: Scalar>(origin: &Origin) -> Pose<S> {
     (about(2) * about(1) * about(0), Vector3::from(origin.xyz).map(Jet::from_f64))
 }
 
-/// (sin, cos); the double nearest to a right angle is a right angle: that is a convention and no
-/// matter of dynamics.
+/// (sin, cos); the double nearest to a right angle is a right angle: that is a convention, not
+/// dynamics.
 fn written<S: Scalar>(angle: f64) -> (S, S) {
     let turns = (angle / FRAC_PI_2).round();
     if turns * FRAC_PI_2 != angle || turns.abs() > 4.0 {

@@ -1,4 +1,4 @@
-//! The yardsticks of rounding errors: what a torque or a placement is the sum of.
+//! The scales of rounding errors: the terms of a torque or a placement.
 
 use std::f64::consts::TAU;
 
@@ -8,8 +8,7 @@ use nalgebra::Vector3;
 use super::pose::Pose;
 use super::{Motions, second_moments};
 
-/// What a link's quantities are sums of, along the way from the base: the yardsticks of rounding
-/// errors.
+/// The terms of a link's quantities, along the path from the base: the scales of rounding errors.
 #[derive(Clone, Copy, Debug, Default)]
 struct Way {
     /// Length of the way through the origins of the links, m.
@@ -20,7 +19,7 @@ struct Way {
     spin: f64,
 }
 
-/// How much of the moment and of the force beyond a joint one of its rates feels.
+/// Part of the moment and of the force beyond a joint that one of its rates feels.
 type Share = (f64, f64);
 
 const TURN: Share = (1.0, 0.0);
@@ -41,7 +40,7 @@ fn shares(joint: &Joint) -> Vec<Share> {
     }
 }
 
-/// How many turns and slides along an axis a joint is made of, at least one.
+/// Number of turns and slides along an axis that a joint consists of, at least one.
 fn elementary(kind: JointKind) -> f64 {
     match kind {
         JointKind::Helical | JointKind::Universal => 2.0,
@@ -79,9 +78,9 @@ impl Motions<'_> {
         order
     }
 
-    /// For each torque, the sum of what it would be if nothing cancelled: forces m (|r̈| + |g|)
-    /// times the way from the joint to the mass, and ‖Σ_c‖ ‖R̈‖; for a slide, the forces alone.
-    /// |r̈| and ‖R̈‖ are the largest on the way. No choice of axes changes it much.
+    /// For each torque, the sum of its terms without cancellation: forces m (|r̈| + |g|) times the
+    /// path from the joint to the mass, and ‖Σ_c‖ ‖R̈‖; for a slide, the forces alone. |r̈| and
+    /// ‖R̈‖ are the largest on the path. It depends little on the choice of axes.
     pub fn torque_scale(&self, q: &[f64], v: &[f64], a: &[f64]) -> Vec<f64> {
         let poses = self.poses(q, v, a);
         let (ways, g) = (self.ways(&poses), Vector3::from(self.gravity).norm());
@@ -116,7 +115,7 @@ impl Motions<'_> {
         }
     }
 
-    /// The joints at the ends of chains of followers, and how far each moves this one. None where
+    /// The joints at the ends of chains of followers, and their factors for this one. Empty if
     /// either is locked, or does not move.
     fn leaders(&self, joint: usize) -> Vec<(usize, f64)> {
         let it = &self.description.joints[JointId(joint)];
@@ -131,7 +130,7 @@ impl Motions<'_> {
         it.mimic.iter().chain(&it.also).flat_map(further).collect()
     }
 
-    /// For each number of a placement: 1 in a rotation, in a position the length of the way from
+    /// For each number of a placement: 1 in a rotation, in a position the length of the path from
     /// the base, both times the number of joints on it.
     pub fn placement_scale(&self, q: &[f64]) -> Vec<f64> {
         let rest = vec![0.0; self.size.1];

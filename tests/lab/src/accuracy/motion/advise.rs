@@ -16,28 +16,28 @@ pub(super) const UNITS: Units = Units(&[
     ("runs[].momentum", "the momentum at the start"),
 ]);
 
-/// What to take for one motion.
+/// The recommended integrator for one motion.
 #[derive(Clone, Debug, Serialize)]
 pub struct Advice<'a> {
     scene: &'a str,
     wish: f64,
     units: Units,
-    /// That of the fewest evaluations and that of the least time, which may be the same; none if
-    /// nothing measured is accurate enough.
+    /// The runs with the fewest evaluations and with the least time, which may be the same; empty
+    /// if no measured run is accurate enough.
     pub(super) runs: Vec<Run<'a>>,
 }
 
-/// An integrator with its setting, and what that comes to.
+/// An integrator with its setting and its results.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct Run<'a> {
-    /// Of what it takes least: `evaluations` or `wall`.
+    /// The minimal quantity: `evaluations` or `wall`.
     least: &'static str,
     pub(super) integrator: &'a str,
     #[serde(flatten)]
     pub(super) sample: &'a Sample,
 }
 
-/// By evaluations and by the clock; of each integrator those runs count that are no lucky hits.
+/// By evaluations and by the clock; only runs that are not lucky hits count.
 pub(super) fn all(m: &Motion, wish: f64) -> Advice<'_> {
     let own = m.curves.iter().filter(|c| !c.peer);
     let fit: Vec<(&str, &Sample)> = own.flat_map(|c| lasting(&c.samples, wish).iter().map(|s| (c.integrator.as_str(), s))).collect();
@@ -48,8 +48,8 @@ pub(super) fn all(m: &Motion, wish: f64) -> Advice<'_> {
     Advice { scene: &m.scene, wish, units: UNITS, runs }
 }
 
-/// The finest runs, all of which reach the error; two at least. A run that reaches it while a finer
-/// one does not has hit it by accident.
+/// The finest runs that all reach the error; at least two. A run is a lucky hit if a finer one does
+/// not reach it.
 fn lasting(samples: &[Sample], wish: f64) -> &[Sample] {
     let from = samples.iter().rposition(|s| s.error.is_nan() || s.error > wish).map_or(0, |k| k + 1);
     if samples.len() - from >= 2 { &samples[from..] } else { &[] }

@@ -1,4 +1,4 @@
-//! What accuracy of a motion costs, integrator by integrator.
+//! The cost of a motion's accuracy, for each integrator.
 
 mod advise;
 #[cfg(test)]
@@ -36,7 +36,7 @@ impl Motion {
         text::text(self)
     }
 
-    /// The cheapest runs whose error is at most `wish`.
+    /// The cheapest runs with an error of at most `wish`.
     pub fn advice(&self, wish: f64) -> advise::Advice<'_> {
         advise::all(self, wish)
     }

@@ -1,10 +1,11 @@
-//! Errors fall with the evaluations as the orders say, over one and a half decades of evaluations.
+//! Errors decrease with the evaluations according to the orders, over one and a half decades of
+//! evaluations.
 //!
-//! In doubles that is a matter of finding a motion: coarse steps have to be within the law of small
-//! steps already, fine ones above rounding. At order 8 one and a half decades are twelve of errors,
-//! and doubles do not have them: there the slope is that of the same method in 96 digits, with
-//! coefficients to thirty, and the integrator is held to that run, step count by step count, down
-//! to where doubles end.
+//! In doubles this needs a suitable motion: coarse steps must already obey the law of small steps,
+//! and fine ones must be above rounding. At order 8 one and a half decades are twelve decades of
+//! errors, which doubles do not have: there the slope is that of the same method in 96 digits, with
+//! coefficients to thirty, and the integrator is compared with that run, for each step count, down
+//! to the limit of doubles.
 
 use articulated::simulate::{Integrator, IntegratorId, integrators};
 use articulated_core::Scalar;
@@ -27,8 +28,8 @@ struct Swing {
 /// Let go almost at the top.
 const SLOW: Swing = Swing { q: 2.8, v: 0.0, seconds: 1.0 };
 
-/// Going round. Steps of the implicit midpoint rule are solved by rounds, of which short steps need
-/// fewer; in this motion errors are large even where there are two a step.
+/// Full turns. Steps of the implicit midpoint rule are solved by iterations, and short steps need
+/// fewer; in this motion errors are large even with two iterations per step.
 const FAST: Swing = Swing { q: 2.8, v: 40.0, seconds: 0.05 };
 
 impl Swing {
@@ -43,13 +44,13 @@ impl Swing {
         [Big::from_f64(self.q), Big::from_f64(self.v)]
     }
 
-    /// One of so many equal steps, s.
+    /// One of `count` equal steps, s.
     fn step(self, count: u32) -> Big {
         Big::from_f64(self.seconds) / Big::from_f64(f64::from(count))
     }
 }
 
-/// Step counts over 1.54 decades, some of which goes to the evaluations at both ends.
+/// Step counts over 1.54 decades, of which the evaluations at both ends take some.
 fn counts(from: u32) -> impl Iterator<Item = u32> {
     (0..8).map(move |k| (f64::from(from) * 10f64.powf(0.22 * f64::from(k))).ceil() as u32)
 }
@@ -112,7 +113,7 @@ fn rate([q, v]: [Big; 2]) -> [Big; 2] {
     [v, -stiffness() * q.sin_cos().0]
 }
 
-/// q and v after so many steps of the method of order 8.
+/// q and v after this number of steps of the method of order 8.
 fn in_digits(swing: Swing, steps: u32) -> [Big; 2] {
     let h = swing.step(steps);
     let rows = A.map(|row| row.iter().map(|(j, digits)| (*j, Big::parse(digits) * h)).collect::<Vec<_>>());

@@ -1,4 +1,4 @@
-//! The report of integrators as one page that needs nothing else.
+//! The report of integrators as one self-contained page.
 
 use std::fmt::Write;
 

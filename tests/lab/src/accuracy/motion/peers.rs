@@ -16,7 +16,7 @@ pub(super) struct Peers {
 }
 
 impl Peers {
-    /// Those of the libraries that take steps, at the start of the motion.
+    /// The peers of the libraries that make steps, at the start of the motion.
     pub(super) fn open(session: &Session, subject: &Subject, libraries: &[Library], folder: &Path) -> Result<Self, Error> {
         let without = |note: String| Ok(Self { peers: Vec::new(), notes: vec![note] });
         if libraries.is_empty() {

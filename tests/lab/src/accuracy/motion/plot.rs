@@ -31,8 +31,7 @@ pub(super) fn diagrams(m: &Motion) -> Vec<(String, Drawing)> {
     .collect()
 }
 
-/// That runs which have lost the motion are not drawn: next to their errors all others would be one
-/// line.
+/// Note that lost runs are not drawn: next to their errors all others would look like one line.
 pub(super) fn lost(m: &Motion) -> Option<String> {
     let count = m.curves.iter().flat_map(|c| &c.samples).filter(|s| s.lost).count();
     let runs = counted(count, "run");

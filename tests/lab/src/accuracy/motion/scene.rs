@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::session::Session;
 use crate::table::counted;
 
-/// What moves in a scene.
+/// The subject of a scene's motion.
 pub(super) fn subject(session: &Session) -> Result<Subject, Error> {
     let scene = &session.scene;
     if scene.impact.is_some() {
@@ -50,7 +50,7 @@ fn pushes_base(controller: &Controller) -> bool {
 }
 
 impl Subject {
-    /// What its controller means for what is measured.
+    /// Notes about its controller.
     pub(super) fn notes(&self) -> Vec<String> {
         let (controller, period) = &self.control;
         let mut notes = Vec::new();
@@ -66,7 +66,7 @@ impl Subject {
         notes
     }
 
-    /// What rows at these times mean.
+    /// The note about rows at these times.
     fn of_table(&self, times: &[f64], sampled: bool) -> String {
         let rows = format!("the controller follows a table of {}", counted(times.len(), "row"));
         if sampled {

@@ -1,4 +1,4 @@
-//! What moves, and its way to the end.
+//! The moving robot, and its run to the end.
 
 use std::time::Instant;
 
@@ -9,10 +9,10 @@ use articulated_core::model::Model;
 use articulated_motion::Drive;
 use articulated_scene::Controller;
 
-/// A run that takes more steps is given up.
+/// Maximum number of steps of a run.
 const MOST: u64 = 1_000_000;
 
-/// What moves.
+/// The moving robot.
 #[derive(Clone, Debug)]
 pub(crate) struct Subject {
     /// The robot with its effects.
@@ -21,20 +21,20 @@ pub(crate) struct Subject {
     pub q: Vec<f64>,
     /// How it moves there.
     pub v: Vec<f64>,
-    /// What acts, and the time between its samples, s, if it is sampled.
+    /// Its control, and the time between samples, s, if it is sampled.
     pub control: (Controller, Option<f64>),
     /// From when, s.
     pub start: f64,
     /// How long, s.
     pub seconds: f64,
-    /// Whether nothing acts on it from outside, so that its momentum stays.
+    /// Whether no external force acts on it, so that its momentum is constant.
     pub free: bool,
 }
 
 /// q and v.
 pub(super) type State = (Vec<f64>, Vec<f64>);
 
-/// How the steps of a run are chosen.
+/// The choice of the steps of a run.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum How {
     /// All of this length, s.
@@ -50,11 +50,11 @@ pub(super) struct End {
     pub(super) wall: f64,
     /// Missing or too much, relative to the largest kinetic or potential energy at the ends.
     pub(super) energy: Option<f64>,
-    /// The change of momentum, relative to it, where nothing acts from outside.
+    /// The relative change of momentum, if no external force acts.
     pub(super) momentum: Option<f64>,
 }
 
-/// To the end; `None` if it does not get there.
+/// Runs to the end; `None` if it does not reach it.
 pub(super) fn run(subject: &Subject, id: IntegratorId, how: How) -> Option<End> {
     let mut settings = Settings {
         integrator: id,
@@ -92,8 +92,7 @@ fn change(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / norm.max(1e-12)
 }
 
-/// Energy and momentum of a motion on which nothing acts but gravity, from its last state: as
-/// [`End`] has them.
+/// Energy and momentum of a motion under gravity alone, from its last state: as in [`End`].
 pub(super) fn drift(subject: &Subject, end: &State) -> Option<(f64, Option<f64>)> {
     let (model, mut ws) = (&subject.model, Workspace::new(&subject.model));
     let mut at = |q: &[f64], v: &[f64]| {
@@ -108,8 +107,8 @@ pub(super) fn drift(subject: &Subject, end: &State) -> Option<(f64, Option<f64>)
     Some(((b.0 + b.1 - a.0 - a.1).abs() / size, a.2.zip(b.2).map(|(a, b)| change(&a, &b))))
 }
 
-/// How far the motion goes and how fast it is at its ends: the largest number of all, at least 1
-/// rad, m, and those a second.
+/// The extent of the motion and its speed at its ends: the largest number of all, at least 1 rad,
+/// m, and the same per second.
 pub(super) fn extent(subject: &Subject, end: &State) -> f64 {
     let way = difference(subject, &(subject.q.clone(), end.1.clone()), end);
     subject.v.iter().chain(&end.1).map(|v| v.abs()).fold(way.max(1.0), f64::max)

@@ -1,5 +1,5 @@
-//! Every integrator over steps or tolerances of many decades, against a reference that two of them
-//! agree on.
+//! Every integrator over steps or tolerances of many decades, against a reference on which two of
+//! them agree.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -16,7 +16,7 @@ use crate::error::Error;
 use crate::json::Units;
 use crate::native::Stepping;
 
-/// What is measured, and how.
+/// Settings of the measurement.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// How often each is timed, five times at most: the fastest counts.
@@ -54,10 +54,9 @@ pub struct Motion {
     pub(crate) degrees_of_freedom: usize,
     /// The two that the reference is from.
     pub(crate) references: [String; 2],
-    /// How far they are from each other: nothing below 100 times this is shown.
+    /// The difference of the two: errors below 100 times this are not shown.
     pub(crate) agreement: f64,
-    /// How far the motion goes and how fast it is at its ends: a run whose error is larger has lost
-    /// it.
+    /// The extent of the motion and its speed at its ends: a run with a larger error is lost.
     pub(crate) extent: f64,
     /// Where it was measured.
     pub(crate) processor: String,
@@ -67,9 +66,9 @@ pub struct Motion {
     pub(crate) commit: &'static str,
     /// Units of the numbers.
     pub(crate) units: Units,
-    /// What is to be known of it.
+    /// Notes on it.
     pub(crate) notes: Vec<String>,
-    /// One an integrator; those of peers come last.
+    /// One for each integrator; those of peers come last.
     pub(crate) curves: Vec<Curve>,
 }
 
@@ -102,16 +101,16 @@ pub(crate) struct Sample {
     pub evaluations: u64,
     /// Of the wall's clock, s.
     pub wall: f64,
-    /// The largest difference of a number of the last state, rad, m, rad/s, m/s.
+    /// The largest difference in the last state, rad, m, rad/s, m/s.
     pub error: f64,
     /// Error of the balance of energy at the end, relative to the largest kinetic or potential
     /// energy.
     pub energy: Option<f64>,
-    /// The change of the momentum, relative to it, where nothing acts from outside.
+    /// The relative change of the momentum, if no external force acts.
     pub momentum: Option<f64>,
     /// Whether the reference is accurate enough to determine this error.
     pub resolved: bool,
-    /// Whether the error is larger than the motion itself, as that of steps that are not stable is.
+    /// Whether the error exceeds the motion itself, as for unstable steps.
     pub lost: bool,
 }
 
@@ -128,7 +127,7 @@ pub(super) const COARSE: f64 = 3e-2;
 /// A power this near to the order is the order.
 const SHOWN: f64 = 0.3;
 
-/// Measures everything; of the repetitions of a run the fastest counts.
+/// Measures everything; the fastest repetition of a run counts.
 pub(super) fn all(scene: &str, subject: &Subject, peers: &Peers, settings: &Settings) -> Result<Motion, Error> {
     let repetitions = settings.repetitions.min(5) as usize;
     let progress = Progress::new(1 + integrators().len() + peers.count());
@@ -199,8 +198,7 @@ pub(super) fn reference(subject: &Subject) -> Result<Reference, Error> {
     Ok((names, found[at].2.state.clone(), apart.max(1e-16)))
 }
 
-/// One integrator over its settings, against the last state of the reference and what that can
-/// tell.
+/// One integrator over its settings, against the last state of the reference and its accuracy.
 pub(super) fn curve(
     subject: &Subject,
     integrator: &'static Integrator,
@@ -213,7 +211,7 @@ pub(super) fn curve(
 }
 
 impl Curve {
-    /// With what its samples say of the order.
+    /// With the order that its samples show.
     pub(super) fn new(integrator: String, peer: bool, order: u32, samples: Vec<Sample>) -> Self {
         let finest = finest(&samples);
         let slope = slope(&samples).and_then(|_| power(&finest));
@@ -227,8 +225,8 @@ impl Curve {
     }
 }
 
-/// A sample for each setting, of several the fastest, until errors are beyond what the reference
-/// can tell: twice is enough.
+/// A sample for each setting, the fastest of several, until two errors are below the accuracy of
+/// the reference.
 pub(super) fn samples<T>(settings: &[T], repetitions: usize, take: &mut dyn FnMut(&T) -> Option<Sample>) -> Vec<Sample> {
     let mut samples: Vec<Sample> = Vec::new();
     for setting in settings {
@@ -244,7 +242,7 @@ pub(super) fn samples<T>(settings: &[T], repetitions: usize, take: &mut dyn FnMu
     samples
 }
 
-/// What a run has come to.
+/// The result of a run.
 pub(super) fn sample(subject: &Subject, (end, agreement): (&State, f64), how: How, run: &End) -> Sample {
     let error = difference(subject, &run.state, end);
     let (step, tolerance) = match how {
@@ -256,8 +254,8 @@ pub(super) fn sample(subject: &Subject, (end, agreement): (&State, f64), how: Ho
     Sample { step, tolerance, evaluations, wall, error, energy, momentum, resolved, lost }
 }
 
-/// The logarithms of evaluations and errors of the samples that the reference can tell and that are
-/// past the first coarse ones.
+/// The logarithms of evaluations and errors of the samples above the accuracy of the reference,
+/// without the first coarse ones.
 fn points(samples: &[Sample]) -> Vec<(f64, f64)> {
     let within = |s: &&Sample| s.resolved && s.error > 0.0 && s.error < COARSE;
     samples.iter().filter(within).map(|s| ((s.evaluations as f64).log10(), s.error.log10())).collect()
@@ -277,8 +275,8 @@ pub(super) fn slope(samples: &[Sample]) -> Option<f64> {
     if wide < 0.5 { None } else { power(&points) }
 }
 
-/// The slope, downward, of a straight line through points; of three at least that do not stand
-/// above each other.
+/// The negative slope of a straight line through the points, which must be at least three with
+/// different abscissas.
 fn power(points: &[(f64, f64)]) -> Option<f64> {
     let n = points.len() as f64;
     let (x, y) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);

@@ -36,14 +36,14 @@ Energy: missing or too much at the end, relative to the largest kinetic or poten
 Power: the slope of a straight line through the logarithms of the finest rows that the reference can tell, half of these and three at least. The order is that of short \
 steps; it does not show where steps are longer than that, or where evaluations do not grow as steps do (steps that are refused, rounds of an implicit method).";
 
-/// What was measured of the order.
+/// The measured order.
 fn power(c: &Curve) -> String {
     let Some(slope) = c.slope else { return "; too few rows to measure it".into() };
     let seen = if c.shows_order() { "" } else { ", which does not show here" };
     format!("{seen}; measured over the finest {} rows: the error falls as the power {slope:.2} of the evaluations", c.slope_rows)
 }
 
-/// What was measured.
+/// The description of the measurement.
 pub(super) fn head(m: &Motion) -> String {
     let [a, b] = &m.references;
     let mut out = format!(
@@ -75,7 +75,7 @@ fn row(s: &Sample) -> Vec<String> {
     ]
 }
 
-/// Marked where it is below what the reference can tell.
+/// Marked if it is below the accuracy of the reference.
 fn error(s: &Sample) -> String {
     match s {
         Sample { lost: true, .. } => format!("lost {}", number(s.error)),
@@ -110,7 +110,7 @@ pub(super) fn advice(m: &Motion, wish: f64) -> String {
     }
 }
 
-/// An integrator with its setting, and what that comes to.
+/// An integrator with its setting and its results.
 fn summary(Run { integrator, sample: s, .. }: &Run<'_>) -> String {
     let how = s.step.map_or_else(|| format!("tolerance {:.1e}", s.tolerance.unwrap_or_default()), |h| format!("steps of {h:.2e} s"));
     format!("{integrator} with {how}: error {}, {} evaluations, {:.2} ms", error(s), s.evaluations, s.wall * 1e3)
@@ -171,8 +171,8 @@ mod tests {
         assert!(csv(&m).lines().nth(1).unwrap().ends_with(",true,true"));
     }
 
-    /// Of dop853, its errors and tolerances on the pendulum: 3.2e-6 is a lucky hit, and the last
-    /// two are below what the reference can tell.
+    /// Errors and tolerances of dop853 on the pendulum: 3.2e-6 is a lucky hit, and the last two are
+    /// below the accuracy of the reference.
     fn lucky() -> Motion {
         let errors = [(1e-5, 1.9e-4), (3.2e-6, 1.9e-5), (1e-6, 1.3e-4), (3.2e-7, 1.6e-5), (1e-7, 3e-6), (1e-11, 8.6e-11), (3.2e-12, 3e-11)];
         let sample = |(k, (tolerance, error)): (usize, (f64, f64))| Sample {
@@ -191,7 +191,7 @@ mod tests {
     fn a_lucky_hit_is_not_advised() {
         let told = advice(&lucky(), 1e-4);
         assert!(told.lines().all(|l| l.contains("dop853 with tolerance 3.2e-7: error 1.6e-5")), "{told}");
-        // The finest run has none beside it that would say that it is no hit.
+        // The finest run has no neighbour that would exclude a lucky hit.
         assert!(advice(&lucky(), 5e-11).contains("no run is accurate to 5e-11"));
         assert!(advice(&Motion { curves: Vec::new(), ..motion() }, 1.0).contains("no run"));
         let mut broken = lucky();

@@ -14,7 +14,7 @@ use crate::ledger::Stage;
 use crate::robot::named;
 use crate::table::{Table, counted, freedom, plain, wrapped};
 
-/// The summary, then what was measured, then the tables.
+/// The summary, then the description of the measurement, then the tables.
 pub(super) fn text(report: &Report) -> String {
     let mut out = wrapped(&summary(report)) + "\n" + &head(report);
     let stages = stages_of(report);
@@ -70,7 +70,7 @@ const BATCHES: &str = "blocks: 8 states (f32: 16) with each of their numbers sid
                        generated/it: how many times its time a call of generated code takes";
 const DEPENDENT: &str = "as in a controller, where the next state follows from the last result: q + 0·(first + last number of the result); where calls do \
                          not depend on each other, as above, a processor begins a call before the last one has ended; –: the result stays inside the library";
-/// What errors are against.
+/// Reference for errors.
 fn against(report: &Report) -> &'static str {
     match report.reference {
         Against::Textbook => "an independent evaluation",
@@ -79,7 +79,7 @@ fn against(report: &Report) -> &'static str {
 }
 
 const ERRORS: &str = "forward: of the result; backward: of the torques that the result needs; states: on which they were looked at, without those where the function is singular";
-/// What the stages are that the table has; those that do the same together.
+/// The meaning of the stages in the table; equal ones together.
 fn stages_of(report: &Report) -> String {
     let titles = titles(report);
     let mut told: Vec<(Vec<&str>, &str)> = Vec::new();
@@ -95,7 +95,7 @@ fn stages_of(report: &Report) -> String {
 const SIZES: &str = "depth: the longest chain of operations that wait for each other; way chosen: how it is computed, where there are several ways, by count (LTDL: by factors of the mass \
                      matrix; ABA: by the articulated-body algorithm)";
 
-/// A row for each function, under the name of its group where there are several.
+/// A row for each function, under the name of its group if there are several groups.
 fn by_function(report: &Report, table: &mut Table, cells: impl Fn(&FunctionReport) -> Option<Vec<String>>) {
     let several = report.functions.iter().any(|f| f.group != report.functions[0].group);
     let mut group = "";

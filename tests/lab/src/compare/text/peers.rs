@@ -11,7 +11,7 @@ fn names(report: &Report) -> Vec<&str> {
     report.peers.iter().map(|p| p.peer.as_str()).filter(|name| timed(name)).collect()
 }
 
-/// A line for each peer: its letter, its name, and what is known of its library.
+/// A line for each peer: its letter, its name, and details of its library.
 pub(super) fn letters(report: &Report) -> String {
     let line = |(k, name): (usize, &str)| {
         let library = report.peers.iter().find(|p| p.peer == name).map(|p| &p.library);
@@ -104,13 +104,13 @@ pub(super) fn builds(report: &Report) -> Table {
     table
 }
 
-/// The largest difference of any peer, each as a part of what it may be, shown as it is.
+/// The largest difference of any peer, relative to its bound, shown as it is.
 fn difference(f: &FunctionReport) -> Option<f64> {
     let known = f.peers.iter().filter_map(|p| Some((p.largest_difference?, p.bound)));
     known.reduce(|a, b| if a.0.is_nan() || a.0 / a.1 >= b.0 / b.1 { a } else { b }).map(|(d, _)| d)
 }
 
-/// What is known of generated code of others: of each engine's fastest build, where it has any.
+/// Details of others' generated code: for each engine's fastest build, if it has any.
 pub(super) fn costs(report: &Report) -> Table {
     let names = names(report);
     let generated = |engine: &&str| report.functions.iter().any(|f| f.fastest_of(engine).is_some_and(|p| p.cost.is_some()));

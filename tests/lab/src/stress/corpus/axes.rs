@@ -70,7 +70,7 @@ fn unnormalised() -> Vec<Row> {
 /// Pitch at a right angle, where roll and yaw are the same turn; exactly, nearly, and as files
 /// round it.
 #[allow(clippy::approx_constant)]
-// Why: that is what files have.
+// Why: such numbers occur in files.
 fn gimbal() -> Vec<Row> {
     let right = std::f64::consts::FRAC_PI_2;
     let pitches = [("π/2", right), ("π/2 + 1e-15", right + 1e-15), ("1.5708", 1.5708), ("−1.57079632679", -1.570_796_326_79)];

@@ -38,7 +38,7 @@ fn far_off(exponent: i32) -> Vec<Row> {
     rows
 }
 
-/// A free body whose frame is 1 m from its centre of mass: its inertia about that is the difference
+/// A free body with its frame 1 m from its centre of mass: its inertia about that is the difference
 /// of two large ones.
 fn about_its_own_center() -> Vec<Row> {
     let case = Case::new(
@@ -72,7 +72,7 @@ fn triangle() -> Vec<Row> {
     rows
 }
 
-/// The same bodies, with inertias given in frames that are turned every which way.
+/// The same bodies, with inertias given in arbitrarily turned frames.
 fn turned() -> Vec<Row> {
     let case = Case::new(
         NAME,

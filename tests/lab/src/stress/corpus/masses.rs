@@ -1,4 +1,4 @@
-//! Masses that differ by many powers of ten, and none at all.
+//! Masses that differ by many powers of ten, and zero masses.
 
 use articulated_core::description::{Base, JointKind, Origin};
 use articulated_core::index::BodyId;
@@ -90,7 +90,7 @@ fn tiny() -> Vec<Row> {
     rows
 }
 
-/// Nothing but that results are finite, and as near as denormal numbers stand.
+/// Only checks that results are finite, and accurate to the spacing of denormal numbers.
 fn denormal(case: &Case, model: &articulated_core::model::Model<f64>, state: &State) -> Vec<Row> {
     use crate::stress::judge::call;
     use articulated_core::algorithm::FunctionId;
@@ -99,8 +99,8 @@ fn denormal(case: &Case, model: &articulated_core::model::Model<f64>, state: &St
     vec![case.holds("inverse_dynamics is finite, f64", finite)]
 }
 
-/// Rods without any inertia about their own axis: a turn about the common axis of a straight row of
-/// them moves nothing.
+/// Rods without any inertia about their own axis: in a straight row of them, a turn about the
+/// common axis moves no mass.
 fn thin_aligned() -> Vec<Row> {
     let rod = Some(Body::rod(1.0, 1.0, 0.0));
     let model = built(&rods(), Base::Fixed);
@@ -126,7 +126,7 @@ fn thin_aligned() -> Vec<Row> {
     rows
 }
 
-/// Two joints about one axis, with nothing between.
+/// Two joints about one axis, without a link between them.
 fn repeated() -> Vec<Row> {
     let case = Case::new(
         NAME,
@@ -142,9 +142,9 @@ fn repeated() -> Vec<Row> {
     rows
 }
 
-/// The same with next to no mass between, on a slide: the two turn against each other a billion
-/// times as fast as anything else moves, and roundings of that reach the slide, which they do not
-/// move. Refined they do not.
+/// The same with almost no mass between, on a slide: the two turn against each other a billion
+/// times as fast as the other motions, and their rounding errors reach the slide, which they do not
+/// move. With refinement they do not reach it.
 fn nearly_repeated() -> Vec<Row> {
     let case = Case::new(
         NAME,

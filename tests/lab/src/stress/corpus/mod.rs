@@ -13,7 +13,7 @@ mod turns;
 
 use super::row::Row;
 
-/// How much of a chapter is run.
+/// The part of a chapter to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {
     /// Sampled: seconds.

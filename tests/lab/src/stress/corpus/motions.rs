@@ -1,4 +1,4 @@
-//! Motions: long runs, frequencies, and a pendulum that stands on its head.
+//! Motions: long runs, frequencies, and an inverted pendulum.
 
 use articulated::simulate::{Integrator, IntegratorId, NoTorque, Output, Recording, Settings, Simulation, integrators};
 use articulated_core::algorithm::FunctionId;
@@ -65,7 +65,7 @@ fn unbalanced(motion: &Recording) -> f64 {
     (0..motion.len()).filter_map(|i| motion.imbalance(i)).map(f64::abs).fold(0.0, worse) / largest
 }
 
-/// What fixed steps are taken for: nothing drifts, however long.
+/// The purpose of fixed steps: no drift in long runs.
 fn kept(effort: Effort) -> Vec<Row> {
     let end = if effort == Effort::Full { 100.0 } else { 10.0 };
     let run = |robot: &Model<f64>, integrator, step, q: &[f64], v: &[f64]| {
@@ -100,7 +100,7 @@ fn kept(effort: Effort) -> Vec<Row> {
             part(3, 4) / part(0, 1)
         });
         let name = format!("{integrator}, steps of {step} s: change of T + U in the last quarter over that in the first");
-        // Runge and Kutta's does drift: to be seen beside the two that do not.
+        // The Runge-Kutta method does drift: shown for comparison with the two that do not.
         rows.push(if integrator == IntegratorId::rk4 { case.shown(name, growth, "") } else { case.row(name, growth, 1.01, "") });
     }
     rows
@@ -115,8 +115,8 @@ fn turned(robot: &Model<f64>, motion: &Recording) -> f64 {
     (0..motion.len()).map(at).map(|x| worse(part(&x, 0) / size(0), part(&x, 3) / size(3))).fold(0.0, worse)
 }
 
-/// The first frequency of a chain that hangs: j₀,₁/2·√(g/l), j₀,₁ the first zero of J₀, and with N
-/// rods a little more.
+/// The first frequency of a hanging chain: j₀,₁/2·√(g/l), j₀,₁ the first zero of J₀; with N rods it
+/// is a little higher.
 fn frequency(effort: Effort) -> Vec<Row> {
     let lengths: &[usize] = if effort == Effort::Full { &[30, 60, 100, 200, 300] } else { &[30, 60] };
     let case = Case::new(
@@ -158,7 +158,7 @@ fn first_frequency(n: usize) -> f64 {
     value.sqrt()
 }
 
-/// Kapitza's pendulum: a pendulum stands upright on a pivot that shakes if (aω)² > 2gl.
+/// Kapitza's pendulum: a pendulum is stable upright on a pivot that shakes if (aω)² > 2gl.
 fn kapitza(effort: Effort) -> Vec<Row> {
     let case = Case::new(
         NAME,

@@ -1,4 +1,4 @@
-//! Simplification: what each model pass does to the error of inverse dynamics.
+//! Simplification: the effect of each model pass on the error of inverse dynamics.
 
 use articulated_codegen::model_pass::{View, model_passes};
 use articulated_core::description::{Base, Description};
@@ -13,7 +13,7 @@ use crate::stress::row::{Case, Row};
 
 pub(super) const NAME: &str = "passes";
 
-/// By how much a pass may make an error worse, where it was a rounding of the terms or more.
+/// Maximum factor by which a pass may increase an error of at least a rounding of the terms.
 const FACTOR: f64 = 4.0;
 
 const WHY: &str = "moving mass and frames adds and takes away numbers of different sizes";

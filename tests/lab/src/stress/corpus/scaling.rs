@@ -64,7 +64,7 @@ fn scaled(plain: &Description, m: i32, l: i32) -> Description {
     out
 }
 
-/// Whether a function gives the same digits of both.
+/// Whether a function returns the same digits for both.
 fn same(function: FunctionId, small: &View<f64>, large: &View<f64>, state: &State, [m, l, t]: [i32; 3]) -> bool {
     let slides: Vec<i32> = small.model.joints().iter().map(|j| if j.kind.is_linear() { l } else { 0 }).collect();
     let units = |x: &[f64], per_time: i32| x.iter().zip(&slides).map(|(x, s)| x * two(s - per_time * t)).collect::<Vec<f64>>();

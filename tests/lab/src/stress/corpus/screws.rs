@@ -55,8 +55,8 @@ fn coefficients() -> Vec<Row> {
                 exact.error_of(found(&HalfAngle::new(x)), ulp(size))
             })
         };
-        // cos(θ/2) goes through zero at π: it is measured by ulps of 1, as the quaternion is that
-        // it is in.
+        // cos(θ/2) goes through zero at π: its error is in ulps of 1, like that of the quaternion
+        // that contains it.
         case.row("error, f64", angles().map(error).fold(0.0, worse), 4.0, "ulp")
     };
     COEFFICIENTS.into_iter().map(one).collect()
@@ -71,7 +71,7 @@ fn axis() -> Vector3<f64> {
     Vector3::new(0.48, -0.6, 0.64)
 }
 
-/// ‖ω‖ = 10⁻ᵏ: goes over to the translation without a step.
+/// ‖ω‖ = 10⁻ᵏ: approaches the translation without a jump.
 fn small_turns() -> Vec<Row> {
     let case =
         Case::new(NAME, "screws with a turn of 10⁻ᵏ rad, k = 0 … 18", "a screw whose turn dies away must go over to the translation");
@@ -112,7 +112,7 @@ fn near_half_a_turn() -> Vec<Row> {
             let q = Quaternion::exp(w);
             let precise = Quaternion { vector: q.vector.map(Big::from_f64), scalar: Big::from_f64(q.scalar) };
             let of_quaternion = precise.log().iter().zip(q.log().iter()).map(|(e, f)| e.error_of(*f, U * PI)).fold(0.0, worse);
-            // The rotation is a rounded one; the logarithm is that of the one nearby.
+            // The rotation is rounded; the logarithm is that of the nearby one.
             let log = log_rotation(&exp_rotation(w));
             let of_matrix = log.iter().zip(w.iter()).map(|(f, e)| (f - e).abs() / (U * PI)).fold(0.0, worse);
             [of_quaternion, of_matrix]

@@ -1,5 +1,5 @@
-//! Stiff effects: implicit integrators decay as the motion does, explicit ones refuse and say which
-//! step they can take.
+//! Stiff effects: implicit integrators decay like the motion, explicit ones refuse and report their
+//! stable step.
 
 use articulated::simulate::{IntegratorId, NoTorque, Output, Recording, Settings, SimulateError, Simulation, integrators};
 use articulated_core::description::{JointKind, Origin};
@@ -30,7 +30,7 @@ fn slider(effect: EffectId, on_link: bool, parameters: Vec<f64>, weight: bool) -
     robot.with_effects(&[Applied { effect, on, at: Origin::default(), parameters }]).expect("parameters that the effect takes")
 }
 
-/// A slider, where it begins, and how it is to end.
+/// A slider, its start, and its expected end.
 struct Motion {
     robot: Model<f64>,
     q: f64,
@@ -38,18 +38,18 @@ struct Motion {
     end: f64,
     /// Place at the end, m.
     rest: f64,
-    /// How far from it is right, m.
+    /// Tolerated distance from it, m.
     near: f64,
 }
 
 impl Motion {
-    /// Nothing: steps chosen by tolerances.
+    /// `step`: `None` for steps chosen by tolerances.
     fn run(&self, integrator: IntegratorId, step: Option<f64>) -> Result<Recording, SimulateError> {
         let settings = Settings { integrator, end: self.end, step, output: Output::Steps, rtol: 1e-8, atol: 1e-12, ..Settings::default() };
         Simulation::new(&self.robot, settings)?.run(&[self.q], &[self.v], &mut NoTorque, &mut [])
     }
 
-    /// How far from its rest a motion ended, m.
+    /// Distance of a motion's end from its rest, m.
     fn off(&self, motion: &Recording) -> f64 {
         (motion.q[motion.q.len() - 1] - self.rest).abs()
     }
@@ -66,9 +66,9 @@ impl Motion {
         }
     }
 
-    /// Every explicit integrator refuses these steps and says from which on it is stable; with
-    /// three tenths of these, since a force that bends within a step is not its tangent, it comes
-    /// to rest in the right place.
+    /// Every explicit integrator refuses these steps and reports its stable step; with three tenths
+    /// of that, since a force that bends within a step differs from its tangent, it comes to rest
+    /// in the right place.
     fn refused(&self, case: &Case, step: f64) -> Vec<Row> {
         explicit()
             .map(|integrator| {
@@ -76,7 +76,7 @@ impl Motion {
                 let off = loop {
                     match self.run(integrator, Some(h)) {
                         Ok(motion) => break self.off(&motion),
-                        // It may get stiffer on its way than where it was refused.
+                        // On its way it may get stiffer than at the refusal.
                         Err(SimulateError::Unstable { admissible, .. }) if admissible < h && found.len() < 3 => {
                             found.push(admissible);
                             h = 0.3 * admissible;
@@ -100,7 +100,7 @@ fn explicit() -> impl Iterator<Item = IntegratorId> {
     integrators().iter().filter(|row| !row.implicit).map(|row| row.id)
 }
 
-/// How often a sequence changes its sign; what has died away has none.
+/// Number of sign changes of a sequence, without those of numbers that have decayed.
 fn flips(v: &[f64]) -> f64 {
     v.windows(2).filter(|w| w[0] * w[1] < 0.0 && w[1].abs() > 1e-12).count() as f64
 }
@@ -149,8 +149,7 @@ fn damping() -> Vec<Row> {
     rows
 }
 
-/// Whether a step of h·d/m = z is refused where it is unstable and only there, with the longest
-/// that is not.
+/// Whether a step of h·d/m = z is refused exactly if it is unstable, with the longest stable step.
 fn refuses_beyond(integrator: IntegratorId, z: f64, h: f64, motion: &Motion) -> bool {
     // The largest z with |R(−z)| ≤ 1.
     let limit = match integrator {

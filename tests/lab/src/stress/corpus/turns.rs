@@ -58,8 +58,8 @@ fn free() -> Model<f64> {
         .model()
 }
 
-/// What is stated of quaternions that are not of norm one: the matrix is off by about 2ε, and a
-/// step normalises.
+/// The documented effect of quaternions with a norm other than one: the matrix has an error of
+/// about 2ε, and a step normalises.
 fn unnormalised() -> Vec<Row> {
     let case = Case::new(
         NAME,

@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::stress::judge::State;
 use crate::stress::machine::{cast, widened};
 
-/// What was generated, and what came of it.
+/// The generated code and its compilation.
 #[derive(Debug)]
 pub struct BuiltRobot {
     pub(super) generated: Generated,
@@ -17,14 +17,14 @@ pub struct BuiltRobot {
 }
 
 impl BuiltRobot {
-    /// Of what was generated.
+    /// Compiles generated code.
     pub(crate) fn of(generated: Generated) -> Result<Self, Error> {
         let rustc = Rustc::find().map_err(|e| Error::tool(&e))?;
         let compiled = Compiled::build(&rustc, &generated).map_err(|e| Error::tool(&e))?;
         Ok(Self { generated, compiled })
     }
 
-    /// Of a description, with these functions.
+    /// From a description, with these functions.
     pub(super) fn of_description(name: &str, robot: &Description, level: Precision, functions: &[FunctionId]) -> Result<Self, Error> {
         let mut request = Request::new(format!("{name}.urdf"), articulated_formats::urdf::write(robot));
         request.options.functions = functions.iter().map(|f| f.name().into()).collect();
@@ -50,7 +50,7 @@ impl BuiltRobot {
         State { q: round(q), v: round(v), a: round(a), tau: round(tau) }
     }
 
-    /// Nothing where it could not be called.
+    /// `None` if it could not be called.
     pub(super) fn call(&self, function: FunctionId, arguments: &[Vec<f64>]) -> Option<Vec<f64>> {
         let slices: Vec<&[f64]> = arguments.iter().map(Vec::as_slice).collect();
         let mut out = vec![f64::NAN; function.row::<f64>().len(self.generated.model.shape())];

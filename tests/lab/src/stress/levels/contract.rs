@@ -1,4 +1,4 @@
-//! What a level of accuracy promises of a number.
+//! The contract of a level of accuracy for a number.
 
 use articulated_codegen::{Arithmetic, Precision, TrigAccuracy};
 
@@ -7,16 +7,16 @@ use crate::stress::judge::BACKWARD;
 const DOUBLE: f64 = f64::EPSILON / 2.0;
 const SINGLE: f64 = f32::EPSILON as f64 / 2.0;
 
-/// How far a result may be off:
+/// Maximum error of a result:
 ///
 /// ```text
 /// r |x| + 64 u Σ|terms| + 3 N σ Σ‖terms‖
 /// ```
 ///
-/// u is that of the arithmetic, r that of the number that the result is rounded to at last. σ is
-/// the absolute error of a sine: a rotation by sines that are off by σ changes a vector by √2 σ of
-/// its length, and a torque's terms pass N joints on their way out and N on their way back, 2√2 N <
-/// 3 N; lengths are meant, since a sine that is nothing is off by σ too.
+/// u is the unit roundoff of the arithmetic, r that of the final rounding of the result. σ is the
+/// absolute error of a sine: a rotation by sines with errors σ changes a vector by √2 σ of its
+/// length, and a torque's terms pass N joints on their way out and N on their way back, 2√2 N < 3
+/// N; lengths count, since a sine of zero has an error of σ too.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contract {
     roundoff: f64,
@@ -26,12 +26,12 @@ pub(super) struct Contract {
 }
 
 impl Contract {
-    /// Of a robot of so many joints.
+    /// For a robot of this number of joints.
     pub(super) fn of(level: Precision, joints: usize) -> Self {
         let (roundoff, result) = match level.arithmetic {
             Arithmetic::Single => (SINGLE, 0.0),
             Arithmetic::SingleByDouble => (DOUBLE, SINGLE),
-            // Constants are those of the model in f64, whatever is computed of them.
+            // Constants are those of the model in f64, for all computations.
             Arithmetic::Double | Arithmetic::Compensated | Arithmetic::DoubleDouble => (DOUBLE, 0.0),
         };
         let sines = match level.sines {
@@ -42,7 +42,7 @@ impl Contract {
         Self { roundoff, result, sines, joints: joints as f64 }
     }
 
-    /// An error over what is allowed, of a number with these terms.
+    /// The ratio of an error to the allowed one, for a number with these terms.
     pub(super) fn part(&self, error: f64, value: f64, terms: f64, norms: f64) -> f64 {
         if error == 0.0 { 0.0 } else { error / self.allowed(value, terms, norms) }
     }
@@ -51,7 +51,7 @@ impl Contract {
         self.result * value.abs() + BACKWARD * self.roundoff * terms + 3.0 * self.joints * self.sines * norms
     }
 
-    /// In what a part of what is allowed is shown: its unit, and how many of it are allowed.
+    /// The unit of shown errors, and the allowed number of units.
     pub(super) fn unit(&self) -> (f64, &'static str) {
         match (self.result == 0.0, self.sines == 0.0) {
             (true, true) => (BACKWARD, "u"),

@@ -14,8 +14,8 @@ use crate::stress::judge::{Judge, State, call, called, scale};
 use crate::stress::machine::{cast, exact};
 use crate::stress::row::{Case, Row};
 
-/// Of sums of two doubles: what is left beyond one rounding of the result, in units of 2⁻¹⁰⁰ of the
-/// terms.
+/// For sums of two doubles: the remainder beyond one rounding of the result, in units of 2⁻¹⁰⁰ of
+/// the terms.
 const SECOND_ORDER: f64 = 1.0;
 
 /// Every function that the code has, in these states.
@@ -25,7 +25,7 @@ pub fn rows(case: &Case, model: &Model<f64>, made: &BuiltRobot, states: &[State]
     let contract = Contract::of(made.level(), model.outward().count());
     let mut rows = Vec::new();
     for function in FUNCTIONS.into_iter().filter(|f| made.place(*f).is_some()) {
-        // Where M is singular there is nothing to be judged: the unchecked form gives anything.
+        // If M is singular there is no reference: the unchecked form returns any numbers.
         let states = if function.row::<f64>().inverts_mass_matrix() { &regular } else { &states };
         if !states.is_empty() {
             rows.extend(Judged { model, made, contract, function, by_terms: case.by_terms }.rows(case, states));
@@ -78,7 +78,7 @@ impl Judged<'_> {
         rows
     }
 
-    /// What the code computes, where that is all of it.
+    /// The graph of the code, if it is complete.
     fn graph(&self) -> Option<&Graph> {
         let graph = self.made.generated.graphs.get(self.made.place(self.function)?)?;
         (!graph.outputs.is_empty()).then_some(graph)
@@ -96,13 +96,14 @@ impl Judged<'_> {
         self.function.row::<f64>().takes.iter().map(|a| of(a).clone()).collect()
     }
 
-    /// The magnitudes of the terms as norms; of functions and robots that have none, as they are.
+    /// The magnitudes of the terms as norms; magnitudes themselves for functions and robots without
+    /// norms.
     fn norms(&self, function: FunctionId, arguments: &[&[f64]]) -> Option<Vec<f64>> {
         let norms = norms(function, self.model, arguments);
         if norms.is_empty() { scale(function, self.model, arguments) } else { Some(norms) }
     }
 
-    /// The largest error over what the contract allows, against the model in many digits.
+    /// The largest ratio of an error to the contract's, against the model in many digits.
     fn error(&self, state: &State) -> Option<f64> {
         let arguments = self.arguments(state);
         let found = self.made.call(self.function, &arguments)?;
@@ -117,8 +118,8 @@ impl Judged<'_> {
         }))
     }
 
-    /// Of forward dynamics: how far the torques that accelerations need are from those given, over
-    /// what is allowed of them.
+    /// For forward dynamics: the difference between the torques that accelerations need and the
+    /// given ones, over the allowed difference.
     fn backward(&self, state: &State) -> Option<f64> {
         let State { q, v, tau, .. } = state;
         let (a, n) = (self.made.call(self.function, &self.arguments(state))?, tau.len());
@@ -143,8 +144,8 @@ impl Judged<'_> {
         }))
     }
 
-    /// What rounding did over the bound that is guaranteed of it, where one is finite; none at
-    /// levels that have none.
+    /// The ratio of the rounding error to its guaranteed bound, if one is finite; `None` at levels
+    /// without bounds.
     fn of_bound(&self, states: &[State]) -> Option<f64> {
         let graph = self.graph()?;
         let mut reached = None;
@@ -162,7 +163,7 @@ impl Judged<'_> {
         reached
     }
 
-    /// Of sums of two doubles: what is left of the difference from the graph beyond a rounding of
+    /// For sums of two doubles: the remainder of the difference from the graph beyond a rounding of
     /// the result, in units of 2⁻¹⁰⁰ of the terms.
     fn second_order(&self, state: &State) -> Option<f64> {
         let arguments = self.arguments(state);
@@ -179,7 +180,7 @@ impl Judged<'_> {
         }))
     }
 
-    /// Magnitudes of the terms of the graph's results; of solutions the scale of a stable one.
+    /// Magnitudes of the terms of the graph's results; for solutions, the scale of a stable one.
     fn graph_terms(&self, arguments: &[Vec<f64>]) -> Option<Vec<f64>> {
         if self.function.row::<f64>().inverts_mass_matrix() {
             let slices: Vec<&[f64]> = arguments.iter().map(Vec::as_slice).collect();

@@ -1,4 +1,4 @@
-//! Generated code of hard robots at every level of accuracy, each by what it promises.
+//! Generated code of hard robots at every level of accuracy, each judged by its contract.
 
 mod built_robot;
 mod contract;
@@ -22,8 +22,8 @@ pub const NAME: &str = "levels";
 
 const WHY: &str = "constants pass through model passes, symbols and decimals, and sums through other orders and other numbers than where they were written";
 
-/// Functions of a robot of so many joints: derivatives of small ones, since those of sums of two
-/// doubles are tens of thousands of instructions.
+/// Functions of a robot of this number of joints: derivatives only of small ones, since those of
+/// sums of two doubles are tens of thousands of instructions.
 pub(super) fn functions(joints: usize, level: Precision) -> Vec<FunctionId> {
     let mut functions = vec![FunctionId::inverse_dynamics, FunctionId::mass_matrix, FunctionId::forward_dynamics];
     if joints <= if level.of_two() { 4 } else { DERIVATIVES } {

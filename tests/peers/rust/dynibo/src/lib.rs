@@ -16,7 +16,7 @@ use dynibo::{BaseState, FloatingRobot, Frame, Robot, Twist};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use peer_interface::{Engine, Joints, export};
 
-/// What the crate takes gravity for, m/s².
+/// Gravity of the crate, m/s².
 const GRAVITY: f64 = 9.80665;
 
 pub struct Dynibo {

@@ -2,10 +2,10 @@
 //! timed calls.
 //!
 //! Its placements are those of the parent in the child: a transform (E, t) takes a motion from the
-//! parent to the child, E = Rᵀ and t = Rᵀ p where (R, p) is the child in the parent. Its own reader
-//! of URDFs gives it (R, p), and its joints turn by E = exp(q â), so that is mended here: the
-//! bodies are those that its reader makes (one a link, fixed ones too), their placements inverted,
-//! and revolute joints get −q.
+//! parent to the child, E = Rᵀ and t = Rᵀ p if (R, p) is the child in the parent. Its own URDF
+//! reader passes (R, p), and its joints turn by E = exp(q â), so that is corrected here: the bodies
+//! are those of its reader (one per link, fixed ones too), their placements inverted, and revolute
+//! joints get −q.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -69,7 +69,7 @@ impl Single {
     }
 }
 
-/// The parent in the child, of a child that is so in its parent.
+/// The placement of the parent in the child, from that of the child in the parent.
 fn inverse(origin: &urdf_rs::Pose) -> SpatialTransform {
     let [roll, pitch, yaw] = *origin.rpy;
     let back = Rotation3::from_euler_angles(roll, pitch, yaw).inverse();

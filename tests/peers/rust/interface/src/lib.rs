@@ -42,7 +42,7 @@ impl Joints {
     }
 }
 
-/// An engine with one robot open. Arrays are as long as the robot's joints say.
+/// An engine with one robot open. The lengths of arrays are those of the robot's joints.
 pub trait Engine: Sized {
     /// Reads a URDF. Gravity in m/s².
     fn open(urdf: &Path, floating: bool, gravity: [f64; 3]) -> Result<Self, String>;
