@@ -1,4 +1,4 @@
-//! What it costs to look at the pivots of forward dynamics.
+//! Cost of checking the pivots of forward dynamics.
 //!
 //! The checked form is the generic library's and is not generated; here it is traced as if it were,
 //! so that its operations can be counted.
@@ -25,7 +25,7 @@ pub fn checked_cost(model: &Model<f64>) -> [Entry; 2] {
     [entry(format!("forward_dynamics by {way}"), plain), entry(format!("checked_forward_dynamics by {way}"), checked)]
 }
 
-/// What forward dynamics takes.
+/// The arguments of forward dynamics.
 const ARGUMENTS: [Argument; 3] = [Argument::Q, Argument::V, Argument::Tau];
 
 /// Accelerations, and by how much the smallest pivot is beyond its least.

@@ -1,5 +1,4 @@
-//! The functions of the table in groups: for lists that people read, and to ask for them by one
-//! word.
+//! Groups of the functions of the table: for printed lists, and to request several by one word.
 
 pub use articulated_core::algorithm::Group;
 use articulated_core::diagnostic::Spanned;
@@ -7,8 +6,7 @@ use articulated_core::diagnostic::Spanned;
 /// The word for all functions that the motion of a scene calls.
 pub const MOTION: &str = "motion";
 
-/// The same list with each group's functions in the place of its name, those of `motion` in the
-/// place of that, and each entry once.
+/// The list with each group's name, and `motion`, replaced by their functions; each entry once.
 pub(crate) fn expanded(list: &[Spanned<String>], motion: &[String]) -> Vec<Spanned<String>> {
     let mut all: Vec<Spanned<String>> = Vec::new();
     for entry in list {

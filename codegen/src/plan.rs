@@ -30,7 +30,7 @@ pub(crate) type Entry = (usize, FunctionSpec);
 /// Checks the request before programs are built. `None`: there is an error.
 pub(crate) fn plan(request: &Request, log: &mut Diagnostics) -> Option<Plan> {
     let options = &request.options;
-    // What needs no robot comes first: it is reported also if the robot cannot be read.
+    // Checks without the robot come first: they also run if the robot cannot be read.
     let entries = words(options, log);
     let mut robot = request.robot().build_into(log)?;
     if robot.model.nv() > MOST_FREEDOMS {

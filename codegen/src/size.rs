@@ -70,7 +70,7 @@ impl Tree {
         }
     }
 
-    /// Instructions of one function; `columns`: whether the solution of M X = B is left a loop.
+    /// Instructions of one function; `columns`: whether the solution of M X = B is a loop.
     fn instructions(&self, part: &FunctionTerm, columns: bool) -> f64 {
         let factors = 0.5 * self.squares;
         let inverse = self.freedoms * self.pairs;
@@ -152,7 +152,7 @@ mod tests {
         )
     }
 
-    /// Joints with axes that meet no axis of coordinates, so many in a row from one link.
+    /// Joints with axes that meet no axis of coordinates, in chains of `row` joints from one link.
     fn chain(joints: usize, row: usize, base: Base) -> Request {
         let parent = |k: usize| if k % row == 1 { 0 } else { k - 1 };
         let trunk = "<link name='b0'><inertial><mass value='2'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.2' iyz='0' izz='0.15'/></inertial></link>";
@@ -176,7 +176,7 @@ mod tests {
                 let spec = FunctionSpec::plain(function);
                 let predicted = megabytes(&spec, &whole, &Tree::of(&whole), &request.options);
                 let found = generated.source.len() as f64 / 1e6;
-                // What is small is never refused, and mostly helpers that all modules have.
+                // Small functions are never refused, and are mostly helpers that all modules have.
                 assert!(found < predicted.max(0.5) * 2.0 && predicted < found.max(0.5) * 2.0, "{} {found} {predicted}", function.name);
             }
         }

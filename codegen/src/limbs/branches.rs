@@ -21,7 +21,7 @@ impl Limbs {
     }
 }
 
-/// What makes two bodies alike, numbers apart.
+/// Properties that isomorphic bodies share; numbers may differ.
 #[derive(PartialEq, Eq)]
 struct Kind {
     joint: Joint,
@@ -34,13 +34,13 @@ struct Kind {
     effects: Vec<(EffectId, usize)>,
 }
 
-/// First body of a branch and the kinds of its bodies, if it stands for itself.
+/// First body of a branch and the kinds of its bodies, if it is independent of other branches.
 type Branch = (BodyId, Option<Vec<Kind>>);
 
 /// The sets of `width` isomorphic branches, from the base outward: the same joints and effects in
 /// the same order, whatever frames they carry. Constants may differ, so that mirrored limbs are
-/// isomorphic. Of more branches than `width` the first are a set, then the next; branches that are
-/// left over are searched for sets inside.
+/// isomorphic. More branches than `width` form several sets in order; left-over branches are
+/// searched for sets inside.
 ///
 /// No branch is in two sets: fingers of isomorphic arms belong to the arms.
 pub(crate) fn isomorphic_branches(model: &Model, width: usize) -> Vec<Limbs> {

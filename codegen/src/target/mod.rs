@@ -41,7 +41,7 @@ pub struct File {
     pub text: String,
 }
 
-/// What a target prints.
+/// Input of a target's printer.
 pub(crate) struct Module<'a> {
     pub(crate) request: &'a Request,
     /// All effects: the scene's, then the request's.
@@ -81,7 +81,7 @@ impl Target {
         }
     }
 
-    /// What functions may consist of.
+    /// The capabilities of the target with these options.
     pub(crate) fn capabilities(&self, options: &Options) -> Capabilities {
         match self {
             Self::Rust(rust) => rust::capabilities(options, rust),

@@ -13,7 +13,7 @@ pub(super) fn states_of_block(real: Real) -> usize {
     64 / real.bytes()
 }
 
-/// What vectors of a type have besides operators, as far as `source` calls it.
+/// Helpers of vectors of a type besides operators, as far as `source` calls them.
 pub(super) fn text(prefix: &str, real: Real, own_math: bool, source: &str) -> String {
     let tag = format!("{prefix}_{}_", real.name());
     let calls = |names: &[&str]| names.iter().any(|name| source.contains(&format!("{tag}{name}(")));
@@ -243,7 +243,7 @@ const SINES_F: &str = "\
     const @T_b bits = __builtin_convertvector((@T_db)rounded, @T_b);
 ";
 
-/// What sines of `float` are computed with.
+/// Types for the sines of `float`.
 const WIDE_TYPES: &str = "\
 #if @U_VECTOR
 typedef double @T_d __attribute__((vector_size(2 * @U_VECTOR)));
@@ -251,7 +251,7 @@ typedef unsigned long long @T_db __attribute__((vector_size(2 * @U_VECTOR)));
 #endif
 ";
 
-/// What follows: the quadrant, and angles beyond the limit.
+/// The rest: the quadrant, and angles beyond the limit.
 const TURN: &str = "\
     /* The quadrant: exchange for an odd one, and signs. */
     const @T_b odd = -(bits & 1);
@@ -291,7 +291,7 @@ static inline @T_v @T_sin_cos(@T_v x, @T_v *cosine) {
 ",
 ];
 
-/// A vector of so many doubles of one state.
+/// A vector of several doubles of one state.
 const LIMB_TYPES: &str = "\
 #if @U_VECTOR
 typedef double @T_v __attribute__((vector_size(@SIZE)));
@@ -319,7 +319,7 @@ static inline void @T_sin_cos(const @T_v *angles, @T_v *sines, @T_v *cosines) {
 ",
 ];
 
-/// The same of n angles that are no vector.
+/// The same for n angles that are not a vector.
 const OF_FOUR: &str = "\
 /* Sines and cosines of n angles, at most four, rad. */
 static inline void @P_sin_cos_of_four(double a, double b, double c, double d, int n, double *sines, double *cosines) {

@@ -16,9 +16,9 @@ const FOUR: usize = 4;
 pub(super) struct Printer<'a> {
     pub(super) body: &'a Body,
     pub(super) arguments: &'a [Argument],
-    /// What all names begin with.
+    /// Prefix of all names.
     pub(super) prefix: &'a str,
-    /// What the names of mathematical functions begin with.
+    /// Prefix of the names of mathematical functions.
     pub(super) math: &'a str,
     /// Where each number of the result is: the array, and the index there.
     pub(super) places: &'a dyn Fn(usize) -> (String, usize),
