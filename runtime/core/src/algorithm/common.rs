@@ -103,7 +103,7 @@ pub(super) fn twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes: A
         let columns = ws.columns_of(i);
         let joint = columns.clone().fold(Twist::zero(), |sum, c| sum + ws.columns[c].axis.times(v[ws.columns[c].at]));
         let twist = if moves_along(body, axes) { Twist { angular: joint.angular, linear: Vector3::zeros() } } else { carried + joint };
-        // Of a joint of one degree of freedom Ṡ = ψ̇, as S × S q̇ is nothing.
+        // For a joint of one degree of freedom Ṡ = ψ̇, since S × S q̇ = 0.
         let alone = columns.len() == 1;
         for c in columns {
             let column = &mut ws.columns[c];
@@ -115,8 +115,7 @@ pub(super) fn twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes: A
     }
 }
 
-/// Spatial acceleration of every body, on top of that of the base (−g, or nothing); after
-/// [`twists`].
+/// Spatial acceleration of every body, on top of that of the base (−g or zero); after [`twists`].
 pub(super) fn accelerations<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, v: &[S], a: &[S], base: Vector3<S>) {
     for i in model.outward() {
         let body = &model.bodies[i];

@@ -12,8 +12,8 @@ pub(super) struct Names {
     links: BTreeMap<String, LinkId>,
     frames: BTreeMap<String, usize>,
     joints: BTreeMap<String, JointId>,
-    /// For names that were asked for and taken, the first number that may be free. Names are added
-    /// only, so those below stay taken.
+    /// For names that were requested and taken, the first number that may be free. Names are only
+    /// added, so lower numbers stay taken.
     numbers: BTreeMap<String, usize>,
 }
 

@@ -1,7 +1,7 @@
 //! Monitors of an evaluation, for teaching and debugging. No function of the table calls them, so
 //! they cost nothing unless used.
 //!
-//! | what | says | does not say |
+//! | function | reports | does not report |
 //! |---|---|---|
 //! | [`orthonormality`], [`placement_orthonormality`] | how far RᵀR is from 1: grows as the number of turns that were composed | that a placement is right |
 //! | [`quaternion_norms`] | how far the quaternions of q are from norm one, which functions take for granted | |

@@ -141,8 +141,8 @@ fn pairs_carry_what_was_lost_to_first_order() {
         near(pair::div::<false>(a, b), double_double::div::<false>(a, b));
         let positive = if a.0 < 0.0 { (-a.0, -a.1) } else { a };
         near(pair::sqrt::<true>(positive), double_double::sqrt::<true>(positive));
-        // The angle itself is the standard library's; what is lost turns it: here so much that it
-        // is seen.
+        // The angle itself is the standard library's; the lost part rotates it, here enough to be
+        // visible.
         let (y, x) = ((a.0, 1e-9), (b.0, -2e-9));
         let (angle, lost) = pair::atan2::<true>(y, x);
         let size = (a.0 * a.0 + b.0 * b.0).sqrt();
