@@ -82,8 +82,8 @@ impl Build {
         Self { request, robot: Span::default(), scene: None, findings: Diagnostics::default() }
     }
 
-    /// For the scene at `path`, relative to the crate's folder. Later calls replace what the scene
-    /// says; locks, loads and robots to append are added to the scene's. Effects act on the robot
+    /// For the scene at `path`, relative to the crate's folder. Later calls replace entries of the
+    /// scene; locks, loads and robots to append are added to the scene's. Effects act on the robot
     /// as it is generated.
     ///
     /// ```no_run

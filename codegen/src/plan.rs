@@ -39,7 +39,7 @@ pub(crate) fn plan(request: &Request, log: &mut Diagnostics) -> Option<Plan> {
         log.push(Diagnostic::error(&request.file, Place::DOCUMENT, Code::TooLarge, found, expected));
         return None;
     }
-    // Mass that stays an input is mass all the same.
+    // Mass that stays an input counts as mass.
     let massless = massless(&robot.model);
     let parameters = parameters::parse(options, &mut robot, log);
     let model = robot.framed(match parameters.is_empty() {

@@ -94,7 +94,7 @@ impl<'a> Tree<'a> {
 
     /// `name = value`
     fn entry(&mut self, tokens: TokenStream, depth: usize) -> Result<Entry> {
-        // A key without its sign is a key all the same: it is not missing too.
+        // A key without its sign counts as present: it is not reported as missing too.
         let first: TokenStream = tokens.clone().into_iter().take(1).collect();
         let named = quoted.parse2(first.clone()).or_else(|_| plain.parse2(first));
         self.keys.extend(named.ok().filter(|_| depth == 0));

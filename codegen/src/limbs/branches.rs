@@ -25,7 +25,7 @@ impl Limbs {
 #[derive(PartialEq, Eq)]
 struct Kind {
     joint: Joint,
-    /// How far the body is behind its parent, in bodies.
+    /// Distance of the body from its parent, in bodies.
     behind: usize,
     /// Offsets in q and v from the branch's first body; of a follower, those of its leader.
     at: (usize, usize),

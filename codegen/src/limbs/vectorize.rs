@@ -205,7 +205,7 @@ impl Packer<'_> {
 
     /// The terms with sums of single lanes opened where other lanes have their terms one by one, as
     /// the lane whose sum was begun first has. Opens as many as leave the fewest terms that are not
-    /// in all lanes. `None` if that is none.
+    /// in all lanes. `None` if it opens none.
     fn opened(&self, terms: &[Term]) -> Option<Vec<Term>> {
         let mut opened = terms.to_vec();
         let mut tally = self.tally(&opened);

@@ -226,7 +226,7 @@ struct RowWriter<'a, 'b> {
     /// The unit that defines a value.
     defined: HashMap<Temp, usize>,
     sums: Sums,
-    /// What is stored behind each unit, and before the first.
+    /// The stores after each unit, and before the first.
     behind: Vec<Vec<Stmt>>,
     first: Vec<Stmt>,
 }
@@ -260,7 +260,7 @@ impl<'a, 'b> RowWriter<'a, 'b> {
         }
     }
 
-    /// Stores a group behind a unit, or before all.
+    /// Stores a group after a unit, or before all.
     fn store(&mut self, behind: Option<usize>, start: usize, group: &Group) {
         let store = Stmt::Store(self.stored(start, group));
         behind.map_or(&mut self.first, |unit| &mut self.behind[unit]).push(store);

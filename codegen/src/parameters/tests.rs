@@ -113,7 +113,7 @@ fn other_gravity_and_other_effects_are_those_of_a_request_that_asks_for_them() {
     let there = robot([0.3, -1.6, 0.7], [1.5, 0.7, 0.2, 0.02, -30.0]);
     assert_eq!(read(&here, &list).1[1].nominal, [0.0, 0.0, -9.81]);
     let mut numbers = nominal(&there, &list);
-    // The contact's normal; the height and the time of its damping are behind it.
+    // The contact's normal; the height and the time of its damping follow it.
     let n = numbers.len();
     numbers[n - 5..n - 2].iter_mut().for_each(|x| *x *= 3.0);
     let functions = ["inverse_dynamics", "forward_dynamics", "effect_forces", "potential_energy", "inverse_dynamics_derivatives"];

@@ -254,8 +254,8 @@ mod tests {
         assert!(wanted.as_function().is_none());
     }
 
-    /// A preset exists, gives the same array, takes what is left, and costs what it costs by
-    /// itself.
+    /// A preset exists, returns the same array, takes the remaining arguments, and costs the same
+    /// as by itself.
     #[test]
     fn what_is_fixed_at_zero_costs_nothing() {
         let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/urdf/ur5_like.urdf");

@@ -233,7 +233,7 @@ impl Series {
         Some(([t - begin, self.times.get(next)? - begin], [self.rows.get(before)?, self.rows.get(next)?]))
     }
 
-    /// The first of the times after `t`, s: infinite behind the last.
+    /// The first of the times after `t`, s: infinite after the last.
     pub fn next(&self, t: f64) -> f64 {
         self.times.get(self.after(t)).copied().unwrap_or(f64::INFINITY)
     }

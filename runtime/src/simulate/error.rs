@@ -38,7 +38,7 @@ pub enum SimulateError {
         /// The joint where it is.
         cause: Singular,
     },
-    /// The tolerances ask for a step that is too short to be made.
+    /// The tolerances require a step that is too short to be made.
     StepTooSmall {
         /// Time, s.
         t: f64,
@@ -61,7 +61,7 @@ pub enum SimulateError {
         /// Steps made, rejected ones included.
         steps: u64,
     },
-    /// The tolerances ask for steps so short that the end would take far more steps than are
+    /// The tolerances require steps so short that the end would take far more steps than are
     /// allowed.
     NoProgress {
         /// Time, s.

@@ -162,7 +162,7 @@ fn quaternions_have_norm_one_to_four_digits() {
     assert!([1.0005, 0.9995].into_iter().all(|w| started(w).unwrap().q_at(1)[6] == 1.0));
 }
 
-/// A coordinate's joint is found behind quaternions too.
+/// A coordinate's joint is found after quaternions too.
 #[test]
 fn coordinates_are_told_with_their_joints() {
     let robot = model("satellite", Base::Floating);

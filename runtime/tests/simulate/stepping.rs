@@ -1,4 +1,4 @@
-//! Steps one by one, and what is computed only on request.
+//! Steps one by one, and quantities that are computed only on request.
 
 use articulated::Dynamics;
 use articulated::simulate::{

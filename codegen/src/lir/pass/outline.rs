@@ -101,8 +101,8 @@ struct Slots {
 const NOWHERE: usize = usize::MAX;
 
 impl Slots {
-    /// A slot for piece `c` to write to, and not beside another: of neighbours a compiler would
-    /// look for vectors to make them from.
+    /// A slot for piece `c` to write to, and not next to another: a compiler would look for vectors
+    /// to build from neighbours.
     fn take(&mut self, c: usize) -> usize {
         let beside = |slot: usize| [slot.wrapping_sub(1), slot + 1].into_iter().any(|k| self.written.get(k) == Some(&c));
         let found = self.free.iter().rposition(|&slot| !beside(slot));

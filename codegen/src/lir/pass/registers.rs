@@ -33,7 +33,7 @@ impl Uses {
         uses
     }
 
-    /// The next step behind `at` that needs a value.
+    /// The next step after `at` that needs a value.
     fn next(&self, k: usize, at: usize) -> Option<usize> {
         let uses = &self.0[k];
         uses.get(uses.partition_point(|&other| other <= at)).copied()

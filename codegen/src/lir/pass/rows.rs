@@ -47,9 +47,9 @@ pub(crate) enum Column {
 /// Numbers that are written together.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Group {
-    /// The lanes of a node one behind the other.
+    /// The lanes of a node one after the other.
     Whole(usize, usize),
-    /// Three numbers of each lane, the lanes one behind the other.
+    /// Three numbers of each lane, the lanes one after the other.
     InTurn([Column; 3], usize),
     /// Four numbers of each lane, each lane's at a place of its own.
     Fours([Column; 4], [usize; WIDTH]),

@@ -1,13 +1,13 @@
-//! The outward sweep in common axes, from which everything that pairs joints with joints is read.
+//! The outward sweep in common axes, the source of all functions over pairs of joints.
 //!
-//! All bodies of a tree are expressed in the same axes, each about its own origin: to carry a
-//! wrench from body to body takes a cross product and no rotation, and no moment is ever taken
-//! about a far point, where it would cancel. The axes are those of the world frame, or
-//! ([`Axes::Tree`]) those of the body in the middle of the tree: the fewer joints lie between, the
-//! more zeros there are. Or those of its first body, where gravity is constant if its joint stands
-//! upright, and the axes of joints that are parallel to the next one are too. Dynamics do not
-//! depend on how fast the base moves either: where a tree hangs on a floating joint, its inertial
-//! frame moves with that joint's body.
+//! All bodies of a tree are expressed in the same axes, each about its own origin. To carry a
+//! wrench from body to body takes a cross product and no rotation, and no moment is taken about a
+//! far point, where it would cancel. The axes are those of the world frame, or ([`Axes::Tree`])
+//! those of the body in the middle of the tree: the fewer joints lie between, the more zeros there
+//! are. Or those of its first body: gravity is constant there if its joint is upright, and so are
+//! the axes of joints that are parallel to the next one. Dynamics do not depend on the speed of the
+//! base either: if a tree hangs on a floating joint, its inertial frame moves with that joint's
+//! body.
 
 use super::Workspace;
 use super::workspace::{Column, CommonState};
@@ -156,7 +156,7 @@ pub(super) fn forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
     }
 }
 
-/// Visits the columns on the way from body `i` to the base, each with how far a point is from the
+/// Visits the columns on the path from body `i` to the root, each with how far a point is from the
 /// origin that the column is about: the point is `from` away from that of body `i`.
 #[inline(always)]
 pub(super) fn on_the_way<S: Scalar>(
@@ -174,8 +174,8 @@ pub(super) fn on_the_way<S: Scalar>(
     }
 }
 
-/// Visits the columns of body `i` and of those on the way to the base, with wrenches on `i` carried
-/// along: (whether it is of body `i`, wrenches, column).
+/// Visits the columns of body `i` and of those on the path to the root, with wrenches on `i`
+/// carried along: (whether it is of body `i`, wrenches, column).
 #[inline(always)]
 pub(super) fn carry<S: Scalar, const N: usize>(
     model: &Model<S>,

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use crate::Scalar;
 
-/// The degrees of freedom on the way from `k` to the base, `k` not among them.
+/// The degrees of freedom on the path from `k` to the root, without `k`.
 pub(crate) fn path_to_root(parent_dof: &[usize], k: usize) -> impl Iterator<Item = usize> {
     let next = |k: usize| parent_dof[k].checked_sub(1);
     core::iter::successors(next(k), move |&i| next(i))

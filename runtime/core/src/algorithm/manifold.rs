@@ -97,7 +97,7 @@ pub fn random_configuration<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, u
     }
 }
 
-/// The configuration of zeros, with quaternions that turn nothing: `[nq]` rad|m|quaternion.
+/// The configuration of zeros, with identity quaternions: `[nq]` rad|m|quaternion.
 ///
 /// # Panics
 /// If `out` is shorter than that.

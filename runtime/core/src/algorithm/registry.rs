@@ -214,7 +214,7 @@ impl<S: Scalar> Function<S> {
         of_frames(self.gives) || self.takes.iter().any(|a| of_frames(a.dims()))
     }
 
-    /// How many numbers it gives.
+    /// The number of its results.
     pub fn len(&self, shape: Shape) -> usize {
         size(self.gives, shape)
     }

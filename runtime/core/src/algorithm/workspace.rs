@@ -46,7 +46,7 @@ pub struct Workspace<S> {
     firsts: Centers,
     /// One row of a matrix, `[nv]`.
     pub(super) row: Vec<S>,
-    /// For each degree of freedom the next one on the way to the base, as [`below`] gives them.
+    /// For each degree of freedom the next one on the path to the root, as [`below`] gives them.
     pub(super) parent_dof: Vec<usize>,
     /// `[nv · nv]`.
     pub(super) matrix: Vec<S>,

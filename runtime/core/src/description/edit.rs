@@ -24,10 +24,10 @@ pub struct Payload {
     pub name: Option<String>,
     /// kg, not negative.
     pub mass: f64,
-    /// Centre of mass in the frame of what carries it, m.
+    /// Centre of mass in the frame of the link or frame that carries it, m.
     pub center_of_mass: [f64; 3],
-    /// Rotational inertia about the centre of mass in axes of what carries it: xx, xy, xz, yy, yz,
-    /// zz, kg·m². Zeros: a point mass.
+    /// Rotational inertia about the centre of mass in axes of that frame: xx, xy, xz, yy, yz, zz,
+    /// kg·m². Zeros: a point mass.
     pub inertia: [f64; 6],
 }
 
@@ -105,7 +105,7 @@ impl<'a> Editor<'a> {
     }
 
     /// Attaches a payload to a link or frame: a link of its own, whose frame has its origin at the
-    /// payload's centre of mass and the axes of what carries it, behind a fixed joint of the same
+    /// payload's centre of mass and the axes of the carrying frame, after a fixed joint of the same
     /// name. Returns the name.
     ///
     /// Refused: a link or frame that does not exist, a name that is taken, a mass or a principal

@@ -95,7 +95,7 @@ mod tests {
         names.add_joint("tip_3", JointId(0));
         names.add_link("tip_5", LinkId(0));
         assert_eq!([0; 3].map(|_| taken(&mut names)), ["tip_4", "tip_6", "tip_7"]);
-        // What was not taken stays free.
+        // A name that was not taken stays free.
         assert_eq!([0; 2].map(|_| names.free("tip")), ["tip_8", "tip_8"]);
     }
 }

@@ -5,7 +5,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt;
 
-/// Where a number has to be; whatever the bounds, it has to be finite.
+/// The range of a number; whatever the bounds, it must be finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// It may not be less.
@@ -58,7 +58,7 @@ impl fmt::Display for Range {
     }
 }
 
-/// As short as it goes.
+/// The shortest text of a number.
 fn number(x: f64) -> String {
     if x != 0.0 && x.abs() < 1e-3 { format!("{x:e}") } else { format!("{x}") }
 }

@@ -56,7 +56,7 @@ pub enum ModelError {
     /// Masses and lengths, or multipliers of joints that follow each other, whose products are
     /// beyond the range of doubles.
     TooLarge {
-        /// Names of the joints behind which they are, and of the links that are too far away.
+        /// Names of the joints after which they are, and of the links that are too far away.
         names: Vec<String>,
     },
     /// Parts that do not fit together ([`Model::from_parts`]).

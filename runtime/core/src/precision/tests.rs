@@ -1,4 +1,4 @@
-//! The texts, compiled as they stand in generated code.
+//! The texts, compiled as in generated code.
 
 use super::*;
 
@@ -128,7 +128,7 @@ fn angles_of_two_doubles_undo_sines() {
     }
 }
 
-/// What the pair without normalisation loses is of second order: it is that of the other.
+/// The loss of the pair without normalisation is of second order: it agrees with the other.
 #[test]
 fn pairs_carry_what_was_lost_to_first_order() {
     for [a, b] in pairs() {

@@ -67,7 +67,7 @@ struct Run<'a, 'e> {
     recording: &'a mut Recording,
 }
 
-/// How far a motion has got, beside the state.
+/// Progress of a motion, besides the state.
 struct Progress {
     /// When to record; `None`: never.
     times: Option<Times>,

@@ -13,8 +13,8 @@ use crate::model::{Body, Model};
 use crate::spatial::Vector3;
 use crate::spatial::screw::{Quaternion, right_jacobian_inverse};
 
-/// One effect on one degree of freedom: what it is, at which place in v, its own coordinate and
-/// rate, and its own rate over that of the coordinate that it moves with.
+/// One effect on one degree of freedom: the effect, its place in v, its own coordinate and rate,
+/// and its own rate over that of the coordinate that it moves with.
 pub(super) struct Acting<'a, S: 'static> {
     pub(super) effect: &'a JointEffect<S>,
     pub(super) at: usize,
