@@ -40,13 +40,12 @@ impl Cache {
         unchanged.then(|| lines.map(str::to_owned).collect())
     }
 
-    /// To be called before the output is written: a build that is broken off leaves no memory of
-    /// it.
+    /// Call it before the output is written: an interrupted build then leaves no record of it.
     pub(crate) fn forget(&self) {
         let _ = fs::remove_file(&self.file);
     }
 
-    /// To be called after. Without a memory the next run generates again, and that is all.
+    /// Call it after that. Without a record, the next run only generates again.
     pub(crate) fn remember(&self, warnings: &[String]) {
         let Some(stamp) = stamp(&self.output) else { return };
         let lines: String = std::iter::once(&stamp).chain(warnings).map(|line| format!("{line}\n")).collect();

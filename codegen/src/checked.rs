@@ -16,7 +16,7 @@ use crate::pass;
 use crate::sym::{self, Sym};
 
 /// The costs of forward dynamics by ABA, or by M = Lᵀ D L where joints follow others, and of the
-/// same with the smallest D/(Σ|terms|) held to its least.
+/// same with the smallest D/(Σ|terms|) compared with its lower bound.
 pub fn checked_cost(model: &Model<f64>) -> [Entry; 2] {
     let passed = View::new(model.clone()).passed();
     let follows = model.has_followers();

@@ -27,8 +27,7 @@ fn module(invocation: Invocation) -> TokenStream {
     let contents = contents(&settings, module.span, &mut errors);
     let errors = errors.into_items();
     let doc = "\n\nThe module has the functions that its invocation lists. To get another function of `articulated::algorithm`, add it to `functions`.";
-    // Lints about style are for code that somebody writes. First, so that the user's attributes
-    // have the last word.
+    // Style lints are for handwritten code. First, so that the user's attributes override it.
     let allow = quote! { #[allow(clippy::all, clippy::pedantic, clippy::nursery, clippy::restriction)] };
     quote! { #allow #(#attributes)* #[doc = #doc] #visibility #module #name { #errors #contents } }
 }

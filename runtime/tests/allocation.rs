@@ -1,6 +1,6 @@
 //! A step of a simulation allocates nothing.
 #![allow(unsafe_code)]
-// Why: who counts allocations has to be the allocator.
+// Why: only the allocator can count allocations.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering};

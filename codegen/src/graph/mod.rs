@@ -138,15 +138,13 @@ impl Graph {
         }
     }
 
-    /// The node for an operation on nodes, folded: it may be a simpler one, or one that is there
-    /// already.
+    /// The node for an operation on nodes, folded: it may be a simpler one, or an existing one.
     pub fn apply(&mut self, op: Op, operands: &[NodeId]) -> NodeId {
         self.requested.add(op, 1);
         fold::fold(self, op, operands)
     }
 
-    /// The node for exactly this operation on these operands, shared if it is there already. No
-    /// folding.
+    /// The node for exactly this operation on these operands, shared if it exists. No folding.
     pub fn exactly(&mut self, op: Op, operands: &[NodeId]) -> NodeId {
         let mut args = [0; 3];
         for (slot, id) in args.iter_mut().zip(operands) {

@@ -1,7 +1,7 @@
 //! The operations of the graph: one row each.
 
-/// An operation. `MulAdd` and its kin round once where the processor has the instruction, twice
-/// where it has not.
+/// An operation. `MulAdd` and its variants round once where the processor has the instruction,
+/// twice where it has not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Op {

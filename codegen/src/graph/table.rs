@@ -22,7 +22,7 @@ impl Places {
         slot.checked_sub(1)
     }
 
-    /// The place of `node`, or `next`, where it is to be from now on.
+    /// The place of `node`; `next` if it is now inserted there.
     pub(super) fn find_or_insert(&mut self, nodes: &[Node], node: &Node, next: u32) -> u32 {
         if self.taken * 2 >= self.slots.len() {
             self.grow(nodes);

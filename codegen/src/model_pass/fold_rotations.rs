@@ -11,8 +11,8 @@ use super::view::View;
 /// Which revolute bodies have frames that do not rotate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FoldedRotations {
-    /// Rows of bodies on parallel joints: each row has the axes in which it begins, and no vector
-    /// has to be turned from one to the next, there and back.
+    /// Rows of bodies on parallel joints: each row has the axes of its first body, and no vector is
+    /// rotated from one to the next and back.
     Parallel,
     /// These, and bodies without children.
     ParallelAndLast,

@@ -18,8 +18,8 @@ pub(super) struct Places<S> {
 }
 
 impl<S: Scalar> Places<S> {
-    /// Where the body has a moment less, where it is level with a child, and where its offset has a
-    /// number less.
+    /// The places where the body has one moment less, is level with a child, or has one number less
+    /// in its offset.
     pub(super) fn of(model: &Model<S>) -> Self {
         let length = |body: &Body<S>| body.placement.position.fold(S::zero(), |sum, x| sum + x.abs());
         let mut reach: ById<BodyId, S> = model.bodies().iter().map(length).collect();

@@ -6,7 +6,7 @@ use super::dce;
 use super::sums::{Rebuild, Term, flatten, inner, is_sum, open, uses_in_sums};
 use crate::graph::{Graph, NodeId, Op};
 
-/// Sums of more terms have too many pairs to look at.
+/// Most terms of a searched sum: longer sums have too many pairs.
 const MOST: usize = 32;
 
 /// Common-subexpression elimination of partial sums: computes x + y once where several sums have

@@ -300,7 +300,7 @@ mod tests {
         (far, off)
     }
 
-    /// Where one more operation follows on one that has an error.
+    /// One more operation after one with an error.
     #[test]
     fn bounds_of_every_operation_hold_on_boxes() {
         let third = |x: Single| x * Single::from_f64(0.1);

@@ -123,7 +123,7 @@ const MOST_RECORDED: f64 = 1e9;
 /// Keys of the times of a motion.
 const TIMES: &[&str] = &["end", "start"];
 
-/// A setting that is a number: its key, where it has to be, its unit, and it.
+/// A numeric setting: its key, its range, its unit, and its value.
 type Number = (&'static str, Range, &'static str, fn(&Settings) -> Option<f64>);
 
 const NUMBERS: &[Number] = &[

@@ -18,7 +18,7 @@ pub(crate) struct System<'r, R: Dynamics<f64>> {
     pub(crate) manifold: Manifold,
     /// Origin of the chart, `[nq]`.
     pub(crate) origin: Vec<f64>,
-    /// The torques of a sampled controller, `[nv]`, where it is one.
+    /// The torques of the controller if it is sampled, `[nv]`.
     pub(crate) held: Vec<f64>,
     pub(crate) holds: bool,
     /// The next time at which the torques have a kink or a jump, s: up to it, they are those before
@@ -215,7 +215,7 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         }
     }
 
-    /// The next chart begins where this one has got to, `u`.
+    /// The next chart begins at the point `u` of this one.
     pub(crate) fn move_origin(&mut self, u: &[f64]) -> Result<(), FunctionError> {
         self.place(u)?;
         std::mem::swap(&mut self.origin, &mut self.q);

@@ -59,7 +59,7 @@ fn a_blow_off_the_centre_turns_a_free_body() {
     }
 }
 
-/// A ball of next to no mass leaves at (1 + e) times the speed of the point.
+/// A ball of negligible mass leaves at (1 + e) times the speed of the point.
 #[test]
 fn a_ball_of_no_weight_to_speak_of_is_struck() {
     let robot = slider();

@@ -198,8 +198,8 @@ fn a_pair_of_zeros_within_a_step_is_not_stepped_over() {
     }
 }
 
-/// In the middle between two of the places where a step is looked at, and so near to each other
-/// that only the least value leads to them.
+/// In the middle between two of the sample points of a step, and so near to each other that only
+/// the least value leads to them.
 #[test]
 fn a_pair_of_zeros_is_found_wherever_it_is_in_a_step() {
     let robot = slider();
@@ -265,7 +265,8 @@ fn events_that_are_only_recorded_change_nothing() {
     assert_eq!((plain.q, plain.v), (watched.q, watched.v));
 }
 
-/// Nor does one that never happens: a body that floats takes no other turn for being looked at.
+/// Nor does an event that never happens: its evaluation does not change the turn of a floating
+/// body.
 #[test]
 fn what_is_looked_for_does_not_move_a_body_that_floats() {
     let robot = model("satellite", Base::Floating);
@@ -303,8 +304,8 @@ fn what_is_recorded_where_another_event_maps_happens_once() {
     }
 }
 
-/// In the order of time, whatever that of their list, and where one maps the state, the others of
-/// its time happen with it.
+/// In the order of time, whatever that of their list; if one maps the state, the others of its time
+/// happen with it.
 #[test]
 fn events_of_one_step_happen_in_order() {
     let still = one_joint("prismatic", 0.0).with_gravity([0.0; 3]);
@@ -335,7 +336,7 @@ fn events_of_one_step_happen_in_order() {
     }
 }
 
-/// Between walls a billionth of a step apart two events take turns for ever.
+/// Between walls a billionth of a step apart, two events alternate for ever.
 #[test]
 fn two_events_that_cause_each_other_are_an_error_too() {
     let still = one_joint("prismatic", 0.0).with_gravity([0.0; 3]);

@@ -197,7 +197,8 @@ fn a_stiff_motion_that_is_soon_over_is_noted_and_made() {
     }
 }
 
-/// A light wrist under the gains of its shoulder is stiff, and over before anybody would care.
+/// A light wrist under the gains of its shoulder is stiff, but its motion is over before that
+/// matters.
 #[test]
 fn an_arm_under_a_firm_controller_arrives() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/urdf/ur5_like.urdf");

@@ -227,7 +227,7 @@ mod tests {
         assert_eq!(all, cells.into_iter().enumerate().collect::<Vec<_>>());
     }
 
-    /// Lanes of nodes at equal distances that get into each other's way, and between them whatever.
+    /// Lanes of nodes at equal distances that overlap, and any cells between them.
     fn any(seed: u64) -> Vec<Cell> {
         let mut state = seed;
         let mut below = |n: u64| {

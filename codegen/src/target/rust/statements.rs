@@ -56,7 +56,7 @@ pub(crate) struct Printer<'a> {
 }
 
 impl Printer<'_> {
-    /// A piece of the body, but for the numbers of the result that are put together at the end.
+    /// A piece of the body, except for the numbers of the result that are put together at the end.
     pub(crate) fn statements(&self, out: &mut String, statements: &[Stmt]) {
         let hoisted = self.hoisted(statements);
         for names in hoisted.chunks(DECLARED_TOGETHER) {

@@ -222,7 +222,7 @@ impl<'a> Builder<'a> {
         self.seat(root, body, Placement::identity());
     }
 
-    /// Depth-first, with a stack of its own: a chain may be as long as it likes.
+    /// Depth-first, with a stack of its own: a chain may be of any length.
     fn add_tree(&mut self, root: LinkId) -> Result<(), ModelError> {
         let mut stack: Vec<JointId> = self.children[root].iter().rev().copied().collect();
         while let Some(index) = stack.pop() {

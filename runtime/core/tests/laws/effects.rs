@@ -1,4 +1,4 @@
-//! Laws that hold whatever a robot is subject to: on random trees with random effects.
+//! Laws that hold for all effects on a robot: on random trees with random effects.
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{self as dynamics, Workspace};

@@ -178,7 +178,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         &self.settings
     }
 
-    /// Other times for the motions from now on, s: for a loop of one's own, stretch by stretch.
+    /// Other times for the motions from now on, s: for the caller's own loop, stretch by stretch.
     pub fn set_span(&mut self, start: f64, end: f64) -> Result<(), SimulateError> {
         let before = (self.settings.start, self.settings.end);
         (self.settings.start, self.settings.end) = (start, end);

@@ -9,7 +9,7 @@ use crate::simulate::error::joint;
 /// Tries between two looks at the pace.
 const WINDOW: u64 = 4096;
 
-/// Looks in a row after which a pace is taken for the motion's.
+/// Number of checks in a row after which a pace counts as the motion's.
 const LOOKS: u32 = 3;
 
 /// Multiple of the allowed steps: at such a pace the end is never reached.

@@ -24,7 +24,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         self.settings.stiffness != Stiffness::Ignore && self.system.counts.stiff_at.is_none()
     }
 
-    /// The same where the last step saw something fast, on its way.
+    /// The same if the last step saw fast motion on its way.
     pub(super) fn check_suspect(&mut self, run: &mut Run) -> Result<(), SimulateError> {
         let Some(h) = self.settings.step.map(|h| self.longest_step(h)) else { return Ok(()) };
         for place in 0..2 {

@@ -33,7 +33,7 @@ fn cut(graph: &Graph, length: usize) -> Body {
     Body { ty, lanes: graph.lanes().clone(), results, pieces, kept, slots: None, barrier: false, is_partial: false }
 }
 
-/// Holds pieces to the rules of bodies and to the graph.
+/// Checks pieces against the rules of bodies and the graph.
 fn check(graph: &Graph, length: usize) {
     let body = cut(graph, length);
     assert_eq!(verify(&body), Ok(()), "pieces of {length}");

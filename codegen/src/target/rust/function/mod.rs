@@ -170,8 +170,8 @@ fn calls(out: &mut String, body: &Body, signature: &Signature, context: Context)
     }
 }
 
-/// Plain arithmetic, with fused multiply-add where the processor has it: compiled for it, or found
-/// to be so.
+/// Plain arithmetic, with fused multiply-add if the processor has it: known when compiled, or
+/// detected at run time.
 fn chosen(out: &mut String, body: &Body, signature: &Signature, level: Precision) {
     let (takes, names, returns) = (signature.takes(), signature.handed(), signature.returns());
     let (generic, own, fused) =

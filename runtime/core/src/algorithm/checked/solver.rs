@@ -123,7 +123,7 @@ impl<S: Scalar<Mask = bool>> Solver<S> {
             robot.mass_matrix(ws, q, &mut self.matrix)
         };
         asked().map_err(Unsolved::Function)?;
-        // Singular or not, all pivots are looked at.
+        // Singular or not, all pivots are checked.
         let _ = self.factor.factor(&self.matrix);
         // b = τ − h
         out.iter_mut().zip(&mut self.input).for_each(|(b, tau)| {
