@@ -7,10 +7,10 @@ use articulated_core::running::Running;
 use crate::graph::Graph;
 use crate::{Arithmetic, Precision, TrigAccuracy};
 
-/// How far each result of a graph at a level can be off from the same graph in real arithmetic, for
-/// arguments within a radius of a midpoint each: `input(argument, index)` is (midpoint, radius).
-/// Infinite where a divisor could be nothing, or a choice jump. `None` for levels whose errors are
-/// of second order: there is no bound for them.
+/// Bounds of the difference between each result of a graph at a level and the same graph in real
+/// arithmetic, for arguments within a radius of a midpoint: `input(argument, index)` is (midpoint,
+/// radius). Infinite where a divisor may be zero or a choice may jump. `None` for levels whose
+/// errors are of second order: they have no bound.
 pub fn bounds(graph: &Graph, level: Precision, input: &dyn Fn(usize, usize) -> (f64, f64)) -> Option<Vec<f64>> {
     fn of<const BITS: u32, const SINES: u32>(graph: &Graph, bits: Option<u32>, input: &dyn Fn(usize, usize) -> (f64, f64)) -> Vec<f64> {
         let given = |argument: usize, k: usize| {
@@ -36,7 +36,7 @@ pub fn bounds(graph: &Graph, level: Precision, input: &dyn Fn(usize, usize) -> (
     })
 }
 
-/// What holds of all arguments in the box of
+/// Bounds of all arguments in the box of
 /// [`Generated::bounds_in_box`](crate::Generated::bounds_in_box): coordinates in their boxes
 /// ([`coordinate_box`]), sines and cosines within ±1, everything else within ±2: (midpoint, radius)
 /// of element `index`.
@@ -80,8 +80,7 @@ mod tests {
             assert_eq!(found, [[(0.0, 1.0); 7].as_slice(), &[(1.0, 2.0), (0.0, PI)]].concat());
         }
         assert_eq!([Argument::V, Argument::SinCos].map(|argument| in_box(&model, argument, 7)), [(0.0, 2.0), (0.0, 1.0)]);
-        // A bound on one side alone has the other a turn away, and those written the wrong way
-        // round are the same.
+        // The missing bound of a pair is one turn away, and bounds in the wrong order are swapped.
         for (lower, upper, expected) in [
             (f64::NEG_INFINITY, 3.0, (3.0 - PI, PI)),
             (3.0, -1.0, (1.0, 2.0)),
@@ -114,7 +113,7 @@ mod tests {
         for arithmetic in all {
             let [ulp, ten, seven] =
                 [TrigAccuracy::Ulp1, TrigAccuracy::Fast10, TrigAccuracy::Fast7].map(|sines| of(arithmetic, sines).unwrap());
-            // In single precision, a sine to an ulp is no nearer than one of ten digits.
+            // In single precision, an ulp-accurate sine is no more accurate than one of ten digits.
             let single = arithmetic == Arithmetic::Single;
             assert!(0.0 < ulp && ulp < seven && (single || ulp < ten) && ten < seven && seven < 1e-5, "{arithmetic:?} {ulp} {ten} {seven}");
         }

@@ -33,7 +33,7 @@ pub struct Build {
     request: Request,
     /// The place that names the robot's file, if a scene does.
     robot: Span,
-    /// The scene's file, if there is one.
+    /// The scene's file, if any.
     scene: Option<String>,
     /// Findings about the words of the calls, and about the scene.
     findings: Diagnostics,
@@ -62,14 +62,14 @@ impl From<String> for BatchType {
     }
 }
 
-/// What a build script wrote.
+/// Result of writing a file in a build script.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
     /// The file; of C the header.
     pub path: PathBuf,
-    /// What looks wrong in the document and was used as written: a line for each sort of warning.
+    /// Warnings about values of the document that were used as written: one line for each sort.
     pub warnings: Vec<String>,
-    /// Whether it was generated now; otherwise it stands from the last run, which had the same
+    /// Whether it was generated now; if not, the file of the last run is kept, which had the same
     /// request.
     pub generated: bool,
 }
@@ -82,8 +82,8 @@ impl Build {
         Self { request, robot: Span::default(), scene: None, findings: Diagnostics::default() }
     }
 
-    /// For the scene at `path`, relative to the crate's folder. Later calls replace what the scene
-    /// says; locks, loads and robots to append are added to the scene's. Effects act on the robot
+    /// For the scene at `path`, relative to the crate's folder. Later calls replace entries of the
+    /// scene; locks, loads and robots to append are added to the scene's. Effects act on the robot
     /// as it is generated.
     ///
     /// ```no_run
@@ -124,7 +124,7 @@ impl Build {
         self
     }
 
-    /// A fixed base, whatever a scene says.
+    /// A fixed base; overrides that of a scene.
     #[must_use]
     pub fn fixed(mut self) -> Self {
         self.request.options.robot.base = Base::Fixed;
@@ -147,7 +147,7 @@ impl Build {
     }
 
     /// The folder of a package that the robot's file includes files from (`$(find name)`), relative
-    /// to the crate's folder. Packages around the file need none.
+    /// to the crate's folder. Not needed for packages around the file.
     #[must_use]
     pub fn package(mut self, name: impl Into<String>, folder: impl AsRef<Path>) -> Self {
         self.request.options.robot.packages.insert(name.into(), folder.as_ref().to_owned());
@@ -168,8 +168,8 @@ impl Build {
         self
     }
 
-    /// Elements of an MJCF that change the motion and are not read are left out, with a warning.
-    /// Those of another kind are errors.
+    /// MJCF elements of these kinds that change the motion and are not supported are ignored, with
+    /// a warning. Elements of other kinds are errors.
     #[must_use]
     pub fn leave_out(mut self, kinds: impl IntoIterator<Item = LeaveOut>) -> Self {
         self.request.options.robot.leave_out.extend(kinds);
@@ -183,7 +183,7 @@ impl Build {
         self
     }
 
-    /// The constants of the joint or link `from` are called `to`, whatever was said of it before.
+    /// The constants of the joint or link `from` are named `to`; replaces earlier names of it.
     #[must_use]
     pub fn rename(mut self, from: impl Into<String>, to: impl Into<String>) -> Self {
         self.request.options.set_name(&from.into(), &to.into());
@@ -197,8 +197,8 @@ impl Build {
         self
     }
 
-    /// The functions wanted: names, groups, `name = first + second(a = 0)`; beside a scene
-    /// `motion`, for all that its motion calls.
+    /// Requested functions: names, groups, `name = first + second(a = 0)`; with a scene also
+    /// `motion`, for all functions that its motion calls.
     #[must_use]
     pub fn functions<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
         self.request.options.functions = names.into_iter().map(|name| name.into().into()).collect();
@@ -213,14 +213,14 @@ impl Build {
         self
     }
 
-    /// The links whose frames the functions of frames give.
+    /// Links whose frames the functions of frames compute.
     #[must_use]
     pub fn frames<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
         self.request.options.robot.set_frames(names);
         self
     }
 
-    /// What the wrenches that functions take refer to.
+    /// Reference of the wrench arguments.
     #[must_use]
     pub fn wrenches_in(mut self, reference: Reference) -> Self {
         self.request.options.robot.wrench_reference = reference;
@@ -234,15 +234,15 @@ impl Build {
         self
     }
 
-    /// Lets joints follow others as linear equations of the robot's file say (MJCF).
+    /// Couples joints by the linear equations of the robot's file (MJCF).
     #[must_use]
     pub fn file_coupling(mut self) -> Self {
         self.request.options.robot.file_coupling = true;
         self
     }
 
-    /// Locks a joint at these coordinates, as many as it has: rad or m, a quaternion as x, y, z, w.
-    /// Joints that follow it stop with it.
+    /// Locks a joint at these coordinates, one for each of its own: rad or m, a quaternion as x, y,
+    /// z, w. Joints that follow it are locked with it.
     #[must_use]
     pub fn lock(mut self, joint: impl Into<String>, at: impl Into<Vec<f64>>) -> Self {
         self.request.options.robot.lock.push((joint.into(), at.into()).into());
@@ -294,9 +294,9 @@ impl Build {
         self
     }
 
-    /// Functions of many states at once too, in numbers of these types, as `["f64", "f32"]` or
-    /// [`Real`]s: the modules `batch_f64` and `batch_f32`. A name that is none of a type is an
-    /// error of the generation.
+    /// Also functions of many states, in numbers of these types: `["f64", "f32"]` or [`Real`]s.
+    /// Their modules are `batch_f64` and `batch_f32`. An unknown type is an error of the
+    /// generation.
     #[must_use]
     pub fn batch<R: Into<BatchType>>(mut self, reals: impl IntoIterator<Item = R>) -> Self {
         self.findings.errors.retain(|error| error.code != Code::Batch);
@@ -320,8 +320,8 @@ impl Build {
         self
     }
 
-    /// Whether branches that are alike may be computed at once, one per lane of a vector, where
-    /// that is cheaper: so it is unless this says `false`.
+    /// Whether isomorphic branches may be computed together, one per lane of a vector, where that
+    /// is cheaper. Default: `true`.
     #[must_use]
     pub fn limbs(mut self, at_once: bool) -> Self {
         self.request.options.limbs = at_once;
@@ -336,9 +336,9 @@ impl Build {
         self
     }
 
-    /// For crates without `std`, which have to depend on the crate `libm`: it is called for square
-    /// roots, arctangents, and sines of angles beyond what the level promises. Without `unsafe`,
-    /// multiply-adds and an implementation of the trait `Dynamics`, whatever was chosen.
+    /// For crates without `std`. They must depend on the crate `libm`, which computes square roots,
+    /// arctangents, and sines of angles beyond the range of the level. No `unsafe`, multiply-adds
+    /// or implementation of the trait `Dynamics`, regardless of other options.
     #[must_use]
     pub fn no_std(mut self) -> Self {
         self.request.options.rust_mut().no_std = true;
@@ -365,12 +365,12 @@ impl Build {
         generate(&self.request()?)
     }
 
-    /// Generates and writes `$OUT_DIR/<name>.rs`, and tells cargo what the result depends on. For
-    /// build scripts.
+    /// Generates and writes `$OUT_DIR/<name>.rs`, and reports its dependencies to cargo. For build
+    /// scripts.
     ///
     /// If the last run wrote the file for the same request, and the build script is the same
-    /// program, nothing is generated and nothing written: the file keeps its date. An error where
-    /// this run has written a file of this name already, which would be lost.
+    /// program, nothing is generated and nothing written: the file keeps its date. Error: this run
+    /// has already written a file of this name, which would be lost.
     pub fn try_write(&self, name: &str) -> Result<Written, Diagnostics> {
         let appended = self.request.options.robot.append.iter().map(|other| &other.file.value);
         let files = self.scene.iter().chain([&self.request.file]).chain(appended);
@@ -429,7 +429,7 @@ impl Build {
             }
         }
         let mut append = std::mem::take(&mut request.options.robot.append);
-        // Arguments are those of the robot.
+        // Arguments apply to the robot only.
         let own = RobotOptions { arguments: BTreeMap::new(), ..request.options.robot.clone() };
         for other in &mut append {
             let span = other.file.span.clone().unwrap_or_default();
@@ -441,7 +441,7 @@ impl Build {
         request.options.robot.append = append;
         request.options.robot.included = loader.included.clone();
         if !log.is_ok() {
-            // What else is wrong with the request; without the robot its words.
+            // Other errors of the request; without the robot only those of its words.
             scene::check_rest(&request, is_complete, &mut log);
         }
         log.result(request)
@@ -467,7 +467,7 @@ fn write_c(folder: &Path, request: &Request) -> Result<Written, Diagnostics> {
     Ok(Written { path, warnings: summary(&generated.warnings), generated: true })
 }
 
-/// An unchanged file keeps its date, so that nothing is compiled again.
+/// An unchanged file keeps its date, so that nothing is recompiled.
 fn write_changed(path: &Path, text: &str) -> Result<(), Diagnostics> {
     if fs::read_to_string(path).is_ok_and(|old| old == text) {
         return Ok(());
@@ -475,13 +475,13 @@ fn write_changed(path: &Path, text: &str) -> Result<(), Diagnostics> {
     fs::write(path, text).map_err(|e| file_error(&path.display().to_string(), e.to_string()))
 }
 
-/// What this build script has written, to keep a second robot from taking the place of a first.
+/// Files that this build script has written, so that a second robot does not overwrite the first.
 fn names_written() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     static WRITTEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
     WRITTEN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// `name`.rs in the folder. Errors: a name that is none of a file, or of one elsewhere.
+/// `name`.rs in the folder. Errors: `name` is not a file name, or names a file elsewhere.
 fn file_in(folder: &Path, name: &str) -> Result<PathBuf, Diagnostics> {
     if Path::new(name).file_name().is_some_and(|file| file == name) {
         return Ok(folder.join(format!("{name}.rs")));

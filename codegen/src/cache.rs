@@ -1,10 +1,9 @@
-//! What a build script wrote the last time, so that the same request generates nothing.
+//! The last output of a build script, so that the same request generates nothing.
 //!
-//! Beside the output stands a file that holds, byte for byte, everything that the output follows
-//! from: which generator, all options, every robot file. There is no hash that could collide. The
-//! generator is known by the program that it is part of, the build script: its length and the
-//! instant when it was linked, which is new whenever the generator or anything that it leans on was
-//! compiled again.
+//! A file beside the output contains, byte for byte, everything that determines the output: the
+//! generator, all options, every robot file. There is no hash that could collide. The generator is
+//! identified by its program, the build script: its length and its link time, which changes
+//! whenever the generator or a dependency of it is recompiled.
 
 use std::fmt::Write;
 use std::fs;
@@ -21,8 +20,8 @@ pub(crate) struct Cache {
 }
 
 impl Cache {
-    /// That of `output`, if it is to follow from `request` and is made by this program; none where
-    /// the system does not tell what is running.
+    /// That of `output`, for `request` and this program; `None` if the system does not report the
+    /// running program.
     pub(crate) fn new(output: &Path, request: &Request) -> Option<Self> {
         Some(Self::of(output, request, &stamp(&std::env::current_exe().ok()?)?))
     }
@@ -31,8 +30,8 @@ impl Cache {
         Self { output: output.into(), file: output.with_extension("key"), key: key(request, generator) }
     }
 
-    /// The warnings that came with the output, if it stands as it was written, and was written for
-    /// the same request by the same generator.
+    /// The warnings of the output, if it is unchanged and was written for the same request by the
+    /// same generator.
     pub(crate) fn warnings(&self) -> Option<Vec<String>> {
         let stored = fs::read(&self.file).ok()?;
         let rest = std::str::from_utf8(stored.strip_prefix(self.key.as_slice())?).ok()?;
@@ -41,13 +40,12 @@ impl Cache {
         unchanged.then(|| lines.map(str::to_owned).collect())
     }
 
-    /// To be called before the output is written: a build that is broken off leaves no memory of
-    /// it.
+    /// Call it before the output is written: an interrupted build then leaves no record of it.
     pub(crate) fn forget(&self) {
         let _ = fs::remove_file(&self.file);
     }
 
-    /// To be called after. Without a memory the next run generates again, and that is all.
+    /// Call it after that. Without a record, the next run only generates again.
     pub(crate) fn remember(&self, warnings: &[String]) {
         let Some(stamp) = stamp(&self.output) else { return };
         let lines: String = std::iter::once(&stamp).chain(warnings).map(|line| format!("{line}\n")).collect();
@@ -65,7 +63,7 @@ fn key(request: &Request, generator: &str) -> Vec<u8> {
     documents.extend(options.robot.included.files().map(|(_, bytes)| bytes.to_vec()));
     let lengths: Vec<usize> = documents.iter().map(Vec::len).collect();
     let mut head = format!("articulated {}, {generator}\n", env!("CARGO_PKG_VERSION"));
-    // Of the scene only what code follows from.
+    // Only the parts of the scene that determine code.
     let scene = request.scene.as_ref().map(|scene| (&scene.effects, &scene.shafts, &scene.impact));
     let _ = writeln!(head, "{:?} {options:?} {scene:?} {lengths:?}", request.file);
     let mut key = head.into_bytes();

@@ -1,8 +1,8 @@
-//! What a target can do: it decides how functions are lowered.
+//! Capabilities of a target: they decide how functions are lowered.
 
 use crate::Precision;
 
-/// What a target can do.
+/// Capabilities of a target.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Capabilities {
     /// How accurate functions are.
@@ -16,7 +16,7 @@ pub(crate) struct Capabilities {
     pub(crate) scalar_too: bool,
     /// Whether the solution for many right-hand sides can be a loop.
     pub(crate) loops: bool,
-    /// Whether a body can name the slots in which values wait.
+    /// Whether a body can name its spill slots.
     pub(crate) spills: bool,
     /// Whether there are functions of many states.
     pub(crate) states: bool,

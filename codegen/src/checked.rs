@@ -1,4 +1,4 @@
-//! What it costs to look at the pivots of forward dynamics.
+//! Cost of checking the pivots of forward dynamics.
 //!
 //! The checked form is the generic library's and is not generated; here it is traced as if it were,
 //! so that its operations can be counted.
@@ -16,7 +16,7 @@ use crate::pass;
 use crate::sym::{self, Sym};
 
 /// The costs of forward dynamics by ABA, or by M = Lᵀ D L where joints follow others, and of the
-/// same with the smallest D/(Σ|terms|) held to its least.
+/// same with the smallest D/(Σ|terms|) compared with its lower bound.
 pub fn checked_cost(model: &Model<f64>) -> [Entry; 2] {
     let passed = View::new(model.clone()).passed();
     let follows = model.has_followers();
@@ -25,7 +25,7 @@ pub fn checked_cost(model: &Model<f64>) -> [Entry; 2] {
     [entry(format!("forward_dynamics by {way}"), plain), entry(format!("checked_forward_dynamics by {way}"), checked)]
 }
 
-/// What forward dynamics takes.
+/// The arguments of forward dynamics.
 const ARGUMENTS: [Argument; 3] = [Argument::Q, Argument::V, Argument::Tau];
 
 /// Accelerations, and by how much the smallest pivot is beyond its least.

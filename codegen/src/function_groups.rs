@@ -1,5 +1,4 @@
-//! The functions of the table in groups: for lists that people read, and to ask for them by one
-//! word.
+//! Groups of the functions of the table: for printed lists, and to request several by one word.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What each generated function costs, stage by stage.
+//! Cost of each generated function, stage by stage.
 
 use std::borrow::Cow;
 
@@ -30,20 +30,20 @@ pub struct Entry {
     pub stages: Vec<(&'static str, Counts)>,
     /// Longest chain of operations from an input to an output.
     pub depth: u32,
-    /// How many limbs that are alike are computed at once; 1 where each is computed for itself.
+    /// Number of isomorphic limbs that are computed together; 1 if each is computed separately.
     pub lanes: usize,
-    /// What it takes, in order; constants of the model that stayed inputs come after them.
+    /// Its arguments, in order; constants of the model that stayed inputs come after them.
     pub arguments: Vec<Argument>,
 }
 
 impl Entry {
-    /// The counts of what is emitted.
+    /// The counts of the emitted code.
     pub fn emitted(&self) -> &Counts {
         &self.stages[self.stages.len() - 1].1
     }
 }
 
-/// Every stage that an entry may have, in order, and what it does.
+/// Every stage that an entry may have, in order, with its description.
 pub fn stages() -> impl Iterator<Item = (&'static str, &'static str)> {
     let first = [("requested", "operations of the algorithm as written"), ("trace", "zeros, ones and equal expressions folded")];
     let model = model_passes::<f64>().iter().map(|(name, _, _)| (*name, "frames and masses moved so that numbers vanish"));

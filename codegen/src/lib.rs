@@ -223,7 +223,7 @@ pub fn function(name: &str) -> Result<&'static Function<Sym>, Diagnostic> {
                 format!("`{name}`: it stands for what the motion of a scene calls, by itself in a list: found no scene with [simulation]");
             return Diagnostic::refusal("", Place::DOCUMENT, Code::FunctionSpec, sentence);
         }
-        // In a sum of functions a group is none of them.
+        // In a sum of functions, a group is not allowed.
         let groups = Group::ALL.map(Group::name).into_iter().chain([function_groups::ALL]);
         let groups = groups.filter(|_| function_groups::functions_of(name).is_none());
         let known: Vec<&str> = functions::<Sym>().iter().map(|f| f.name).chain(groups).collect();

@@ -33,7 +33,7 @@ pub(crate) type Entry = (usize, FunctionSpec);
 /// that the request has through a group, with its name.
 pub(crate) fn plan(request: &Request, members: &BTreeMap<String, String>, log: &mut Diagnostics) -> Option<Plan> {
     let options = &request.options;
-    // What needs no robot comes first: it is reported also if the robot cannot be read.
+    // Checks without the robot come first: they also run if the robot cannot be read.
     let entries = words(options, log);
     let mut robot = request.robot().build_into(log)?;
     if robot.model.nv() > MOST_FREEDOMS {
@@ -42,7 +42,7 @@ pub(crate) fn plan(request: &Request, members: &BTreeMap<String, String>, log: &
         log.push(Diagnostic::error(&request.file, Place::DOCUMENT, Code::TooLarge, found, expected));
         return None;
     }
-    // Mass that stays an input is mass all the same.
+    // Mass that stays an input counts as mass.
     let massless = massless(&robot.model);
     let parameters = parameters::parse(options, &mut robot, log);
     let model = robot.framed(match parameters.is_empty() {

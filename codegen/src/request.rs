@@ -34,8 +34,8 @@ pub struct Options {
     /// The requested functions, each as [`crate::FunctionSpec::parse`] reads it: a name of
     /// [`articulated_core::algorithm::functions`], or `name = first + second(a = 0)`.
     pub functions: Vec<Spanned<String>>,
-    /// The functions that the word `motion` means among them: those that the motion of a scene
-    /// calls; none without such a scene.
+    /// The functions that `motion` in `functions` means: those that the motion of a scene calls;
+    /// empty without such a scene.
     pub motion: Vec<String>,
     /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`,
     /// `gravity`, and numbers of an effect that is on, as `damping(joint)`, `contact(link)`.

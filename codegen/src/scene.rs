@@ -23,21 +23,20 @@ pub struct Prepared {
     pub files: Vec<PathBuf>,
 }
 
-/// The scene at `path` with its robot; `bundled` are those that it may call by name. Files that it
-/// names are seen from its folder.
+/// The scene at `path` with its robot. `bundled` are the robots that it may name; names of files
+/// are relative to its folder.
 ///
 /// # Errors
-/// All findings about the files, about the robot, and about what of the scene does not fit it, as
-/// far as they can be read.
+/// All findings about the files, the robot, and entries of the scene that do not fit it, as far as
+/// they can be read.
 pub fn open(path: &Path, bundled: &[Bundled<'_>]) -> Result<Prepared, Diagnostics> {
     let mut log = Diagnostics::new(&path.display().to_string());
     let opened = open_into(path, bundled, &mut log);
     whole(opened, folder_of(path), log)
 }
 
-/// A scene that was read, with its robot; `bundled` are those that it may call by name. Files that
-/// it
-/// names are seen from `folder`.
+/// A scene that was read, with its robot. `bundled` are the robots that it may name; names of files
+/// are relative to `folder`.
 ///
 /// # Errors
 /// As [`open`].
@@ -47,7 +46,7 @@ pub fn open_in(scene: Scene, folder: &Path, bundled: &[Bundled<'_>]) -> Result<P
     whole(opened, folder, log)
 }
 
-/// The request of what was opened, or what is wrong with it and with the rest of the scene.
+/// The request of an opened scene, or its errors and those of the rest of the scene.
 fn whole(opened: Result<Opened, Option<Box<Scene>>>, folder: &Path, mut log: Diagnostics) -> Result<Prepared, Diagnostics> {
     match opened {
         Ok(opened) => prepared(opened, Some(folder), log),
@@ -64,19 +63,18 @@ fn whole(opened: Result<Opened, Option<Box<Scene>>>, folder: &Path, mut log: Dia
 }
 
 /// The request of a scene for the robot in `document`; `append` are the documents that it appends.
-/// Nothing is opened. `base` applies where the scene gives none.
+/// No file is opened. `base` applies if the scene has none.
 ///
 /// # Errors
-/// Everything that is wrong with the document, or else everything of the scene that does not fit
-/// the
-/// robot, tables of control in files apart.
+/// All errors of the document; if there are none, all entries of the scene that do not fit the
+/// robot, except tables of control in files.
 pub fn prepare(scene: Scene, file: &str, document: Vec<u8>, base: Base, append: Vec<Vec<u8>>) -> Result<Prepared, Diagnostics> {
     let log = Diagnostics::new(&scene.file);
     prepared(Opened::new(scene, file, document, base, append), None, log)
 }
 
-/// `folder`: that of the scene's files; a table of control that one of them has is looked at where
-/// the scene has other mistakes.
+/// `folder`: that of the scene's files. A table of control in one of them is checked only if the
+/// scene has other mistakes.
 fn prepared(opened: Opened, folder: Option<&Path>, mut log: Diagnostics) -> Result<Prepared, Diagnostics> {
     let robot = opened.robot().build_into(&mut log);
     let Opened { scene, file, document, options, files } = opened;
@@ -107,8 +105,8 @@ fn check_names_of(scene: &Scene, request: &Request, robot: &BuiltRobot, log: &mu
     log.take(names);
 }
 
-/// Reports what is wrong with a request beside the mistakes of its scene's text, which were left
-/// out. `is_complete`: its documents are there.
+/// Reports errors of a request, except those of its scene's text, which were left out.
+/// `is_complete`: its documents are present.
 pub fn check_rest(request: &Request, is_complete: bool, log: &mut Diagnostics) {
     // Names that the robot does not have are findings of the scene's file.
     let mut own = Diagnostics::new(request.scene.as_ref().map_or(&request.file, |scene| &scene.file));
@@ -121,8 +119,8 @@ pub fn check_rest(request: &Request, is_complete: bool, log: &mut Diagnostics) {
     log.take(own);
 }
 
-/// Writes what the scene says into the options: all but the effects, which need the robot, and the
-/// documents of the robots to append.
+/// Copies the scene's entries into the options: all except the effects, which need the robot, and
+/// the documents of the robots to append.
 pub fn fill(options: &mut Options, scene: &Scene) {
     let (code, places) = (scene.code.clone(), &scene.code.places);
     let put = |said: Option<bool>, into: &mut bool| *into = said.unwrap_or(*into);
@@ -320,7 +318,8 @@ mod tests {
         // Those of the file with their lines, in its order.
         let lines: Vec<usize> = told.lines().filter_map(|l| l.strip_prefix("s.toml:")?.split(':').next()?.parse().ok()).collect();
         assert!(lines.is_sorted() && lines.len() > 7, "{told}");
-        // The same of a request and its scene for those who generate, start and control apart.
+        // The same of a request and its scene for callers that generate, start and control
+        // separately.
         let mut request = prepared("").request;
         fill(&mut request.options, &scene);
         request.scene = Some(scene.clone());
@@ -334,7 +333,7 @@ mod tests {
         assert!(!document.is_empty() && words.len() == 2 && words.iter().all(|error| error.field == "functions"), "{told:?}");
     }
 
-    /// A build script's own functions, frames and names stand in place of the scene's.
+    /// A build script's own functions, frames and names replace the scene's.
     #[test]
     fn what_is_not_the_scenes_is_not_blamed_on_it() {
         let told = |scene: &str, change: &dyn Fn(&mut Options)| {
@@ -356,7 +355,7 @@ mod tests {
         );
     }
 
-    /// Names that are the same in Rust are no matter of a scene that gives none of them.
+    /// Names that are equal in Rust are no errors of a scene that has none of them.
     #[test]
     fn names_are_asked_for_where_the_scene_gives_them() {
         let urdf = ARM.replace(

@@ -74,7 +74,7 @@ impl Tree {
         }
     }
 
-    /// Instructions of one function; `columns`: whether the solution of M X = B is left a loop.
+    /// Instructions of one function; `columns`: whether the solution of M X = B is a loop.
     fn instructions(&self, part: &FunctionTerm, columns: bool) -> f64 {
         let factors = 0.5 * self.squares;
         let inverse = self.freedoms * self.pairs;
@@ -160,7 +160,7 @@ mod tests {
         )
     }
 
-    /// Joints with axes that meet no axis of coordinates, so many in a row from one link.
+    /// Joints with axes that meet no axis of coordinates, in chains of `row` joints from one link.
     fn chain(joints: usize, row: usize, base: Base) -> Request {
         let parent = |k: usize| if k % row == 1 { 0 } else { k - 1 };
         let trunk = "<link name='b0'><inertial><mass value='2'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.2' iyz='0' izz='0.15'/></inertial></link>";

@@ -26,7 +26,7 @@ pub(crate) fn trace(spec: &FunctionSpec, strategies: &[Strategy], model: &Model<
             model.cast::<Sym>().changed(|parts| parameters.iter().for_each(|p| p.put(parts, input)))
         });
         let run = |(part, strategy): (&FunctionTerm, &Strategy)| {
-            // Where all is numbers, passes go over numbers, which is sooner done.
+            // If all inputs are numbers, passes run on numbers, which is faster.
             let symbolic = with_inputs.as_ref().map_or_else(|| passed(part, strategy, model).cast(), |m| passed(part, strategy, m));
             run(part, strategy, &symbolic, &arguments)
         };
@@ -180,7 +180,7 @@ mod tests {
         <joint name='bend' type='continuous'><parent link='fore'/><child link='hand'/><origin xyz='0.4 0 0.1'/><axis xyz='0 1 0'/></joint>
         <joint name='grip' type='fixed'><parent link='hand'/><child link='tool'/><origin xyz='0.1 0 0.2' rpy='0.3 0.1 0'/></joint>";
 
-    /// A joint that goes as another does.
+    /// A joint that follows another.
     const FOLLOWER: &str = "<link name='finger'><inertial><origin xyz='0.1 0 0'/><mass value='0.3'/>\
         <inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/></inertial></link>
         <joint name='finger' type='revolute'><parent link='hand'/><child link='finger'/><axis xyz='1 0 0'/><mimic joint='yaw' multiplier='-0.5'/></joint>";

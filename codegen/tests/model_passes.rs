@@ -62,7 +62,7 @@ fn model_passes_change_no_function_that_allows_them() {
     });
 }
 
-/// Holds the functions that need torques alone, in all ways, on a view to what they are on a model.
+/// Compares the functions that need torques only, in all ways, on a view and on a model.
 fn same_without_frames(case: &Case, state: &State, one: &View<Big>, other: &Model<Big>) {
     let plain = View::new(other.clone());
     for_each_function(case, other, state, |row, given| {
@@ -117,7 +117,7 @@ fn constants_may_be_turned_instead_of_vectors() {
             for i in parts.bodies.ids().skip(1) {
                 let (body, parent) = (&parts.bodies[i], &parts.bodies[parts.bodies[i].parent]);
                 let revolute = body.joint.is_rotation_about_axis() && parent.joint.is_rotation_about_axis();
-                // What a universal joint consists of has no mass between.
+                // The parts of a universal joint have no mass between them.
                 if !body.parent.is_base() && revolute && parent.link.is_some() && random.below(3) > 0 {
                     parts.bodies[i].placement.rotation = Matrix3::identity();
                     seen.set(seen.get() + 1);
@@ -141,8 +141,8 @@ fn constants_may_be_turned_instead_of_vectors() {
     assert!(counts.0 > 12 && counts.1 > 5 && counts.2 > 5, "only {counts:?}");
 }
 
-/// The second derivative of a joint's axis tells as much as ω̇: no function is another, with the
-/// diagonal of U by it or not, whatever kinds of joints stand before and behind.
+/// The second derivative of a joint's axis can replace ω̇: no function changes, with the diagonal
+/// of U by it or not, for all kinds of joints before and after.
 #[test]
 fn rates_may_be_found_by_the_axes_of_joints() {
     const AXES: [[f64; 3]; 6] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, -1.0, 0.0], [-1.0, 0.0, 0.0]];
@@ -154,8 +154,8 @@ fn rates_may_be_found_by_the_axes_of_joints() {
             // their products of inertia.
             let model = case.model.cast::<Big>().changed(|parts| {
                 for i in parts.bodies.ids().skip(1) {
-                    // What a universal joint consists of has no mass between: its axes stay as they
-                    // are.
+                    // The parts of a universal joint have no mass between them: its axes stay as
+                    // they are.
                     if random.below(4) == 0 || parts.bodies[parts.bodies[i].parent].link.is_none() {
                         continue;
                     }
@@ -237,7 +237,7 @@ fn lengths_may_be_in_any_unit() {
         Big::scope(|| {
             let model = model.cast::<Big>();
             let passed = bare(&model).passed();
-            // Among levers, gravity, moments and masses, and one that is none of them.
+            // Among levers, gravity, moments and masses, and one unit that is not among them.
             for metres in units.iter().step_by(1 + units.len() / 3).copied().chain([0.3]) {
                 let [plain, passed] = [&View::new(model.clone()), &passed].map(|view| view.in_unit_of(Big::from_f64(metres)));
                 same_without_frames(case, &state, &plain, &model);
@@ -309,7 +309,7 @@ fn rotations_of_models_are_rotations_to_rounding_before_and_after_passes() {
     });
 }
 
-/// Base parameters: what a joint cannot feel is zero.
+/// Base parameters: numbers that a joint cannot feel are zero.
 #[test]
 fn regrouped_bodies_keep_only_what_their_joint_feels() {
     for_each_tree(40, Flavour::ANY, |case, _| {
@@ -326,7 +326,7 @@ fn regrouped_bodies_keep_only_what_their_joint_feels() {
 }
 
 /// The axes of a shoulder of three joints meet: slid there, its joints have no offsets, and no
-/// force has to be handed on.
+/// force must be shifted.
 #[test]
 fn frames_slide_to_where_axes_meet() {
     let case = Case::bundled(articulated_models::robot("panda_like").expect("it is bundled"));

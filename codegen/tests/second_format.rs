@@ -1,4 +1,4 @@
-//! A second format, of a few keys in TOML: nothing but a reader and its row knows a format.
+//! A second format, of a few keys in TOML: only its reader and its row know a format.
 
 use articulated_codegen::formats::urdf::Urdf;
 use articulated_codegen::formats::world::Document;
@@ -179,7 +179,7 @@ fn edits_and_findings_are_those_of_every_format() {
     }
 }
 
-/// What this format has and URDF has not: two joints in sequence on one body, a frame that is no
+/// Features of this format that URDF lacks: two joints in sequence on one body, a frame that is no
 /// link, a rotation by its matrix.
 const WIDE: &str = r#"# tiny
 name = "gimbal"

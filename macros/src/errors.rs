@@ -15,7 +15,7 @@ impl Errors {
         }
     }
 
-    /// The value, or nothing and one error more.
+    /// The value; if there is none, adds the error.
     pub(crate) fn take<T>(&mut self, result: syn::Result<T>) -> Option<T> {
         result.map_err(|error| self.push(error)).ok()
     }

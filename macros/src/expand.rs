@@ -27,8 +27,7 @@ fn module(invocation: Invocation) -> TokenStream {
     let contents = contents(&settings, module.span, &mut errors);
     let errors = errors.into_items();
     let doc = "\n\nThe module has the functions that its invocation lists. To get another function of `articulated::algorithm`, add it to `functions`.";
-    // Lints about style are for code that somebody writes. First, so that the user's attributes
-    // have the last word.
+    // Style lints are for handwritten code. First, so that the user's attributes override it.
     let allow = quote! { #[allow(clippy::all, clippy::pedantic, clippy::nursery, clippy::restriction)] };
     quote! { #allow #(#attributes)* #[doc = #doc] #visibility #module #name { #errors #contents } }
 }
@@ -52,7 +51,7 @@ fn loader() -> Loader<'static> {
     Loader { root, seen_from: ", seen from the folder of Cargo.toml", ..Loader::default() }
 }
 
-/// The generated source, or nothing and every error.
+/// The generated source; empty if there are errors, which are all reported.
 fn source(request: &Request, scene: &Scene, settings: &Settings, module: Word, log: &mut Diagnostics) -> TokenStream {
     match articulated_codegen::generate(request) {
         Ok(generated) => {
@@ -90,8 +89,8 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// The scene, with what the invocation says in the place of what it says itself, and the
-    /// request. No request if a file is missing or the scene is wrong.
+    /// The scene with its keys replaced by those of the invocation, and the request. No request if
+    /// a file is missing or the scene is wrong.
     fn request(&mut self) -> (Scene, Option<Request>) {
         let settings = self.settings;
         let folder = folder_of(settings.macro_keys.scene.as_ref().map_or("", |(name, _)| name).as_ref());
@@ -115,7 +114,7 @@ impl Reader<'_> {
         let (file, document) = robot.unwrap_or_default();
         let request = Request { document, file, scene: Some(scene.clone()), options };
         if !is_complete || !is_whole {
-            // What else is wrong with the invocation; without the robot its words.
+            // Other errors of the invocation; without the robot only those of its words.
             scene::check_rest(&request, is_complete, &mut self.log);
         }
         (scene, (is_complete && is_whole).then_some(request))
@@ -154,7 +153,7 @@ struct Words {
 }
 
 impl Words {
-    /// The word for a name behind a keyword; `None` if the keyword defines nothing.
+    /// The word for a name after a keyword; `None` if the keyword defines nothing.
     fn of(&self, keyword: &str, name: &str) -> Option<Word> {
         let form = |end: &str| self.functions.get(name.strip_suffix(end)?);
         match keyword {
@@ -164,7 +163,7 @@ impl Words {
         }
     }
 
-    /// The code with its public names at their words. What is private keeps its spans, which lead
+    /// The code with its public names at their words. Private names keep their spans, which lead
     /// editors nowhere.
     fn place(&self, code: TokenStream, is_public: bool) -> TokenStream {
         let mut last: [String; 3] = Default::default();

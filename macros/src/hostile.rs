@@ -80,7 +80,7 @@ fn mutated(seed: &str, random: &mut Random) -> String {
     words.concat()
 }
 
-/// Whether it expanded without an error; what came out is Rust either way.
+/// Whether it expanded without an error; the output is Rust either way.
 fn answer(text: &str) -> Option<bool> {
     let tokens: TokenStream = text.parse().ok()?;
     let expanded = std::panic::catch_unwind(|| expand(tokens)).unwrap_or_else(|_| panic!("panic at {text}"));

@@ -14,7 +14,7 @@ pub(crate) struct Invocation {
     pub(crate) module: Token![mod],
     pub(crate) name: Ident,
     pub(crate) settings: Settings,
-    /// What is wrong with the keys and their values.
+    /// Errors of the keys and their values.
     pub(crate) errors: Errors,
 }
 

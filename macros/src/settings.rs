@@ -1,5 +1,4 @@
-//! What an invocation says: the keys of scenes, which are read as scenes are, and those that are
-//! the macro's own.
+//! The keys of an invocation: those of scenes, which are read as in scenes, and the macro's own.
 
 use std::collections::BTreeSet;
 
@@ -16,10 +15,10 @@ use crate::tree::{Places, Tree};
 /// The keys with their values.
 pub(crate) struct Settings {
     pub(crate) macro_keys: MacroKeys,
-    /// The table of those that scenes have too.
+    /// The table of the keys that scenes also have.
     pub(crate) rest: Node,
     pub(crate) places: Places,
-    /// All keys, those whose values cannot be read too.
+    /// All keys, including those with unreadable values.
     keys: BTreeSet<String>,
 }
 
@@ -37,7 +36,7 @@ pub(crate) struct MacroKeys {
 struct Key {
     name: &'static str,
     expected: &'static str,
-    /// `None`: the value is none for this key.
+    /// `None`: the value is invalid for this key.
     read: fn(&mut MacroKeys, &Node) -> Option<()>,
 }
 
@@ -57,7 +56,7 @@ const KEYS: [Key; 4] = [
 ];
 
 impl Settings {
-    /// What stands in the braces of the module whose name is at `module`.
+    /// Reads the braces of the module whose name is at `module`.
     pub(crate) fn read(tokens: TokenStream, module: Span, errors: &mut Errors) -> Self {
         let (mut places, mut macro_keys) = (Places::new(module), MacroKeys::default());
         let mut tree = Tree::new(&mut places, errors);
@@ -84,14 +83,14 @@ impl Settings {
         KEYS.map(|key| key.name)
     }
 
-    /// Whether the invocation has this key, be its value right or wrong.
+    /// Whether the invocation has this key, with a valid or an invalid value.
     pub(crate) fn has(&self, name: &str) -> bool {
         self.keys.contains(name)
     }
 }
 
 impl MacroKeys {
-    /// Options in which nothing is said but by these keys.
+    /// Options that only these keys change.
     pub(crate) fn options(&self) -> Options {
         let runtime = || self.runtime.as_ref().map_or("::articulated".into(), |(path, _)| path.clone());
         let rust = RustOptions { no_std: self.no_std, runtime: (!self.standalone).then(runtime), ..RustOptions::default() };

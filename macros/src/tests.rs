@@ -1,5 +1,5 @@
-//! The macro against the other ways to the same code. What it says of mistakes is in the
-//! workspace's `tests/ui`.
+//! The macro against the other ways to the same code. Its error messages are in the workspace's
+//! `tests/ui`.
 
 use articulated_codegen::scene::Scene;
 use articulated_codegen::{Base, Build, LeaveOut, Origin, Payload, Reference, Request, generate};

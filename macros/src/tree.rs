@@ -1,6 +1,6 @@
-//! What stands in the macro's braces, as scenes have it: `key = value, …`. A value is a number, a
-//! word, a text, `[value, …]`, `{ name = value, … }`; of some keys it is an expression, which is a
-//! text here and others read: `hold = inverse_dynamics(v = 0)`.
+//! The content of the macro's braces, in the form of scenes: `key = value, …`. A value is a number,
+//! a word, a text, `[value, …]`, `{ name = value, … }`; for some keys it is an expression, which is
+//! a text here and is parsed elsewhere: `hold = inverse_dynamics(v = 0)`.
 
 use std::collections::BTreeSet;
 use std::fmt::Display;
@@ -14,7 +14,7 @@ use syn::{Error, Ident, Lit, LitBool, LitStr, Result, Token};
 
 use crate::errors::Errors;
 
-/// Deeper values are not read: nothing in a scene is so deep.
+/// Deeper values are not read; no scene has such values.
 const DEEPEST: usize = 16;
 
 /// Keys whose values, or the items of their lists, are expressions.
@@ -28,7 +28,7 @@ pub(crate) struct Places {
 }
 
 impl Places {
-    /// None yet.
+    /// An empty list.
     pub(crate) fn new(elsewhere: Span) -> Self {
         Self { words: Vec::new(), elsewhere }
     }
@@ -44,7 +44,7 @@ impl Places {
         word.and_then(|word| word.clone().into_iter().next()).map_or(self.elsewhere, |token| token.span())
     }
 
-    /// What is wrong at a place.
+    /// An error at a place.
     pub(crate) fn error(&self, at: At, message: impl Display) -> Error {
         let word = if let At::Word(index) = at { self.words.get(index as usize) } else { None };
         word.map_or_else(|| Error::new(self.elsewhere, &message), |word| Error::new_spanned(word, &message))
@@ -56,7 +56,7 @@ pub(crate) struct Tree<'a> {
     pub(crate) places: &'a mut Places,
     /// Collector of errors; unreadable entries are reported here and left out.
     pub(crate) errors: &'a mut Errors,
-    /// The keys that were found, those whose values cannot be read too.
+    /// The keys that were found, including those with unreadable values.
     pub(crate) keys: BTreeSet<String>,
 }
 
@@ -94,7 +94,7 @@ impl<'a> Tree<'a> {
 
     /// `name = value`
     fn entry(&mut self, tokens: TokenStream, depth: usize) -> Result<Entry> {
-        // A key without its sign is a key all the same: it is not missing too.
+        // A key without its sign counts as present: it is not reported as missing too.
         let first: TokenStream = tokens.clone().into_iter().take(1).collect();
         let named = quoted.parse2(first.clone()).or_else(|_| plain.parse2(first));
         self.keys.extend(named.ok().filter(|_| depth == 0));
@@ -137,7 +137,7 @@ impl<'a> Tree<'a> {
         items
     }
 
-    /// The tokens between commas; after the last comma there may be nothing.
+    /// The tokens between commas; a trailing comma is allowed.
     fn between_commas(&mut self, tokens: TokenStream) -> Vec<TokenStream> {
         let (mut all, mut said) = (Vec::new(), TokenStream::new());
         for token in tokens {
@@ -160,7 +160,7 @@ fn is(token: &TokenTree, c: char) -> bool {
     matches!(token, TokenTree::Punct(mark) if mark.as_char() == c)
 }
 
-/// A name as it is written, and what it is, and what stands behind the sign after it.
+/// A name: its tokens, its text, and the tokens after its sign.
 fn key(input: ParseStream) -> Result<(TokenStream, String, TokenStream)> {
     let word: TokenStream = input.parse::<TokenTree>()?.into();
     let name = quoted.parse2(word.clone()).or_else(|_| plain.parse2(word.clone()));
@@ -169,7 +169,7 @@ fn key(input: ParseStream) -> Result<(TokenStream, String, TokenStream)> {
     Ok((word, name, input.parse()?))
 }
 
-/// What brackets there are, if there is nothing beside them, and what is in them.
+/// The brackets and their content, if the tokens are one group.
 fn group(tokens: &TokenStream) -> Option<(Delimiter, TokenStream)> {
     let mut tokens = tokens.clone().into_iter();
     match (tokens.next()?, tokens.next()) {
@@ -197,8 +197,8 @@ fn plain(input: ParseStream) -> Result<String> {
     Ok(Ident::parse_any(input)?.unraw().to_string())
 }
 
-/// A number, finite or not, with or without a sign. Units are not guessed from what stands behind
-/// it: `90deg` is none.
+/// A number, finite or not, with or without a sign. Units are not guessed from a suffix: `90deg` is
+/// not a number.
 fn number(input: ParseStream) -> Result<f64> {
     let sign = if input.parse::<Option<Token![-]>>()?.is_some() { -1.0 } else { 1.0 };
     let literal: Lit = input.parse()?;
@@ -210,7 +210,7 @@ fn number(input: ParseStream) -> Result<f64> {
     if matches!(suffix, "" | "f64") { Ok(sign * number) } else { Err(Error::new(literal.span(), "a unit")) }
 }
 
-/// What is none of these: an expression where one may stand, or else something to be refused.
+/// Other tokens: an expression where one is allowed, otherwise an error.
 fn several(tokens: &TokenStream, form: Form) -> Result<Value> {
     let mut each = tokens.clone().into_iter();
     let (first, second) = (each.next(), each.next());

@@ -66,7 +66,7 @@ fn model(description: &Description, base: Base) -> Result<Model<f64>, LoadError>
     ModelError::of_base(description, base).and_then(|()| Model::new(description, base)).map_err(LoadError::Model)
 }
 
-/// What the robot's file at `path` says, to be edited and made a model of:
+/// The content of the robot's file at `path`, to be edited and made a model of:
 ///
 /// ```
 /// # fn arm() -> Result<(), Box<dyn std::error::Error>> {
@@ -87,7 +87,7 @@ pub fn describe(path: impl AsRef<Path>) -> Result<Description, LoadError> {
     describe_bytes(&path.display().to_string(), &bytes)
 }
 
-/// The error with the name of the file that was meant, if there is one.
+/// The error with the intended file name, if there is one.
 fn with_nearest(path: &Path, error: std::io::Error) -> std::io::Error {
     match nearest_file(path) {
         Some(near) => std::io::Error::new(error.kind(), format!("{error}; did you mean {near:?}?")),

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Slices with an element a state, or a block of states, read or written: `&[T]`, `&mut [T]`, and
 /// tuples of them.
 pub trait States: Sized + Send {
-    /// Whether an element is a block, which fills vectors by itself: one that begins a cache line,
+    /// Whether an element is a block, which fills vectors by itself: a block begins a cache line,
     /// as the `Lanes` of generated modules do.
     const BLOCKS: bool;
 
@@ -111,12 +111,12 @@ const LINE: usize = 64;
 /// blocks.
 ///
 /// `progress` receives the number of states (or blocks) done, from the thread that has just
-/// computed a part: every number once, but numbers of different threads may come in another order
-/// than they rise. The last part makes it the number of all states.
+/// computed a part: every number once, but not always in rising order. The last part makes it the
+/// number of all states.
 ///
 /// # Errors
-/// What `function` says: of all parts the first. Slices of different lengths are handed to it as
-/// they are, for it to refuse.
+/// The error of `function`: of all parts the first. Slices of different lengths are passed to it
+/// unchanged, for it to refuse.
 ///
 /// # Panics
 /// If `function` or `progress` does.
@@ -126,7 +126,7 @@ pub fn in_threads<S: States, E: Send>(
     progress: impl Fn(usize) + Sync,
 ) -> Result<(), E> {
     let Some(count) = states.count() else { return function(states) };
-    // Some parts for each thread, so that nobody waits long for the last.
+    // Some parts for each thread, so that no thread waits long for the last.
     let part = count.div_ceil(8 * rayon::current_num_threads()).next_multiple_of(if S::BLOCKS { 1 } else { BLOCK }).min(MOST);
     Work { function, progress, done: AtomicUsize::new(0), part }.halve(states, count)
 }

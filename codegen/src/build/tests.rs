@@ -1,4 +1,4 @@
-//! What a build script is given, told and spared.
+//! Build scripts: messages, errors and skipped work.
 
 use super::*;
 
@@ -186,7 +186,7 @@ fn an_unchanged_request_generates_nothing_and_warns_all_the_same() {
     fs::write(folder.join("arm.urdf"), ARM.replace("mass value=\"1\"", "mass value=\"2\"")).unwrap();
     assert!(again(&build).generated && !again(&build).generated);
     assert_eq!(fs::read_to_string(&first.path).unwrap(), build.generate().unwrap().source);
-    // A request that fails leaves the memory of what stands, and is not remembered.
+    // A failed request keeps the record of the existing file, and is not recorded itself.
     assert!(build.clone().functions(["no_function"]).write_in(&folder, "arm").is_err());
     assert!(!again(&build).generated);
     fs::remove_dir_all(folder).unwrap();

@@ -4,8 +4,7 @@ use articulated_core::Scalar;
 
 use super::{Graph, MOST, Node, NodeId, Op};
 
-/// The value of an operation on numbers. Leaves, and what takes lanes together, are none: they give
-/// what they are given.
+/// The value of an operation on numbers. For leaves and operations across lanes, the first operand.
 pub(crate) fn value<S: Scalar>(op: Op, [a, b, c]: [S; 3]) -> S {
     match op {
         Op::Add => a + b,
@@ -80,7 +79,7 @@ impl Graph {
     }
 }
 
-/// As many numbers as there are lanes, and then the first again.
+/// One number for each lane, then the same again.
 fn each<S: Scalar, const N: usize>(width: usize, of: impl Fn(usize) -> S) -> [S; N] {
     let mut out = [S::zero(); N];
     (0..width).for_each(|k| out[k] = of(k));
@@ -110,7 +109,7 @@ mod tests {
                     expected.push(value(row.op, [x[lane], y[lane], z]));
                 }
             }
-            // Of a negative number the root is none.
+            // The root of a negative number is NaN.
             let numbers = |values: Vec<f64>| values.into_iter().map(|x| (!x.is_nan()).then_some(x)).collect::<Vec<_>>();
             assert_eq!(numbers(g.evaluate(|argument, k| if argument == 0 { x[k] } else { z })), numbers(expected), "{width} lanes");
         }

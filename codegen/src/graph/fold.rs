@@ -1,7 +1,7 @@
 //! Folding where nodes are born: zeros and ones of a robot's file never become nodes.
 //!
-//! Each rule is exact in real arithmetic for finite values; those that are not exact in floating
-//! point only leave out a rounding.
+//! Each rule is exact in real arithmetic for finite values; in floating point, an inexact rule only
+//! leaves out a rounding.
 
 use super::evaluate::value;
 use super::{Graph, MOST, NodeId, Op, Value};
@@ -101,8 +101,8 @@ fn sub(g: &mut Graph, a: NodeId, b: NodeId) -> NodeId {
 /// A node with a sign, true for minus.
 type Signed = (bool, NodeId);
 
-/// a ± b where a and b are sums of two terms, or one, and a term of one is that of the other with
-/// the opposite sign: what is left of the two.
+/// a ± b for a and b of one or two terms each, where a term of one cancels a term of the other: the
+/// sum of the remaining terms.
 fn without_common(g: &mut Graph, a: NodeId, b: NodeId, minus: bool) -> Option<NodeId> {
     let (left, right) = (terms(g, false, a), terms(g, minus, b));
     let opposite = |x: &Signed, y: &Signed| x.0 != y.0 && x.1 == y.1;
@@ -111,7 +111,7 @@ fn without_common(g: &mut Graph, a: NodeId, b: NodeId, minus: bool) -> Option<No
     let rest = match (left[1 - i], right[1 - j]) {
         (None, None) => return Some(g.constant(0.0)),
         (Some(x), None) | (None, Some(x)) => x,
-        // What comes first is what is added.
+        // The positive term comes first.
         (Some(x), Some(y)) if x.0 && !y.0 => return Some(sub(g, y.1, x.1)),
         (Some(x), Some(y)) if x.0 == y.0 => (x.0, add(g, x.1, y.1)),
         (Some(x), Some(y)) => return Some(sub(g, x.1, y.1)),
@@ -131,7 +131,7 @@ fn terms(g: &Graph, minus: bool, x: NodeId) -> [Option<Signed>; 2] {
 }
 
 fn mul(g: &mut Graph, a: NodeId, b: NodeId) -> NodeId {
-    // A constant stands first.
+    // A constant comes first.
     let (a, b) = if g.node(b).op == Op::Constant { (b, a) } else { (a, b) };
     if is(g, a, 0.0) {
         return a;
@@ -139,7 +139,7 @@ fn mul(g: &mut Graph, a: NodeId, b: NodeId) -> NodeId {
     if is(g, a, 1.0) {
         return b;
     }
-    // Signs go outward, so that products are shared whatever their sign.
+    // Signs move outward, so that products are shared whatever their sign.
     let (minus_a, minus_b) = (negated(g, a), negated(g, b));
     if minus_a.is_some() || minus_b.is_some() {
         let product = mul(g, minus_a.unwrap_or(a), minus_b.unwrap_or(b));
@@ -330,7 +330,7 @@ mod tests {
             g.apply(Op::Mul, &[product, c])
         };
         assert_eq!(scaled(&mut g, 2.0, 3.0, x), scaled(&mut g, 1.0, 6.0, x));
-        // Of a constant that is older than what it multiplies, too.
+        // Also for a constant that is older than its factor.
         let late = g.input(0, 2);
         assert_eq!(scaled(&mut g, 2.0, 3.0, late), scaled(&mut g, 1.0, 6.0, late));
         g.outputs = vec![scaled(&mut g, 1e200, 1e200, x), scaled(&mut g, 1e-200, 1e-200, late)];

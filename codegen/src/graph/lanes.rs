@@ -1,8 +1,8 @@
-//! What is one number a lane in a graph whose values are vectors.
+//! Values with one number per lane, in a graph whose values are vectors.
 
 use std::collections::HashMap;
 
-/// As many lanes as a graph can have.
+/// Largest number of lanes of a graph.
 pub const MOST: usize = 4;
 
 /// The value of a node in each lane; beyond the width of the graph, as in lane 0.

@@ -1,4 +1,4 @@
-//! The expression graph: a hash-consed arena in which an operand always stands before its use.
+//! The expression graph: a hash-consed arena in which an operand always precedes its use.
 
 mod counts;
 mod evaluate;
@@ -46,7 +46,7 @@ impl Node {
     }
 
     fn of_constant(x: f64) -> Self {
-        // −0 is 0: no formula here tells them apart, and one node serves for both.
+        // −0 becomes 0: no formula here distinguishes them, and one node serves for both.
         let bits = (x + 0.0).to_bits();
         Self { op: Op::Constant, args: [(bits >> 32) as u32, bits as u32, 0] }
     }
@@ -138,15 +138,13 @@ impl Graph {
         }
     }
 
-    /// The node for an operation on nodes, folded: it may be a simpler one, or one that is there
-    /// already.
+    /// The node for an operation on nodes, folded: it may be a simpler one, or an existing one.
     pub fn apply(&mut self, op: Op, operands: &[NodeId]) -> NodeId {
         self.requested.add(op, 1);
         fold::fold(self, op, operands)
     }
 
-    /// The node for exactly this operation on these operands, shared if it is there already. No
-    /// folding.
+    /// The node for exactly this operation on these operands, shared if it exists. No folding.
     pub fn exactly(&mut self, op: Op, operands: &[NodeId]) -> NodeId {
         let mut args = [0; 3];
         for (slot, id) in args.iter_mut().zip(operands) {
@@ -158,7 +156,7 @@ impl Graph {
         self.intern(Node { op, args })
     }
 
-    /// Whether exactly this node is there already.
+    /// This node, if it already exists.
     fn find(&self, op: Op, a: NodeId, b: NodeId) -> Option<NodeId> {
         self.places.find(&self.nodes, &Node { op, args: [a.0, b.0, 0] }).map(NodeId)
     }
@@ -195,7 +193,7 @@ impl Graph {
         counts
     }
 
-    /// Checks what every pass must keep: operands stand before their uses, and outputs exist.
+    /// Checks the invariants of every pass: operands precede their uses, and outputs exist.
     pub fn verify(&self) -> Result<(), String> {
         for (k, node) in self.nodes.iter().enumerate() {
             if let Some(late) = node.operands().find(|a| a.index() >= k) {

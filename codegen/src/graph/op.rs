@@ -1,7 +1,7 @@
 //! The operations of the graph: one row each.
 
-/// An operation. `MulAdd` and its kin round once where the processor has the instruction, twice
-/// where it has not.
+/// An operation. `MulAdd` and its variants round once where the processor has the instruction,
+/// twice where it has not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Op {
@@ -49,7 +49,7 @@ pub enum Op {
     ReduceAdd,
 }
 
-/// What the generator knows of an operation.
+/// Properties of an operation.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
     /// The operation; its place in [`OPS`] is its number.
@@ -60,7 +60,7 @@ pub struct Row {
     pub arity: usize,
     /// Whether a and b may be exchanged.
     pub commutes: bool,
-    /// What it costs, in floating-point instructions.
+    /// Cost, in floating-point instructions.
     pub cost: u32,
     /// After how many cycles its value is known, on a current processor.
     pub latency: u32,

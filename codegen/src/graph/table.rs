@@ -1,6 +1,5 @@
 //! Index of a node in its graph: open addressing with a fixed hash. Generators run unoptimised,
-//! where a map of the standard library costs five times as much; and the order of nothing depends
-//! on it.
+//! where a map of the standard library costs five times as much. No order depends on it.
 
 use super::Node;
 
@@ -23,7 +22,7 @@ impl Places {
         slot.checked_sub(1)
     }
 
-    /// The place of `node`, or `next`, where it is to be from now on.
+    /// The place of `node`; `next` if it is now inserted there.
     pub(super) fn find_or_insert(&mut self, nodes: &[Node], node: &Node, next: u32) -> u32 {
         if self.taken * 2 >= self.slots.len() {
             self.grow(nodes);
@@ -52,13 +51,13 @@ impl Places {
         }
     }
 
-    /// Room for so many nodes before it grows.
+    /// Room for this many nodes before it grows.
     pub(super) fn with_room(nodes: usize) -> Self {
         Self { slots: vec![0; (2 * nodes + 1).next_power_of_two().max(64)], taken: 0 }
     }
 
-    /// Twice the room. The nodes are those that were put in, each once and in this order: none has
-    /// to be looked at again to see that it is another.
+    /// Doubles the room. `nodes` are the inserted nodes, each once and in this order, so that they
+    /// need not be compared.
     fn grow(&mut self, nodes: &[Node]) {
         self.slots = vec![0; (self.slots.len() * 2).max(64)];
         let mask = self.slots.len() - 1;

@@ -21,11 +21,11 @@ impl Limbs {
     }
 }
 
-/// What makes two bodies alike, numbers apart.
+/// Properties that isomorphic bodies share; numbers may differ.
 #[derive(PartialEq, Eq)]
 struct Kind {
     joint: Joint,
-    /// How far the body is behind its parent, in bodies.
+    /// Distance of the body from its parent, in bodies.
     behind: usize,
     /// Offsets in q and v from the branch's first body; of a follower, those of its leader.
     at: (usize, usize),
@@ -34,13 +34,13 @@ struct Kind {
     effects: Vec<(EffectId, usize)>,
 }
 
-/// First body of a branch and the kinds of its bodies, if it stands for itself.
+/// First body of a branch and the kinds of its bodies, if it is independent of other branches.
 type Branch = (BodyId, Option<Vec<Kind>>);
 
 /// The sets of `width` isomorphic branches, from the base outward: the same joints and effects in
 /// the same order, whatever frames they carry. Constants may differ, so that mirrored limbs are
-/// isomorphic. Of more branches than `width` the first are a set, then the next; branches that are
-/// left over are searched for sets inside.
+/// isomorphic. More branches than `width` form several sets in order; left-over branches are
+/// searched for sets inside.
 ///
 /// No branch is in two sets: fingers of isomorphic arms belong to the arms.
 pub(crate) fn isomorphic_branches(model: &Model, width: usize) -> Vec<Limbs> {

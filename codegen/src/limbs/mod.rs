@@ -133,8 +133,8 @@ mod tests {
         }
     }
 
-    /// As a factorisation leaves them: a limb's terms are added up before they meet the others', of
-    /// which each is a term by itself.
+    /// As after a factorisation: the terms of one limb are already added up when they meet those of
+    /// the others, each of which is a separate term.
     #[test]
     fn limbs_whose_terms_were_added_before_are_one_sum_over_lanes_with_the_others() {
         let model = walker(4, &mut 7);

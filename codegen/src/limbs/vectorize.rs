@@ -36,7 +36,7 @@ struct Term {
     from: usize,
 }
 
-/// Number of terms of a sum above which none is expanded to find matching ones.
+/// Number of terms above which a sum is not expanded to find matching ones.
 const MANY: usize = 1000;
 
 /// Vectorizes the trace of a whole robot: equal operations on values of single lanes become one
@@ -64,7 +64,7 @@ pub(crate) fn pack(graph: &Graph, arguments: &[Argument], alike: &IsomorphicLimb
 /// How often each node, with its sign, is a term in each lane.
 struct Tally {
     width: usize,
-    /// All terms, those in no lane among them.
+    /// Number of all terms, including those in no lane.
     terms: usize,
     places: HashMap<(NodeId, bool), [usize; MOST]>,
 }
@@ -75,12 +75,12 @@ impl Tally {
         lanes[..self.width].iter().copied().min().unwrap_or(0)
     }
 
-    /// Whether the same as this is a term in every lane.
+    /// Whether every lane contains an equal term.
     fn in_all_lanes(&self, term: &Term) -> bool {
         term.at.node().and_then(|id| self.places.get(&(id, term.negative))).is_some_and(|lanes| self.everywhere(lanes) > 0)
     }
 
-    /// How many terms are left once those that are in all lanes are taken out.
+    /// Number of terms without those that are in all lanes.
     fn alone(&self) -> usize {
         self.terms - self.places.values().map(|lanes| self.width * self.everywhere(lanes)).sum::<usize>()
     }
@@ -108,7 +108,7 @@ impl Packer<'_> {
             return At::Sum;
         }
         operands.iter().for_each(|&o| self.make(o));
-        // What comes from several lanes is the same in all.
+        // A value from several lanes is the same in all.
         if self.in_several_lanes(&operands) {
             let ids: Vec<NodeId> = operands.iter().map(|&o| self.everywhere(o)).collect();
             return At::All(self.new.apply(node.op, &ids));
@@ -156,7 +156,7 @@ impl Packer<'_> {
             while let Some(term) = self.take_all_lanes(&mut terms) {
                 reduced = Some(self.add(reduced, term));
             }
-            // What is in some lanes only may hide a term that is in all.
+            // A term in some lanes only may hide a term that is in all.
             if let Some(place) = terms.iter().position(|t| self.can_open(t)) {
                 let term = terms.swap_remove(place);
                 self.open(term, &mut terms);
@@ -203,9 +203,9 @@ impl Packer<'_> {
         }
     }
 
-    /// The terms with sums of single lanes opened where others have their terms one by one, as a
-    /// lane whose sum was begun first has: as many opened as leave fewest terms that are not in all
-    /// lanes. `None` if that is none.
+    /// The terms with sums of single lanes opened where other lanes have their terms one by one, as
+    /// the lane whose sum was begun first has. Opens as many as leave the fewest terms that are not
+    /// in all lanes. `None` if it opens none.
     fn opened(&self, terms: &[Term]) -> Option<Vec<Term>> {
         let mut opened = terms.to_vec();
         let mut tally = self.tally(&opened);

@@ -1,5 +1,5 @@
-//! A function of a module: what it takes and gives, and its bodies. Everything that a target may
-//! choose is decided here, by its [`Capabilities`], and nothing while it prints.
+//! A function of a module: its arguments, its results and its bodies. Every choice of a target is
+//! made here, by its [`Capabilities`], and none while it prints.
 
 use articulated_core::algorithm::{Dim, Shape};
 use articulated_core::lanes::Real;
@@ -18,11 +18,11 @@ use crate::program::{MultiRhsSolve, Program};
 use crate::spec::FunctionSpec;
 use crate::{Arithmetic, Precision};
 
-/// What a function takes.
+/// An argument of a function.
 #[derive(Clone, Debug)]
 pub(crate) struct Argument {
     pub(crate) name: &'static str,
-    /// None for the parameters.
+    /// Empty for the parameters.
     pub(crate) dims: Vec<Dim>,
 }
 
@@ -38,11 +38,11 @@ impl Argument {
 pub(crate) enum Ending {
     /// It is made of all its numbers at the end.
     Value,
-    /// The same, written to memory that the caller hands in.
+    /// The same, written to the caller's memory.
     Written,
-    /// In rows of four lanes, as soon as they are known, to memory that may hold no value yet.
+    /// In rows of four lanes, as soon as they are known, to memory that may be uninitialised.
     Rows,
-    /// Number by number as they are made, over whatever the memory holds.
+    /// Number by number as they are computed, overwriting the memory.
     Filled,
 }
 
@@ -61,10 +61,10 @@ pub(crate) struct Function<'a> {
     pub(crate) is_outlined: bool,
     /// The body with spill slots, for x86-64 without AVX-512.
     pub(crate) few_registers: Option<Body>,
-    /// The body with plain numbers of a function whose values are vectors, and how its result
-    /// leaves it.
+    /// For a function whose values are vectors: the body with plain numbers, and how it returns its
+    /// result.
     pub(crate) scalar: Option<(Body, Ending)>,
-    /// The solution for many right-hand sides, which is left a loop behind the body.
+    /// The solution for many right-hand sides, which is a loop after the body.
     pub(crate) columns: Option<&'a MultiRhsSolve>,
     /// Operations of the body, and its sines and cosines.
     pub(crate) operations: (u64, u64),
@@ -89,16 +89,16 @@ const LENGTH: usize = 200;
 /// compile.
 const CUT_FROM: usize = 4500;
 
-/// The same of plain numbers beside a loop over columns: from here on pieces are as fast as one,
-/// and those of a seven-axis arm faster.
+/// The same for plain numbers with a loop over columns: from here on pieces are as fast as one, and
+/// for a seven-axis arm faster.
 const CUT_BESIDE_COLUMNS_FROM: usize = 2000;
 
-/// The same of sums of two doubles, of which each node is a score of instructions.
+/// The same for sums of two doubles, where each node is some twenty instructions.
 const CUT_PAIRS_FROM: usize = 400;
 
-/// From this many results and nodes on each result is written as soon as it is made: kept until the
-/// end, they would fill the registers. Of a small function the compiler makes more where they come
-/// together.
+/// From this many results and nodes on, each result is written as soon as it is computed: kept
+/// until the end, results would fill the registers. Compilers optimise a small function better if
+/// its results are stored together.
 const WRITE_FROM: (usize, usize) = (32, 700);
 
 /// From this many angles on it is faster to compute their sines together.
@@ -160,22 +160,22 @@ impl<'a> Function<'a> {
     }
 }
 
-/// A sine or cosine takes as long as so many operations.
+/// Time of a sine or cosine, in operations.
 const SINE: u64 = 10;
 
 /// To turn two numbers of a result from blocks into states takes as long as a block saves on so
 /// many operations (AVX-512, Emerald Rapids).
 const TWO_NUMBERS: u64 = 5;
 
-/// A result of which more than three fifths are computed is dense: to store it takes the function
-/// of one state as long.
+/// A result is dense if more than three fifths of it are computed: then storing it takes the
+/// function of one state as long.
 const DENSE: (usize, usize) = (3, 5);
 
 impl Function<'_> {
-    /// Whether states one after the other are faster by the function of one state, called for each
-    /// of them. A block saves time for each operation, but its results have to be turned into
-    /// states, which costs time for each number: also for zeros and for the other half of a
-    /// symmetric matrix, which the function of one state only stores.
+    /// Whether it is faster to call the function of one state for each state in turn. A block saves
+    /// time for each operation, but its results must be transposed into states, which costs time
+    /// for each number: also for zeros and for the other half of a symmetric matrix, which the
+    /// function of one state only stores.
     pub(crate) fn is_faster_one_by_one(&self, level: Precision, real: Real) -> bool {
         let Some(States { body, .. }) = &self.states else { return false };
         let is_straight = self.columns.is_none() && level == Precision::default();
@@ -211,7 +211,7 @@ fn is_long(graph: &Graph, columns: bool, level: Precision) -> bool {
     nodes >= from || level.of_two() && nodes >= CUT_PAIRS_FROM
 }
 
-/// What decides how a program is lowered.
+/// Inputs of the lowering of a program.
 struct Plan<'a> {
     graph: &'a Graph,
     spec: &'a FunctionSpec,
@@ -274,8 +274,8 @@ impl Plan<'_> {
             results = flat(&results);
         }
         let is_read = |at| self.columns.is_none_or(|columns| columns.reads(at));
-        // What loops compute is not stored here, and neither are zeros of a result that begins as
-        // zeros.
+        // Not stored here: numbers that loops compute, and zeros of a result that is initialised
+        // with zeros.
         let is_partial = self.columns.is_some() || outlined && ending != Ending::Filled;
         let lowering = Lowering { graph, ty, sines: self.sines(), results: &results };
         let stores = || lowering.stores_as_made(|at| ending == Ending::Filled && is_read(at), barrier);

@@ -11,7 +11,7 @@ use crate::lir::{Angle, Array, Expr, Number, Operand, Rows, Stmt, Store, Temp, T
 /// How sines are computed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SinCosGrouping {
-    /// How many angles go together.
+    /// Largest number of angles computed together.
     pub(crate) together: usize,
     /// Whether there are functions of one, two and four angles only, and not one of up to
     /// `together`.
@@ -80,10 +80,10 @@ impl Lowering<'_> {
         out
     }
 
-    /// Stores of what lies side by side in the result: constants first, half of them before the
-    /// sines and half between and behind them, so that the stores fill the time in which nothing
-    /// else can be done; then each group as soon as the last of its numbers is known. For vectors
-    /// of four lanes. Also returns the lane constants, which may be more than those of the graph.
+    /// Stores of neighbouring numbers of the result: constants first, half of them before the sines
+    /// and half between and after them, so that the stores fill the time in which nothing else can
+    /// run; then each group as soon as its last number is known. For vectors of four lanes. Also
+    /// returns the lane constants, which may be more than those of the graph.
     pub(crate) fn stores_in_rows(&self) -> (Vec<Stmt>, Lanes) {
         let cells: Vec<Cell> = self.graph.outputs.iter().map(|&output| Cell::of(self.graph, output)).collect();
         let all = self.results.iter().flat_map(|array| {
@@ -180,7 +180,7 @@ impl Lowering<'_> {
 }
 
 /// Whether a statement is repeated wherever its value is needed: inputs, and comparisons, whose
-/// values are no numbers.
+/// values are not numbers.
 pub(crate) fn is_light(statement: &Stmt) -> bool {
     statement.compares() || matches!(statement, Stmt::Let(_, Expr::Input { .. } | Expr::LaneInput { .. }))
 }
@@ -191,9 +191,9 @@ fn defined_in(statements: &[Stmt]) -> Vec<Temp> {
     all
 }
 
-/// Angles that are known at once, as they lie in memory, so that neighbours are one load; or
-/// backwards where more are needed in that order, since the last lane is known last. Computed
-/// angles come after them, as they are needed.
+/// Angles that are known at once, in the order of memory, so that neighbours are one load; or
+/// backwards if more are needed in that order, since the last lane is known last. Computed angles
+/// come after them, as they are needed.
 fn in_order(needed: &[super::order::Angle], graph: &Graph) -> Vec<super::order::Angle> {
     let place = |angle: &super::order::Angle| {
         let node = graph.node(angle.angle);
@@ -208,8 +208,7 @@ fn in_order(needed: &[super::order::Angle], graph: &Graph) -> Vec<super::order::
     angles
 }
 
-/// The nodes that need a name: those that others use. A lane of a vector does not where it is a
-/// result.
+/// The nodes that need a name: those that others use. A lane of a vector that is a result does not.
 fn inner(graph: &Graph) -> Vec<bool> {
     let mut inner = vec![false; graph.nodes().len()];
     graph.nodes().iter().flat_map(Node::operands).for_each(|o| inner[o.index()] = true);
@@ -227,7 +226,7 @@ struct RowWriter<'a, 'b> {
     /// The unit that defines a value.
     defined: HashMap<Temp, usize>,
     sums: Sums,
-    /// What is stored behind each unit, and before the first.
+    /// The stores after each unit, and before the first.
     behind: Vec<Vec<Stmt>>,
     first: Vec<Stmt>,
 }
@@ -261,7 +260,7 @@ impl<'a, 'b> RowWriter<'a, 'b> {
         }
     }
 
-    /// Stores a group behind a unit, or before all.
+    /// Stores a group after a unit, or before all.
     fn store(&mut self, behind: Option<usize>, start: usize, group: &Group) {
         let store = Stmt::Store(self.stored(start, group));
         behind.map_or(&mut self.first, |unit| &mut self.behind[unit]).push(store);
@@ -355,8 +354,8 @@ fn thirds(graph: &Graph) -> Vec<Three> {
     inputs.iter().filter_map(three).collect()
 }
 
-/// Sums over the lanes of several vectors that are results and nothing else. Up to four are added
-/// up together, which takes half as many instructions as one after the other.
+/// Sums over the lanes of several vectors that are only results. Up to four are added up together,
+/// which takes half as many instructions as one after the other.
 struct Sums {
     sets: Vec<Vec<usize>>,
     /// The set of a node, and its lane there.
@@ -382,7 +381,7 @@ impl Sums {
         Self { places: places.collect(), sets, first: graph.nodes().len() }
     }
 
-    /// The nodes that are made together with a node, itself among them; none if it is made alone.
+    /// The nodes computed together with a node, including itself; empty if it is computed alone.
     fn set(&self, node: usize) -> &[usize] {
         self.places.get(&node).map_or(&[], |(set, _)| &self.sets[*set])
     }
@@ -393,7 +392,7 @@ impl Sums {
         self.places.get(&node).map_or_else(|| (Temp::of(node), 0), |(set, lane)| (Temp::of(self.first + set), *lane))
     }
 
-    /// The statement that makes the set of a node, given what is added up for each.
+    /// The statement that computes the set of a node, given the summed vector of each.
     fn statement(&self, node: usize, of: impl Fn(usize) -> Operand) -> Stmt {
         Stmt::SumLanes(self.place(node).0, self.set(node).iter().map(|&k| of(k)).collect())
     }

@@ -34,7 +34,7 @@ pub enum Ty {
     F32,
     /// A sum of two `f64`.
     Pair,
-    /// So many `f64`: one for each of several isomorphic limbs.
+    /// This many `f64`: one for each of several isomorphic limbs.
     Vector(usize),
     /// A number of each of several states. The target chooses how many states a vector has.
     States,
@@ -70,14 +70,14 @@ impl Temp {
 /// A spill slot: memory in which a value waits while the registers are full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Slot {
-    /// Whether it is rarely used. Slots that are often used lie where an instruction reaches them
+    /// Whether it is rarely used. Slots that are often used lie where an instruction addresses them
     /// by one byte.
     pub is_far: bool,
-    /// Its number among those.
+    /// Its number among these.
     pub number: usize,
 }
 
-/// What an operation takes.
+/// An operand of an operation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operand {
     /// A value.
@@ -115,7 +115,7 @@ impl Number {
     }
 }
 
-/// What a `Let` computes.
+/// The right-hand side of a `Let`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expr {
     /// An element of an argument, in every lane.
@@ -134,7 +134,7 @@ pub enum Expr {
     },
     /// A lane in every lane.
     Broadcast(Number),
-    /// An operation; of its operands as many count as it takes.
+    /// An operation; operands beyond its arity are ignored.
     Op(Op, [Operand; 3]),
 }
 
@@ -167,7 +167,7 @@ pub enum Store {
     One(usize, Number),
     /// Two numbers side by side, from a place on.
     Two(usize, [Number; 2]),
-    /// So many equal numbers side by side, from a place on.
+    /// Equal neighbouring numbers: first place, count, value.
     Fill(usize, usize, f64),
     /// All lanes of a vector side by side, from a place on.
     Whole(usize, Operand),
@@ -180,8 +180,8 @@ pub enum Store {
 pub enum Stmt {
     /// Defines a value.
     Let(Temp, Expr),
-    /// Sines and cosines of several angles at once. `alone`: so few that each is computed by
-    /// itself.
+    /// Sines and cosines of several angles at once. `alone`: each is computed by itself, as there
+    /// are few.
     SinCos {
         /// The angles.
         angles: Vec<Angle>,
@@ -210,7 +210,7 @@ pub enum Stmt {
     Load(Temp, Slot),
     /// Writes into the result.
     Store(Store),
-    /// A number of the result, by its place: the result is made of all of them at the end.
+    /// A number of the result, by its place: the result is built from all of them at the end.
     Result(usize, Number),
 }
 
@@ -219,7 +219,7 @@ pub enum Stmt {
 pub struct Slots {
     /// How many are often used.
     pub near: usize,
-    /// How many of these lie side by side within reach of one byte.
+    /// How many of these lie side by side, addressable by one byte.
     pub per_shelf: usize,
     /// How many are rarely used.
     pub far: usize,
@@ -230,7 +230,7 @@ pub struct Slots {
 pub struct Array {
     /// The place of its first number in the result.
     pub start: usize,
-    /// Its lengths, none for a number.
+    /// Its lengths; empty for a number.
     pub lengths: Vec<usize>,
 }
 
@@ -242,7 +242,7 @@ impl Array {
     }
 }
 
-/// What a function computes.
+/// The body of a function.
 #[derive(Clone, Debug)]
 pub struct Body {
     /// The type of its values.
@@ -257,8 +257,8 @@ pub struct Body {
     pub kept: usize,
     /// Its spill slots, if it spills by itself.
     pub slots: Option<Slots>,
-    /// Whether numbers that lie side by side in the result must not look so to a compiler:
-    /// `lir/pass/alias_barrier.rs` says why.
+    /// Whether neighbouring numbers of the result are hidden as such from the compiler; reason:
+    /// `lir/pass/alias_barrier.rs`.
     pub barrier: bool,
     /// Whether not all numbers of the result are stored: the others are zero from the start, or a
     /// loop that follows computes them.
@@ -285,7 +285,7 @@ pub struct Bodies {
 }
 
 impl Bodies {
-    /// All of them with their names.
+    /// All bodies with their names.
     pub fn all(&self) -> impl Iterator<Item = (&'static str, &Body)> {
         let Self { single, few_registers, scalar, states, states_few_registers, .. } = self;
         let rest = [few_registers, scalar, states, states_few_registers].map(Option::as_ref);

@@ -36,7 +36,7 @@ pub(crate) fn order(graph: &Graph) -> Vec<Step> {
     steps
 }
 
-/// How many sines or cosines follow from one another up to each node, itself included.
+/// Length of the longest chain of sines or cosines up to each node, itself included.
 fn stages(graph: &Graph) -> Vec<u32> {
     let mut stages: Vec<u32> = Vec::with_capacity(graph.nodes().len());
     for node in graph.nodes() {

@@ -1,13 +1,13 @@
-//! What must hold of a body.
+//! Invariants of a body.
 
 use std::collections::HashSet;
 
 use super::{Body, Expr, Operand, Stmt, Temp};
 use crate::graph::Op;
 
-/// Checks that every operand is defined before its use and once, that masks are what comparisons
-/// give and selections take, that slots are written before they are read, and that every number of
-/// the result is written once.
+/// Checks that every operand is defined before its use and once, that comparisons return masks and
+/// selections take them, that slots are written before they are read, and that every number of the
+/// result is written once.
 ///
 /// # Errors
 /// The first statement that breaks a rule, and the rule.
@@ -35,7 +35,7 @@ pub fn verify(body: &Body) -> Result<(), String> {
     }
 }
 
-/// What is defined up to a statement.
+/// The definitions up to a statement.
 #[derive(Default)]
 struct Known {
     values: HashSet<Temp>,

@@ -7,13 +7,13 @@ use articulated_core::spatial::Vector3;
 
 use super::view::View;
 
-/// Bodies with so many products of inertia have U's diagonal by the axis: each takes a difference
+/// Bodies with this many products of inertia have U's diagonal by the axis: each takes a difference
 /// on it.
 const DENSE: usize = 2;
 
 impl<S: Scalar> View<S> {
     /// The view with [`AngularKinematics::AxisAcceleration`] for each revolute joint that lies
-    /// along an axis of its parent, where to multiply by it is to choose a column.
+    /// along an axis of its parent, where multiplying by it selects a column.
     #[must_use]
     pub fn with_axis_accelerations(mut self) -> Self {
         let one = |i: BodyId| {

@@ -11,20 +11,20 @@ use super::view::View;
 /// Which revolute bodies have frames that do not rotate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FoldedRotations {
-    /// Rows of bodies on parallel joints: each row has the axes in which it begins, and no vector
-    /// has to be turned from one to the next, there and back.
+    /// Rows of bodies on parallel joints: each row has the axes of its first body, and no vector is
+    /// rotated from one to the next and back.
     Parallel,
-    /// These, and bodies that carry no other.
+    /// These, and bodies without children.
     ParallelAndLast,
 }
 
 impl<S: Scalar> View<S> {
-    /// The view as it is at the configuration q, where the frames of these bodies stay, and their
-    /// constants are rotated instead (offsets, moments of mass), by the sum of the angles.
+    /// The view at the configuration q with frames of these bodies that do not rotate: their
+    /// constants (offsets, moments of mass) are rotated instead, by the sum of the angles.
     ///
-    /// q: `[nq]` rad|m|quaternion. Joint torques, M(q) and whatever follows from them are those of
-    /// the robot itself, at this q alone; frames are not kept, and effects on bodies must not be
-    /// there.
+    /// q: `[nq]` rad|m|quaternion. Joint torques, M(q) and quantities that follow from them are
+    /// those of the robot itself, at this q only. Frames are not kept, and the model must have no
+    /// effects on bodies.
     ///
     /// # Panics
     /// If q is shorter than stated.
@@ -56,8 +56,7 @@ impl<S: Scalar> View<S> {
         View { model, formulation }
     }
 
-    /// What [`View::fold_rotations_into_constants`] has to choose from: nothing where no body is of
-    /// the kind.
+    /// Choices for [`View::fold_rotations_into_constants`]: each that folds further bodies.
     pub fn foldable_rotations(&self) -> Vec<FoldedRotations> {
         let none = ById::<BodyId, _>::from(vec![false; self.model.bodies().len()]);
         let [parallel, all] = [FoldedRotations::Parallel, FoldedRotations::ParallelAndLast].map(|which| self.stays(which));
@@ -67,7 +66,7 @@ impl<S: Scalar> View<S> {
         choices
     }
 
-    /// Whether the frame of each body stays.
+    /// Whether the frame of each body does not rotate.
     fn stays(&self, which: FoldedRotations) -> ById<BodyId, bool> {
         let (model, last) = (&self.model, which == FoldedRotations::ParallelAndLast);
         let mut stays = ById::<BodyId, _>::from(vec![last; model.bodies().len()]);

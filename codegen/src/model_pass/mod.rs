@@ -73,10 +73,9 @@ impl<S: Scalar> Table<S> {
     ];
 }
 
-/// The passes in order; each row: name, pass, and what holds after it. They keep joint torques, and
-/// where the frames of links are: functions of the table that need more are not
-/// [`Function::regrouped`]. For those that need no frames ([`Function::asks_for_frames`]) these may
-/// be taken away before.
+/// The passes in order; each row: name, pass, and invariant after it. They keep joint torques and
+/// the poses of link frames: functions of the table that need more are not [`Function::regrouped`].
+/// For those that need no frames ([`Function::asks_for_frames`]), frames may be removed before.
 pub fn model_passes<S: Scalar>() -> &'static [(&'static str, ModelPass<S>, &'static str)] {
     Table::<S>::ROWS
 }

@@ -10,7 +10,7 @@ use super::zeros::{or_zero, within};
 /// Most places of one body.
 const MOST: usize = 6;
 
-/// For each body shifts of its frame, in its axes, m; none the first.
+/// Shifts of the frame of each body, in its axes, m; the first is zero.
 pub(super) struct Places<S> {
     pub(super) all: ById<BodyId, Vec<Vector3<S>>>,
     /// How far a frame may be shifted: as far as the offsets there reach.
@@ -18,8 +18,8 @@ pub(super) struct Places<S> {
 }
 
 impl<S: Scalar> Places<S> {
-    /// Where the body has a moment less, where it is level with a child, and where its offset has a
-    /// number less.
+    /// The places where the body has one moment less, is level with a child, or has one number less
+    /// in its offset.
     pub(super) fn of(model: &Model<S>) -> Self {
         let length = |body: &Body<S>| body.placement.position.fold(S::zero(), |sum, x| sum + x.abs());
         let mut reach: ById<BodyId, S> = model.bodies().iter().map(length).collect();
@@ -52,7 +52,7 @@ impl<S: Scalar> Places<S> {
         }
     }
 
-    /// Shifts of the parent of body `i` to where that lies in the parent's xy-plane.
+    /// Adds shifts of the parent of body `i` with which `i` lies in the parent's xy-plane.
     fn level_with_child(&mut self, model: &Model<S>, i: BodyId) {
         let x = &model.bodies()[i].placement;
         for k in 0..self.all[i].len() {
@@ -74,7 +74,7 @@ impl<S: Scalar> Places<S> {
         }
     }
 
-    /// Adds a shift, or what of it the joint allows, if it is new and within reach.
+    /// Adds a shift, or the part of it that the joint allows, if it is new and within reach.
     fn add(&mut self, model: &Model<S>, i: BodyId, shift: Vector3<S>) {
         let (o, joint) = (S::zero(), model.bodies()[i].joint);
         let shift = if joint.is_rotation_about_axis() && !i.is_base() {

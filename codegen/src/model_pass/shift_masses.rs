@@ -10,20 +10,18 @@ use super::view::View;
 use super::zeros::within;
 
 impl<S: Scalar> View<S> {
-    /// The view with inertias for inverse dynamics beside the model's
+    /// The view with separate inertias for inverse dynamics
     /// ([`Formulation::torque_inertias`](articulated_core::algorithm::Formulation)).
     ///
-    /// What regrouping gives to the parent of a revolute joint need not all stay there: wherever on
-    /// the joint's axis a mass is, and in whichever of the two
-    /// bodies, the torques are the same. The mass with which the parent's h_x or h_y vanishes is
-    /// shifted to the child, at its origin, where that takes fewer
-    /// instructions, from the tips inward; no more than twice what the joint carries
-    /// ([`Model::carried`], kg, before regrouping), as greater masses would cost
-    /// digits. Mass matrices want bodies without mass, and keep their own. For a model that is
-    /// regrouped.
+    /// Mass that regrouping moves to the parent of a revolute joint may also be in the child,
+    /// anywhere on the joint's axis: the torques are the same. The mass with which the parent's h_x
+    /// or h_y vanishes is shifted to the child's origin where that takes fewer instructions, from
+    /// the tips inward. It is at most twice the mass that the joint carries ([`Model::carried`],
+    /// kg, before regrouping), since greater masses would cost digits. Mass matrices profit from
+    /// bodies without mass, and keep their own inertias. The model must be regrouped.
     ///
     /// # Panics
-    /// If `carried` is not as long as there are bodies.
+    /// If `carried` does not have one entry per body.
     #[must_use]
     pub fn with_shifted_masses(mut self, carried: &ById<BodyId, S>) -> Self {
         let mut model = self.model.clone();
@@ -40,8 +38,8 @@ impl<S: Scalar> View<S> {
     }
 }
 
-/// Whether inverse dynamics needs the force on each body, as there is a lever somewhere on its path
-/// to the root, or a joint that moves its origin.
+/// Whether inverse dynamics needs the force on each body: there is a lever on its path to the root,
+/// or a joint that moves its origin.
 fn forces_shifted_to_parents<S: Scalar>(model: &Model<S>) -> ById<BodyId, bool> {
     let mut needs_force = ById::<BodyId, _>::from(vec![false; model.bodies().len()]);
     for i in model.outward() {
@@ -51,8 +49,8 @@ fn forces_shifted_to_parents<S: Scalar>(model: &Model<S>) -> ById<BodyId, bool> 
     needs_force
 }
 
-/// Whether mass may move from the parent to body `i`: a single child only, so that isomorphic limbs
-/// stay isomorphic, and of the parent more than I_zz is felt.
+/// Whether mass may move from the parent to body `i`: it is the only child, so that isomorphic
+/// limbs stay isomorphic, and more than I_zz of the parent affects torques.
 fn takes_mass<S: Scalar>(model: &Model<S>, i: BodyId) -> bool {
     let parent = model.bodies()[i].parent;
     let first = model.bodies()[parent].parent == BodyId::BASE && model.bodies()[parent].joint.is_rotation_about_axis();
@@ -63,11 +61,11 @@ fn takes_mass<S: Scalar>(model: &Model<S>, i: BodyId) -> bool {
 /// The inertias of a body and of its parent.
 type Pair<S> = (SpatialInertia<S>, SpatialInertia<S>);
 
-/// Those of body `i` and of its parent that take fewest instructions; `None` if these are what they
-/// have.
+/// The inertias of body `i` and of its parent with the fewest instructions; `None` if these are the
+/// present ones.
 fn cheapest<S: Scalar>(model: &Model<S>, i: BodyId, needs_force: &ById<BodyId, bool>, most: S) -> Option<Pair<S>> {
     let (body, parent) = (&model.bodies()[i], &model.bodies()[model.bodies()[i].parent]);
-    // The parent gives away what it can in turn.
+    // The parent passes its own regroupable inertia on.
     let kept = |own: &SpatialInertia<S>| parent.joint.regroupable(own).map_or(*own, |given| subtract(*own, given));
     let both = |(child, own): &Pair<S>| price(child, needs_force[i]) + price(&kept(own), needs_force[body.parent]);
     let shifts = (0..2).filter(|_| takes_mass(model, i)).filter_map(|k| mass_shift(body, &parent.inertia, k, most));
@@ -75,8 +73,8 @@ fn cheapest<S: Scalar>(model: &Model<S>, i: BodyId, needs_force: &ById<BodyId, b
     (both(&best) < both(&(body.inertia, parent.inertia))).then_some(best)
 }
 
-/// The inertias of a body and of its parent, which has `own`, once the mass is shifted with which
-/// the parent's h_x or h_y vanishes; `None` if there is no such mass, or too great a one.
+/// The inertias of a body and of its parent, which has `own`, after the shift of the mass with
+/// which the parent's h_x or h_y vanishes; `None` if there is no such mass, or it is too great.
 fn mass_shift<S: Scalar>(body: &Body<S>, own: &SpatialInertia<S>, k: usize, most: S) -> Option<Pair<S>> {
     let lever = body.placement.position;
     if lever[k].is_zero() {
@@ -93,8 +91,7 @@ fn mass_shift<S: Scalar>(body: &Body<S>, own: &SpatialInertia<S>, k: usize, most
     Some((child, left))
 }
 
-/// Instructions that the numbers of a body take in inverse dynamics, by whether the force on it is
-/// needed.
+/// Instructions in inverse dynamics for the numbers of a body, with or without the force on it.
 fn price<S: Scalar>(inertia: &SpatialInertia<S>, needs_force: bool) -> usize {
     let SpatialInertia { mass, first, second } = inertia;
     let count = |numbers: &[S]| numbers.iter().filter(|x| !x.is_zero()).count();

@@ -12,12 +12,12 @@ use super::zeros::count;
 /// Slides the frame of each revolute body along its axis, and shifts that of each prismatic body,
 /// to minimise the work of the inverse-dynamics recursion.
 ///
-/// A frame may lie anywhere on the axis of its joint, and that of a slide anywhere at all: the
-/// joint does the same. Instructions go into every non-zero number of a body's offset from its
-/// parent, into Σ_xz and Σ_yz, and into a force that must be shifted to the parent because there is
-/// an offset on its path to the root. Of the places where a number vanishes, the cheapest are taken
-/// for all bodies together, from the tips inward. Exact for all joint torques; frames of links keep
-/// their poses. The model must be regrouped, and stays so.
+/// The frame of a revolute body may lie anywhere on its axis, that of a prismatic body anywhere:
+/// the joint does the same. Instructions go into every non-zero number of a body's offset from its
+/// parent, into Σ_xz and Σ_yz, and into a force that must be shifted to the parent because its path
+/// to the root has an offset. The cheapest places where numbers vanish are chosen for all bodies
+/// together, from the tips inward. Exact for all joint torques; frames of links keep their poses.
+/// The model must be regrouped, and stays so.
 pub fn slide<S: Scalar>(view: View<S>) -> View<S> {
     let View { model, formulation } = view;
     let shifts = Plan::of(&model).shifts();
@@ -62,7 +62,7 @@ impl<'a, S: Scalar> Plan<'a, S> {
     fn of(model: &'a Model<S>) -> Self {
         let places = Places::of(model);
         let mut best = ById::<BodyId, _>::from(vec![Vec::new(); model.bodies().len()]);
-        // What a body costs with all that it carries, by its place.
+        // Cost of a body with all that it carries, by its place.
         let mut costs: ById<BodyId, Vec<ByForce<u32>>> = places.all.iter().map(|p| vec![[0; 2]; p.len()]).collect();
         for i in model.inward() {
             let parent = model.bodies()[i].parent;
@@ -118,8 +118,8 @@ fn standing<S: Scalar>(model: &Model<S>, i: BodyId, shift: Vector3<S>) -> u32 {
     }
 }
 
-/// How many numbers of the offset of body `i` count. On the base, which stands still, none does,
-/// and on a body that only turns about z none along z.
+/// Number of relevant numbers of the offset of body `i`: on the base, which is fixed, none, and on
+/// a body that only turns about z, none along z.
 fn offsets<S: Scalar>(model: &Model<S>, i: BodyId, shift: Vector3<S>, parent: Vector3<S>) -> u32 {
     let body = &model.bodies()[i];
     let below = &model.bodies()[body.parent];

@@ -129,8 +129,8 @@ fn count_from_there<S: Scalar>(body: &mut Body<S>, formulation: &mut Formulation
     }
 }
 
-/// R' and o with R = R' Rz(o), R' the same for all R with this third column, as the model's builder
-/// would have it. `None` where no coordinate axis is at right angles to that.
+/// R' and o with R = R' Rz(o): R' is the same for all R with this third column, as in the model's
+/// builder. `None` if no coordinate axis is perpendicular to that column.
 fn plain<S: Scalar>(r: &Matrix3<S>) -> Option<(Matrix3<S>, Angle<S>)> {
     let (o, x, z) = (S::zero(), r.column(0), r.column(2).into_owned());
     let k = match [z.x == o, z.y == o, z.z == o] {

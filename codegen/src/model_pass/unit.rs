@@ -11,13 +11,13 @@ impl<S: Scalar> View<S> {
     /// The view with lengths in a unit of `metres`: offsets and gravity divided by it, masses m
     /// times its square, moments h times it; second moments, kg·m², stay.
     ///
-    /// Where no joint moves an origin ([`no_joint_moves_origin`]), torques, M(q), energies and what
-    /// follows from them are those of the robot itself: lengths are
-    /// inside only. What is one in the unit takes no multiplication ([`View::units`]). Frames are
-    /// not kept.
+    /// Where no joint moves an origin ([`no_joint_moves_origin`]), torques, M(q), energies and
+    /// quantities that follow from them are those of the robot itself: lengths are internal only.
+    /// Numbers that are one in the unit take no multiplication ([`View::units`]). Frames are not
+    /// kept.
     ///
     /// # Panics
-    /// If an effect acts on a body: it would measure in metres still.
+    /// If an effect acts on a body: it would still measure in metres.
     #[must_use]
     pub fn in_unit_of(&self, metres: S) -> Self {
         let View { model, mut formulation } = self.clone();

@@ -9,8 +9,8 @@ use articulated_core::spatial::SpatialInertia;
 /// A robot as the generator traces it.
 #[derive(Clone, Debug)]
 pub struct View<S> {
-    /// The model. With the rotations of the formulation it has the torques of the robot; by itself
-    /// its revolute joints count their angles from elsewhere.
+    /// The model. With the rotations of the formulation it has the torques of the robot; without
+    /// them, its revolute joints have other zero angles.
     pub model: Model<S>,
     /// How the algorithms compute on it.
     pub formulation: Formulation<S>,
@@ -33,7 +33,7 @@ impl<S: Scalar> View<S> {
         function.call_by(way, &self.model, &mut self.workspace(), arguments, out)
     }
 
-    /// What the view has of body `i`, with `f` of each constant, always in the same order.
+    /// The view's data of body `i`, with `f` applied to each constant, always in the same order.
     pub(crate) fn map_body<T: Scalar>(&self, i: BodyId, f: impl Fn(S) -> T + Copy) -> BodyView<T> {
         let body = self.model.bodies()[i].map(f);
         let rotation = self.formulation.rotations[i].map(f);
@@ -51,7 +51,7 @@ impl<S: Scalar> View<S> {
     }
 }
 
-/// What a view has of one body.
+/// A view's data of one body.
 pub(crate) struct BodyView<S> {
     body: Body<S>,
     rotation: FrameRotation<S>,
@@ -59,7 +59,7 @@ pub(crate) struct BodyView<S> {
 }
 
 impl<S: Scalar> BodyView<S> {
-    /// Replaces what a view, taken apart, has of body `i`.
+    /// Replaces the data of body `i` in the parts of a view.
     pub(crate) fn put(self, i: BodyId, parts: &mut ModelParts<S>, formulation: &mut Formulation<S>) {
         parts.bodies[i] = self.body;
         formulation.rotations[i] = self.rotation;

@@ -26,7 +26,7 @@ use articulated_scene::BuiltRobot;
 
 use crate::{Options, Sym, identifier, nearest};
 
-/// What stays an input.
+/// Kind of a constant that stays an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Payload,
@@ -36,7 +36,7 @@ enum Kind {
     Effect(EffectId),
 }
 
-/// Those of a link or joint that need no effect.
+/// Kinds for a link or joint that need no effect.
 const KINDS: [(&str, Kind); 3] = [("payload", Kind::Payload), ("inertia", Kind::Inertia), ("origin", Kind::Origin)];
 
 const GRAVITY: &str = "gravity";
@@ -47,13 +47,13 @@ const EXPECTED: &str =
 /// One parameter of a robot.
 #[derive(Clone, Debug)]
 pub struct Parameter {
-    /// What it is, in words.
+    /// Its description.
     pub what: String,
-    /// Its name: of the link or joint, or what that is renamed to, and its kind.
+    /// Its name: that of the link or joint, or its new name, and its kind.
     pub name: String,
     /// First index among all numbers.
     pub at: usize,
-    /// What the robot's file says.
+    /// The values in the robot's file.
     pub nominal: Vec<f64>,
     kind: Kind,
     /// The body that it changes, and the frame that it is given in, in that body or, for an origin,
@@ -216,7 +216,7 @@ impl<'a> Robot<'a> {
         if frame.body == BodyId::BASE {
             return Err(format!("link {name:?} is fixed to the base: no function depends on it"));
         }
-        // The link itself is left without what becomes an input.
+        // The link itself loses the numbers that become inputs.
         let own = if kind == Kind::Inertia { self.description.links[link].inertial.take() } else { None };
         let nominal = own.map_or([0.0; PARAMETERS], |own| own.spatial_inertia().parameters());
         let what = match kind {
@@ -251,13 +251,13 @@ fn indices<'a, I>(names: impl Iterator<Item = &'a String>, of: impl Fn(usize) ->
     indices
 }
 
-/// `, did you mean "upper"?`, or nothing.
+/// `, did you mean "upper"?`, or an empty text.
 fn meant<'a>(name: &str, names: impl Iterator<Item = &'a String>) -> String {
     nearest(name, names.map(String::as_str)).map(|n| format!(", did you mean {n:?}?")).unwrap_or_default()
 }
 
 impl Parameter {
-    /// Whether its numbers are the inertial parameters of something.
+    /// Whether its numbers are inertial parameters.
     pub(crate) fn is_inertial(&self) -> bool {
         matches!(self.kind, Kind::Payload | Kind::Inertia)
     }

@@ -1,4 +1,4 @@
-//! Parameters that are those of another robot make it that robot.
+//! With the parameters of another robot, a robot becomes that robot.
 
 use super::*;
 use crate::Request;
@@ -31,7 +31,7 @@ fn robot([origin, mass, com, shoulder]: [&str; 4]) -> Request {
     Request::new("robot.urdf", format!("<robot name='robot'>{links}{joints}</robot>"))
 }
 
-/// The model, with what stays an input taken out of it.
+/// The model without the numbers that stay inputs.
 fn read(request: &Request, list: &[&str]) -> (Model<f64>, Vec<Parameter>) {
     let mut robot = request.build_robot().unwrap();
     let parameters = parsed(&mut robot, list, &[]).unwrap();
@@ -56,7 +56,7 @@ fn the_numbers_of_another_robot_make_it_that_robot() {
     held(["inverse_dynamics", "placements", "potential_energy"], (&here, &LIST), &numbers, &there);
 }
 
-/// What a request's parameters are at first.
+/// The nominal parameters of a request.
 fn nominal(request: &Request, list: &[&str]) -> Vec<f64> {
     read(request, list).1.into_iter().flat_map(|p| p.nominal).collect()
 }
@@ -65,7 +65,7 @@ fn input(argument: usize, k: usize) -> f64 {
     (argument * 5 + k * 3) as f64 * 0.37 % 1.9 - 0.8
 }
 
-/// With these numbers in the place of its own, the one robot is the other, before passes and after.
+/// With these numbers in place of its own, one robot equals the other, before and after passes.
 fn held<const N: usize>(functions: [&str; N], (here, list): (&Request, &[&str]), numbers: &[f64], there: &Request) {
     let (model, parameters) = read(here, list);
     for name in functions {
@@ -113,7 +113,7 @@ fn other_gravity_and_other_effects_are_those_of_a_request_that_asks_for_them() {
     let there = robot([0.3, -1.6, 0.7], [1.5, 0.7, 0.2, 0.02, -30.0]);
     assert_eq!(read(&here, &list).1[1].nominal, [0.0, 0.0, -9.81]);
     let mut numbers = nominal(&there, &list);
-    // The contact's normal; the height and the time of its damping are behind it.
+    // The contact's normal; the height and the time of its damping follow it.
     let n = numbers.len();
     numbers[n - 5..n - 2].iter_mut().for_each(|x| *x *= 3.0);
     let functions = ["inverse_dynamics", "forward_dynamics", "effect_forces", "potential_energy", "inverse_dynamics_derivatives"];
@@ -174,7 +174,7 @@ fn what_there_is_not_is_told_with_what_was_meant() {
     assert_eq!(told(&request), [off("damping"), off("friction")].join("\n"));
     request.options.robot.effects = vec![friction(0.3)];
     assert_eq!(told(&request), off("damping"));
-    // Which of two on a link, nobody could say.
+    // Of two effects of one kind on a link, the parameter would be ambiguous.
     let drag = Applied { effect: EffectId::drag, on: "tool".into(), at: crate::Origin::default(), parameters: vec![0.1] };
     request.options.robot.effects = vec![drag.clone(), drag];
     request.options.parameters = vec!["drag(tool)".into(), "drag(arm)".into()];
@@ -195,7 +195,7 @@ fn two_that_have_one_name_in_rust_are_refused() {
     let mut told = |list: [&str; 2]| parsed(&mut robot, &list, &[]).err();
     assert!(told(["payload(tool)", "payload(TOOL)"]).is_some_and(|told| told.contains("is TOOL_PAYLOAD in Rust, as the")));
     assert_eq!(told(["payload(tool)", "inertia(TOOL)"]), None);
-    // As of all constants of a joint or link, another name in Rust tells them apart.
+    // As for all constants of a joint or link, another name in Rust distinguishes them.
     let names = parsed(&mut robot, &["payload(tool)", "payload(TOOL)", "gravity"], &[("TOOL", "TABLE")]);
     let names = names.map(|all| all.iter().map(|p| identifier(&p.name)).collect::<Vec<_>>());
     assert_eq!(names.unwrap(), ["TOOL_PAYLOAD", "TABLE_PAYLOAD", "GRAVITY"]);

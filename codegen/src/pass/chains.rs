@@ -10,9 +10,9 @@ pub(super) struct Known {
 /// Cycles that an addition, a multiplication or a multiply-add takes.
 const STEP: u32 = 4;
 
-/// Chains to add up one after the other and then together, as indices of terms: of those by which
-/// the sum is known when it is `due`, in cycles, the ones that take fewest instructions; where none
-/// is in time, the earliest. `terms` are sorted by the time they are known.
+/// Chains to add up one after the other and then together, as indices of terms. Of the plans whose
+/// sum is known when it is `due`, in cycles, the one with the fewest instructions; if none is in
+/// time, the earliest. `terms` are sorted by the time they are known.
 pub(super) fn plan(terms: &[Known], due: u32) -> Vec<Vec<usize>> {
     let single = vec![first_plain(terms)];
     // Nothing takes fewer instructions.

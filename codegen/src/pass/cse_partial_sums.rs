@@ -6,7 +6,7 @@ use super::dce;
 use super::sums::{Rebuild, Term, flatten, inner, is_sum, open, uses_in_sums};
 use crate::graph::{Graph, NodeId, Op};
 
-/// Sums of more terms have too many pairs to look at.
+/// Most terms of a searched sum: longer sums have too many pairs.
 const MOST: usize = 32;
 
 /// Common-subexpression elimination of partial sums: computes x + y once where several sums have
@@ -50,13 +50,13 @@ struct Key {
 struct Sums {
     fused: Vec<bool>,
     sums: Vec<Vec<Term>>,
-    /// Of which sums the terms are others than they were.
+    /// Sums whose terms have changed.
     changed: Vec<bool>,
     pairs: Vec<Pair>,
 }
 
 impl Sums {
-    /// Takes out pairs that several sums have; whether there were any.
+    /// Extracts pairs that several sums share; returns whether there were any.
     fn round(&mut self) -> bool {
         let mut places: HashMap<Key, Vec<usize>> = HashMap::new();
         let common = self.common();
@@ -78,20 +78,20 @@ impl Sums {
         sums.into_iter().map(|n| n > 1).collect()
     }
 
-    /// Instructions that are saved where so many sums have a pair: each adds one term less, and the
-    /// pair takes as many as it has products, or one.
+    /// Instructions saved if `sums` sums share a pair: each adds one term less, and the pair takes
+    /// one for each of its products, at least one.
     fn gain(&self, key: Key, sums: usize) -> usize {
         let products = key.nodes.iter().filter(|&&n| self.fused.get(n) == Some(&true)).count();
         sums.saturating_sub(products.max(1))
     }
 
-    /// Puts a pair in the place of its terms, in those of the sums that still have them.
+    /// Replaces the terms of a pair by the pair, in those of the sums that still have them.
     fn take_out(&mut self, key: Key, at: &[usize]) {
         let at: Vec<usize> = at.iter().copied().filter(|&k| keys(&self.sums[k]).any(|other| other == key)).collect();
         if self.gain(key, at.len()) == 0 {
             return;
         }
-        // As a sum of these two alone has them, if there is one: it needs no sign then.
+        // Signs as in a sum of these two alone, if there is one: it then needs no sign.
         let alone = at.iter().find(|&&k| self.sums[k].len() == 2).unwrap_or(&at[0]);
         let negative = |sum: &[Term], node: usize| sum.iter().any(|t| t.node == node && t.negative);
         let turned = self.sums[*alone].len() > 2 && negative(&self.sums[*alone], key.nodes[0]);

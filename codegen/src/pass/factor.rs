@@ -10,8 +10,8 @@ use crate::graph::{Graph, Node, NodeId, Op};
 /// multiplication less and as many additions, and as many instructions once sums are chains of
 /// multiply-adds.
 ///
-/// Factors are those of products that nothing but the sum uses; of several first the one that most
-/// of the products have. Re-association changes results by roundings only.
+/// Only factors of products that the sum alone uses are taken, most frequent first. Re-association
+/// changes results by roundings only.
 pub fn factor(graph: &Graph) -> Graph {
     let inner = inner(graph);
     let nodes = graph.nodes();
@@ -29,7 +29,7 @@ pub fn factor(graph: &Graph) -> Graph {
     dce(&Rebuild::graph(graph, &gone, |rebuild, k| Some(sums[k].as_ref()?.built(rebuild))))
 }
 
-/// A sum, constants and what has a common factor apart from the rest.
+/// A sum: constants, terms with a common factor, and the rest.
 struct Sum {
     constants: Vec<Term>,
     rest: Vec<Term>,
@@ -81,7 +81,7 @@ impl Factored {
     }
 }
 
-/// Terms without those that the same with the other sign takes away.
+/// The terms without pairs that cancel.
 fn without_opposites(mut terms: Vec<Term>) -> Vec<Term> {
     let mut k = 0;
     while k < terms.len() {

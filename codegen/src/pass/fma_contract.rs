@@ -11,11 +11,11 @@ const A_CYCLE: u32 = 2;
 /// instructions; a processor looks only so far ahead.
 const GRACE: u32 = 16;
 
-/// Instructions from which on a program nearly fills the cache for instructions: then nothing is
-/// worth more of them.
+/// Number of instructions from which on a program nearly fills the instruction cache: then no gain
+/// is worth more of them.
 const LONG: u32 = 1800;
 
-/// Sums from which on a product that they use is computed once: one instruction more for two
+/// From this many sums on, a product that they use is computed once: one instruction more for two
 /// multiplications fewer, and processors that add beside multiplying have additions to spare.
 const SHARED: u32 = 3;
 
@@ -54,10 +54,10 @@ struct Sums {
     inner: Vec<bool>,
     /// The terms of each sum that is not inner.
     terms: Vec<Option<Vec<Term>>>,
-    /// Products that nothing but sums use.
+    /// Products that only sums use.
     fusible: Vec<bool>,
-    /// Of those, the ones that are computed on their own all the same, because a sum starts from
-    /// them or many sums use them.
+    /// Those of them that are computed on their own nevertheless, because a sum starts from them or
+    /// many sums use them.
     seed: Vec<bool>,
 }
 

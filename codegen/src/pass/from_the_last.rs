@@ -3,9 +3,9 @@
 use super::copy;
 use crate::graph::{Graph, NodeId};
 
-/// Puts each node where the results first need it, from the last result on. In a mass matrix that
-/// is column by column from the tips, each carried to the base at once: as it is traced, joint by
-/// joint, there are as many wrenches to keep as columns.
+/// Puts each node where the results first need it, from the last result on. A mass matrix is then
+/// computed column by column from the tips, each carried to the base at once. In traced order,
+/// joint by joint, there are as many live wrenches as columns.
 pub fn from_the_last(graph: &Graph) -> Graph {
     let mut new = graph.emptied();
     let mut ids: Vec<Option<NodeId>> = vec![None; graph.nodes().len()];

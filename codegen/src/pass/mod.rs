@@ -31,9 +31,9 @@ pub struct Row {
     pub name: &'static str,
     /// The pass.
     pub pass: GraphPass,
-    /// What it does, for the ledger.
+    /// Its description, for the ledger.
     pub does: &'static str,
-    /// What holds after it.
+    /// Its postcondition.
     pub holds: &'static str,
 }
 

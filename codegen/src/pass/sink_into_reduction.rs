@@ -4,8 +4,8 @@ use super::sums::{Rebuild, Term, flatten, inner, is_sum, open};
 use super::{cost, dce};
 use crate::graph::{Graph, NodeId, Op};
 
-/// What costs more than this is left as it is: it is busy with other things while it waits for a
-/// sum over lanes, and to have all the rest as early takes instructions.
+/// A program that costs more than this is left unchanged: it has other work while it waits for a
+/// sum over lanes, and computing the rest early takes instructions.
 const LONG: u32 = 1500;
 
 /// Adds terms beside a sum over lanes within the lanes: `reduce_add(x) + c·y` becomes `reduce_add(x

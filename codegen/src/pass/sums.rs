@@ -14,7 +14,7 @@ pub(super) fn is_sum(node: &Node) -> bool {
     matches!(node.op, Op::Add | Op::Sub | Op::Neg)
 }
 
-/// How often each node is a term of what adds two nodes or turns one's sign.
+/// Number of uses of each node as a term of additions, subtractions and negations.
 pub(super) fn uses_in_sums(graph: &Graph) -> Vec<u32> {
     let mut uses = vec![0; graph.nodes().len()];
     graph.nodes().iter().filter(|n| is_sum(n)).flat_map(Node::operands).for_each(|a| uses[a.index()] += 1);
@@ -67,8 +67,8 @@ pub(super) struct Rebuild<'a> {
 }
 
 impl<'a> Rebuild<'a> {
-    /// The graph without what is `gone`, and with what `sum` makes of a node where it makes
-    /// something.
+    /// The graph without nodes that are `gone`, where the result of `sum` for a node, if any,
+    /// replaces it.
     pub(super) fn graph(graph: &'a Graph, gone: &[bool], mut sum: impl FnMut(&mut Self, usize) -> Option<NodeId>) -> Graph {
         let mut rebuild = Self { graph, new: graph.emptied(), ids: vec![NodeId(u32::MAX); graph.nodes().len()] };
         for (k, node) in graph.nodes().iter().enumerate().filter(|(k, _)| !gone[*k]) {

@@ -116,7 +116,7 @@ pub(super) fn cheapest(part: &FunctionTerm, candidate: &Candidate, all: usize) -
     let alone = FunctionSpec { name: String::new(), parts: vec![part.clone()] };
     let mut best: Option<(Strategy, u32)> = None;
     for (strategy, least) in candidates {
-        // A way whose least is more than another's cost is not tried: the factorisation of a long
+        // A way whose lower bound exceeds another's cost is not tried: the factorisation of a long
         // chain grows with the cube of its length.
         if best.is_some_and(|(_, cost)| least > u64::from(cost) || (strategy.folded.is_some() || strategy.shifted) && cost > FOLDED_TO) {
             continue;

@@ -34,15 +34,15 @@ pub(crate) fn has_columns(spec: &FunctionSpec, model: &Model<f64>, can: Capabili
 }
 
 impl MultiRhsSolve {
-    /// Whether the loop reads entry `k` of the three matrices: of both B all, of the factors the
-    /// diagonal and the entries on a path to the root.
+    /// Whether the loop reads entry `k` of the three matrices: all entries of both B; of the
+    /// factors, the diagonal and the entries on a path to the root.
     pub(crate) fn reads(&self, k: usize) -> bool {
         let n = self.ways.len();
         let (matrix, row, column) = (k / n / n, k / n % n, k % n);
         matrix < 2 || row == column || self.ways[row].contains(&column)
     }
 
-    /// Adds what the loop computes, in vectors of four columns, to every stage.
+    /// Adds the operations of the loop, in vectors of four columns, to every stage.
     pub(super) fn count(&self, entry: &mut Entry) {
         let (n, entries) = (self.ways.len() as u64, self.ways.iter().map(|way| way.len() as u64).sum::<u64>());
         let vectors = 3 * n.div_ceil(4);

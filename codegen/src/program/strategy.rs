@@ -72,7 +72,7 @@ pub(crate) enum Transform {
 }
 
 impl Transform {
-    /// All of them with their names in the ledger and what they do.
+    /// All of them with their names in the ledger and their descriptions.
     pub(crate) const ALL: [(Self, &'static str, &'static str); 4] = [
         (Self::ShiftedMasses, "shift_masses", "mass moved to the body beyond a joint, so that numbers vanish"),
         (Self::AxisAccelerations, "axis_rates", "angular kinematics by the second derivatives of joint axes, not by ω̇"),

@@ -1,4 +1,4 @@
-//! Arguments that are given up: what they are instead.
+//! Constants bound to arguments.
 
 use std::borrow::Cow;
 
@@ -11,7 +11,7 @@ use crate::Sym;
 /// The value of an argument that is a constant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Constant {
-    /// Every number of it is this.
+    /// All its numbers are this one.
     All(f64),
     /// Its numbers, row by row.
     Each(Vec<f64>),
@@ -34,9 +34,9 @@ impl Constant {
         }
     }
 
-    /// Whether it is right for a function of a robot: as many numbers as the argument has, and
-    /// quaternions that are some. That of zeros does not turn, but where it is what is turned.
-    /// Errors: what is wrong, in words.
+    /// Checks it for a function of a robot: as many numbers as the argument has, and unit
+    /// quaternions. A quaternion of zeros means no rotation, except where the function updates or
+    /// compares it. Errors: a text.
     pub(super) fn fits(&self, function: FunctionId, argument: Argument, model: &Model<f64>) -> Result<(), String> {
         let (name, expected) = (argument.name(), argument.len(model.shape()));
         let numbers = self.numbers(expected);
@@ -52,7 +52,7 @@ impl Constant {
         wrong.map_or(Ok(()), |found| Err(told(found)))
     }
 
-    /// The numbers of an argument of so many.
+    /// The numbers of an argument of length `count`.
     fn numbers(&self, count: usize) -> Cow<'_, [f64]> {
         match self {
             Self::All(x) => vec![*x; count].into(),
@@ -64,8 +64,8 @@ impl Constant {
 /// How far the norm of a constant quaternion may be from 1: results are off by twice that.
 const NORM: f64 = 1e-9;
 
-/// The joint and the norm of its quaternion, if it has one that is no rotation; `zeros` may stand
-/// for one that does not turn.
+/// The joint and the norm of its quaternion, if that is not a rotation; `zeros`: whether zeros are
+/// allowed and mean no rotation.
 fn not_unit<'a>(joint: &'a JointInfo, q: &[f64], zeros: bool) -> Option<(&'a str, f64)> {
     let quaternion = &q[joint.quaternion()?];
     let norm = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -98,7 +98,7 @@ pub(super) fn constant(
     Ok((*argument, constant))
 }
 
-/// A finite number; its sign may stand apart, as in the text of the macro's tokens.
+/// A finite number; its sign may be separate, as in the text of the macro's tokens.
 fn number(text: &str) -> Option<f64> {
     let text = text.trim();
     let (sign, digits) = text.split_at(text.len() - text.strip_prefix(['-', '+']).unwrap_or(text).len());
@@ -146,7 +146,7 @@ mod tests {
         assert_eq!([1, 2, 3].map(right), [false, true, false]);
     }
 
-    /// A quaternion of another norm is no rotation; zeros stand for none.
+    /// A quaternion of another norm is not a rotation; zeros mean no rotation.
     #[test]
     fn a_constant_configuration_has_quaternions_that_turn() {
         let told = |q: &str| FunctionSpec::parse(&format!("x = placements(q = {q})")).unwrap().check(&chain(&["continuous", "spherical"]));
@@ -157,7 +157,7 @@ mod tests {
         assert!(text.contains("constant q: joint \"j1\": found a quaternion of norm 2, expected 1 within 1e-9"), "{text}");
         let norms = ["0.999", "1.00000001", "0.99999999", "1.0000000001", "0.9999999999"];
         assert_eq!(norms.map(|w| told(&format!("[0, 0, 0, 0, {w}]")).is_ok()), [false, false, false, true, true]);
-        // What turns a configuration on, or compares two, has to have one.
+        // Functions that update or compare a configuration need a unit quaternion.
         for text in [
             "x = integrate(q = 0)",
             "x = difference(q = 0)",

@@ -1,4 +1,4 @@
-//! What functions a request wants: which, with what given up as a constant, and which together.
+//! Requested functions: names, arguments bound to constants, and groups computed together.
 //!
 //! ```text
 //! inverse_dynamics                                       a function of the table
@@ -34,9 +34,9 @@ pub struct FunctionSpec {
 pub struct FunctionTerm {
     /// The function.
     pub function: &'static Function<Sym>,
-    /// What is given up.
+    /// Arguments bound to constants.
     pub constants: Vec<(Argument, Constant)>,
-    /// Whether the caller gives the sines and cosines of q.
+    /// Whether the caller supplies the sines and cosines of q.
     pub sines: bool,
 }
 
@@ -78,8 +78,8 @@ impl FunctionSpec {
         }
     }
 
-    /// What it takes: everything that a part takes and that is no constant there, in the order of
-    /// the table; sines last.
+    /// Its arguments: those that a part takes and that are not bound to constants there, in the
+    /// order of the table; sines last.
     pub fn arguments(&self) -> Vec<Argument> {
         let taken = |a: &Argument| self.parts.iter().any(|p| p.function.takes.contains(a) && p.constant(*a).is_none());
         let sines = self.parts.iter().any(|p| p.sines).then_some(Argument::SinCos);
@@ -109,7 +109,7 @@ impl FunctionSpec {
         (self.parts.len() > 1).then(|| self.name.split('_').filter(|w| !w.is_empty()).map(word).collect())
     }
 
-    /// The function of the table that it is, if it is one as it stands.
+    /// The function of the table, if it is one unchanged.
     pub fn as_function(&self) -> Option<&'static Function<Sym>> {
         match self.parts.as_slice() {
             [part] if part.constants.is_empty() && !part.sines && part.function.name == self.name => Some(part.function),
@@ -117,14 +117,12 @@ impl FunctionSpec {
         }
     }
 
-    /// The same function with terms that are computed as others: what is fixed at zero costs
-    /// nothing then.
+    /// The same function with equal but cheaper terms: arguments fixed at zero then cost nothing.
     pub(crate) fn reduced(&self) -> Self {
         Self { name: self.name.clone(), parts: self.parts.iter().map(FunctionTerm::reduced).collect() }
     }
 
-    /// Whether constants are right for a robot: as many numbers as it takes, and quaternions that
-    /// are some.
+    /// Checks constants for a robot: their number, and unit quaternions.
     pub fn check(&self, model: &Model<f64>) -> Result<(), Diagnostic> {
         let mut constants =
             self.parts.iter().flat_map(|p| p.constants.iter().map(move |(argument, constant)| (p.function.id, argument, constant)));
@@ -165,8 +163,8 @@ impl FunctionTerm {
         Ok(Self { function, constants, sines })
     }
 
-    /// The term that gives the same and takes none of the arguments that are fixed at zero, as far
-    /// as there is one.
+    /// The equal term that takes none of the arguments that are fixed at zero, as far as there is
+    /// one.
     fn reduced(&self) -> Self {
         let function = self.function.at_zero(|argument| self.constant(argument).is_some_and(Constant::is_zero));
         let constants = self.constants.iter().filter(|(argument, _)| function.takes.contains(argument)).cloned().collect();
@@ -233,8 +231,8 @@ mod tests {
         assert!(wanted.as_function().is_none());
     }
 
-    /// A preset exists, gives the same array, takes what is left, and costs what it costs by
-    /// itself.
+    /// A preset exists, returns the same array, takes the remaining arguments, and costs the same
+    /// as by itself.
     #[test]
     fn what_is_fixed_at_zero_costs_nothing() {
         let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/urdf/ur5_like.urdf");

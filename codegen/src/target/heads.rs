@@ -1,9 +1,9 @@
-//! What the heads of generated files have in common, whatever the language: how text is printed,
-//! and the list of warnings.
+//! Common parts of the heads of generated files in all languages: printing of text, and the list of
+//! warnings.
 
 use articulated_core::diagnostic::{Diagnostic, Span, summary};
 
-/// A head lists no more warnings.
+/// Largest number of warnings in a head.
 const LISTED: usize = 20;
 
 /// A longer line is cut, in characters.
@@ -37,7 +37,7 @@ fn short(line: &str) -> String {
     if line.chars().count() <= LONGEST { line.to_owned() } else { line.chars().take(LONGEST - 1).chain(['…']).collect() }
 }
 
-/// Text that stays inside its comment and shows what it is: what cannot be printed is escaped.
+/// Text that stays inside its comment and remains readable: unprintable characters are escaped.
 pub(crate) fn printable(text: &str) -> String {
     text.chars().map(|c| if matches!(c, '"' | '\'' | '\\') { c.to_string() } else { c.escape_debug().to_string() }).collect()
 }

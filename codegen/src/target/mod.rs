@@ -42,7 +42,7 @@ pub struct File {
     pub text: String,
 }
 
-/// What a target prints.
+/// Input of a target's printer.
 pub(crate) struct Module<'a> {
     pub(crate) request: &'a Request,
     /// All effects: the scene's, then the request's.

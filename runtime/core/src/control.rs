@@ -1,5 +1,5 @@
-//! What drives the joints, as data in the order of a robot: as scenes have it, and as simulations
-//! follow it.
+//! Controllers of joints, as data in the order of a robot: as scenes contain them, and as
+//! simulations use them.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -7,7 +7,7 @@ use core::fmt;
 
 use crate::scalar::Scalar;
 
-/// What drives the joints.
+/// A controller of the joints.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Controller {
     /// No torque.
@@ -192,7 +192,7 @@ impl Actuators {
     }
 }
 
-/// What a controller aims at.
+/// The target of a controller.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Aim {
     /// Coordinates that do not change, `[nq]`.
@@ -213,8 +213,8 @@ pub struct Series {
 }
 
 impl Series {
-    /// The numbers at the time `t`, each by itself (a quaternion is none between two rows); before
-    /// the first row and after the last the nearest of them.
+    /// The numbers at the time `t`, each by itself (between two rows, a quaternion is not a unit
+    /// one). Before the first row and after the last, those of the nearest row.
     pub fn at(&self, t: f64, out: &mut [f64]) {
         if let Some(([since, span], [from, to])) = self.between(t) {
             let part = since / span;
@@ -224,8 +224,8 @@ impl Series {
         }
     }
 
-    /// Of the rows around `t`, if it is between two that are joined by a straight way: the time
-    /// since the first, s, that between them; and both.
+    /// If `t` is between two rows with linear interpolation: the time since the first, and the time
+    /// between them, s; and both rows.
     pub fn between(&self, t: f64) -> Option<([f64; 2], [&[f64]; 2])> {
         let next = self.after(t);
         let before = next.checked_sub(1).filter(|_| !self.hold)?;
@@ -233,7 +233,7 @@ impl Series {
         Some(([t - begin, self.times.get(next)? - begin], [self.rows.get(before)?, self.rows.get(next)?]))
     }
 
-    /// The first of the times after `t`, s: infinite behind the last.
+    /// The first of the times after `t`, s: infinite after the last.
     pub fn next(&self, t: f64) -> f64 {
         self.times.get(self.after(t)).copied().unwrap_or(f64::INFINITY)
     }
@@ -242,7 +242,7 @@ impl Series {
         self.times.partition_point(|x| *x <= t)
     }
 
-    /// Everything that is wrong with it as a table of rows of so many numbers.
+    /// All errors of it as a table with rows of `width` numbers.
     pub fn problems(&self, width: usize) -> Vec<TableError> {
         let (Self { times, rows, .. }, mut wrong) = (self, Vec::new());
         if times.is_empty() {
@@ -262,7 +262,7 @@ impl Series {
     }
 }
 
-/// What is wrong with a table.
+/// An error of a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TableError {
     /// It has no row.

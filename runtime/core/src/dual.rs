@@ -6,7 +6,7 @@ use num_traits::{One, Zero};
 
 use crate::Scalar;
 
-/// x + ε x', with ε² = 0: what is computed with it has its exact derivative (Clifford, *Proc.
+/// x + ε x', with ε² = 0: results computed with it have their exact derivatives (Clifford, *Proc.
 /// London Math. Soc.* 4, 1871). Nested, it has the second derivative too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<S> {

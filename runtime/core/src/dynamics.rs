@@ -14,7 +14,7 @@ macro_rules! methods {
     ($($name:ident($($argument:ident),*) $(= $general:ident)?
         $(-> [$($dim:ident $(($n:literal))?),*] $unit:literal, $group:ident, $needs:ident, $regrouped:literal)?,
         $summary:literal $(, $source:literal)? $(, by $ways:tt)? $(, columns $unsolved:ident)?;)*) => {
-        /// What a function gives, with its unit: of a preset what its row gives.
+        /// The result of a function, with its unit; for a preset, that of its row.
         macro_rules! gives {
             $(($name) => { $(gives!($general))? $(concat!("`", dims!($($dim $(($n))?),*), "` ", $unit))? };)*
         }
@@ -40,7 +40,7 @@ macro_rules! methods {
         /// }
         /// ```
         pub trait Dynamics<S: Scalar = f64> {
-            /// What an evaluation needs room for; `()` for generated robots.
+            /// Memory that an evaluation needs; `()` for generated robots.
             type Workspace;
 
             /// A workspace, to be made once.
@@ -53,25 +53,25 @@ macro_rules! methods {
             fn name(&self) -> &str;
 
             /// The joints in the order of their coordinates, a floating base's own first; `None`
-            /// beyond the last, and where the robot cannot tell.
+            /// beyond the last, and if the robot does not know it.
             fn joint(&self, index: usize) -> Option<JointRow<'_>> {
                 let _ = index;
                 None
             }
 
-            /// The name of a frame, where the robot can tell.
+            /// The name of a frame, if the robot knows it.
             fn frame_name(&self, frame: usize) -> Option<&str> {
                 let _ = frame;
                 None
             }
 
-            /// Whether motors stand between the torques that forward dynamics is given and the
-            /// joints: then `motor_torques` says what they make of them.
+            /// Whether there are motors between the input torques of forward dynamics and the
+            /// joints: then `motor_torques` computes their output.
             fn has_motors(&self) -> bool {
                 false
             }
 
-            /// The joint that a degree of freedom belongs to, where the robot can tell.
+            /// The joint that a degree of freedom belongs to, if the robot knows it.
             fn joint_of(&self, freedom: usize) -> Option<&str> {
                 let mut joints = (0..).map_while(|k| self.joint(k));
                 joints.find(|j| (j.v.0..j.v.0 + j.v.1).contains(&freedom)).map(|j| j.name)
@@ -82,7 +82,7 @@ macro_rules! methods {
                 (0..).map_while(|k| self.joint(k)).find(|j| j.name == name)
             }
 
-            /// The frame of this name: its index among those that functions of frames give.
+            /// The index of the frame of this name, among those in results of functions of frames.
             fn frame_named(&self, name: &str) -> Option<usize> {
                 (0..self.shape().frames).find(|k| self.frame_name(*k) == Some(name))
             }

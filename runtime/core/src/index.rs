@@ -1,4 +1,4 @@
-//! Indices that are types of their own, and arrays that only their own index opens.
+//! Index types, and arrays that accept only their own index type.
 //!
 //! A link of a description is not a body of a model, and neither is a frame: with an index type for
 //! each, a program that takes one for the other does not compile. At run time an index is a
@@ -80,8 +80,8 @@ impl BodyId {
     }
 }
 
-/// A list that only an index of the kind `I` opens. Its slice has no ids: it is for what does not
-/// depend on them, such as `iter` and `len`.
+/// A list that accepts only indices of the kind `I`. Its slice has no ids: it is for methods that
+/// do not depend on them, such as `iter` and `len`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ById<I, T> {
     all: Vec<T>,

@@ -23,12 +23,11 @@ pub struct Integrator {
     pub implicit: bool,
     /// When to take it.
     pub what_for: &'static str,
-    /// What methods for the same problems are called by others, in small letters without `_` and
-    /// `-`.
+    /// Names of methods for the same problems in other programs, in lower case without `_` and `-`.
     pub elsewhere: &'static str,
     /// Where it is from.
     pub source: &'static str,
-    /// Functions that the robot has to have. One with a quaternion among its coordinates needs
+    /// Functions that the robot must have. A robot with a quaternion among its coordinates needs
     /// `integrate` as well, for all of them.
     pub needs: &'static [FunctionId],
 }
@@ -112,7 +111,7 @@ integrators! {
     }
 }
 
-/// All integrators, in the order in which they are listed to people.
+/// All integrators, in the order of printed lists.
 pub fn integrators() -> &'static [Integrator] {
     ROWS
 }
@@ -122,7 +121,7 @@ pub fn integrator(name: &str) -> Option<&'static Integrator> {
     ROWS.iter().find(|row| row.name == name)
 }
 
-/// The integrator for what is called `name` elsewhere, whatever the case.
+/// The integrator that other programs call `name`, in any case.
 pub fn meant(name: &str) -> Option<&'static Integrator> {
     let plain: String = name.chars().filter(|c| !"_- ".contains(*c)).flat_map(char::to_lowercase).collect();
     ROWS.iter().find(|row| row.elsewhere.split(' ').any(|word| word == plain))

@@ -1,4 +1,4 @@
-//! A scalar that carries a bound on its rounding error: what an evaluation can be off by at most,
+//! A scalar that carries a bound on its rounding error: the largest error of an evaluation,
 //! operation by operation.
 //!
 //! Running error analysis (Wilkinson 1986; Higham, Accuracy and Stability of Numerical Algorithms,
@@ -15,9 +15,9 @@ use num_traits::{One, Zero};
 use crate::Scalar;
 use crate::scalar::two_to;
 
-/// A number x of which it is known that |x − value| ≤ radius, and that an evaluation in which each
-/// operation is off by at most 2^−`BITS` of its result is off from x by at most `error`. Sines: off
-/// by 2^(2−`BITS`) of their value if `SINES` is 0, by 10^−`SINES` and a rounding otherwise.
+/// A number x with |x − value| ≤ radius. An evaluation in which each operation is off by at most
+/// 2^−`BITS` of its result is off from x by at most `error`. Sines: off by 2^(2−`BITS`) of their
+/// value if `SINES` is 0, by 10^−`SINES` and a rounding otherwise.
 ///
 /// Underflow counts as an error of 10⁻³⁰⁰ an operation (of 10⁻⁴⁴ for single precision).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +30,7 @@ pub struct Running<const BITS: u32, const SINES: u32> {
     pub error: f64,
 }
 
-/// A test, and whether it is known how it comes out.
+/// A test, and whether its outcome is certain.
 #[derive(Clone, Copy, Debug)]
 pub struct Outcome {
     holds: bool,
@@ -50,7 +50,7 @@ impl<const BITS: u32, const SINES: u32> Running<BITS, SINES> {
         Self { value, radius, error: 0.0 }
     }
 
-    /// The error after the result is rounded to so many bits.
+    /// The error after the result is rounded to `bits` bits.
     pub fn rounded_to(self, bits: u32) -> f64 {
         up(self.error + two_to(-(bits as i32)) * (self.most() + self.error))
     }
@@ -60,10 +60,11 @@ impl<const BITS: u32, const SINES: u32> Running<BITS, SINES> {
         self.value.abs() + self.radius
     }
 
-    /// The result of an operation: value and radius, and what the errors of its operands make.
+    /// The result of an operation: value and radius, and the error that those of its operands
+    /// cause.
     fn of(value: f64, radius: f64, error: f64) -> Self {
         let radius = up(radius + f64::EPSILON * value.abs());
-        // Nothing times what is not known.
+        // Zero times an unknown number.
         if radius.is_nan() {
             return Self::unknown();
         }
@@ -72,7 +73,7 @@ impl<const BITS: u32, const SINES: u32> Running<BITS, SINES> {
         Self { value, radius, error: up(error + two_to(-(BITS as i32)) * most + Self::TINY) }
     }
 
-    /// What is known of nothing.
+    /// An unknown number.
     fn unknown() -> Self {
         Self { value: 0.0, radius: f64::INFINITY, error: f64::INFINITY }
     }
@@ -272,9 +273,9 @@ mod tests {
         (1..).map(|k| (0.618_033_988_749_895 * f64::from(k)) % 1.0)
     }
 
-    /// f on a box of states, in single precision: whatever is in the box has its result within the
+    /// f on a box of states, in single precision: every state in the box has its result within the
     /// radius, and its evaluation within the error of that. `f` of the bounds, of `f64` and of
-    /// `f32`. Gives the largest parts of radius and error that were needed.
+    /// `f32`. Returns the largest parts of radius and error that were needed.
     fn hold(
         (midpoints, radii): ([f64; 2], [f64; 2]),
         f: impl Fn(Single, Single) -> Single,
@@ -299,7 +300,7 @@ mod tests {
         (far, off)
     }
 
-    /// Where one more operation follows on one that has an error.
+    /// One more operation after one with an error.
     #[test]
     fn bounds_of_every_operation_hold_on_boxes() {
         let third = |x: Single| x * Single::from_f64(0.1);
@@ -354,16 +355,17 @@ mod tests {
                 all(&|x, _| x.atan2(Wide::within(2.0, 0.0)), &|x, _| x.atan2(2.0), pair);
             }
         }
-        // A divisor that may be evaluated to nothing.
+        // A divisor that may be evaluated to zero.
         assert_eq!((Wide::one() / Wide { value: 0.5, radius: 0.25, error: 0.25 }).error, f64::INFINITY);
-        // What cannot be written is not known: a third in double precision, a tenth in single.
+        // Numbers without an exact representation are uncertain: a third in double precision, a
+        // tenth in single.
         let third = Wide::one() / Wide::within(3.0, 0.0);
         assert!(third.radius >= 1.86e-17 && third.radius < 1e-15, "{third:?}");
         assert!((0.1 - f64::from(0.1_f32)).abs() <= Single::from_f64(0.1).error && Single::from_f64(0.1).error < 1e-8);
         hold(([0.0, 0.0], [0.5, 0.0]), |x, _| Scalar::sin_cos(x).0, |x, _| x.sin(), |x, _| x.sin());
     }
 
-    /// What is chosen one way here and the other way there, and what is the same either way.
+    /// Choices that differ here and there, and choices that are equal either way.
     #[test]
     fn a_choice_that_is_not_certain_allows_for_both() {
         let ramp = |x: Single, y: Single| Single::select((x - y).positive(), x - y, Single::zero());
@@ -372,8 +374,8 @@ mod tests {
             hold(([x, 0.5], [r, r]), ramp, |x, y| (x - y).max(0.0), |x, y| (x - y).max(0.0));
             hold(([x, 0.5], [r, r]), step, |x, y| if x > y { x } else { -y }, |x, y| if x > y { x } else { -y });
         }
-        // Where rounding alone may turn it round, the result may be off by the jump; where it may
-        // not, it is off by nothing.
+        // Where rounding alone may change the choice, the result may be off by the jump; elsewhere,
+        // it is off by nothing.
         let tenth = |x: f64| Single::within(x, 0.0) * Single::from_f64(0.1);
         let jump = |x: f64| Single::select((tenth(x) - Single::within(0.05, 0.0)).positive(), Single::one(), Single::zero());
         assert!(jump(0.5).error >= 1.0 && jump(0.5001).error < 1e-6, "{:?} {:?}", jump(0.5), jump(0.5001));
@@ -428,7 +430,7 @@ mod tests {
         assert!(root.error >= steepest && root.error < 3.0 * steepest, "{root:?}");
     }
 
-    /// Of two that are anywhere from −1 to 1, one may be meant and the other be taken.
+    /// For two numbers anywhere from −1 to 1, the wrong one may be taken.
     #[test]
     fn a_choice_that_is_not_certain_is_off_by_as_much_as_both_can_be_apart() {
         let wide = Running::<53, 0>::within(0.0, 1.0);

@@ -3,8 +3,7 @@
 use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign};
 use num_traits::{One, Zero};
 
-/// A real number, or something that stands for one: `f32`, `f64`, a symbol, a big float, a dual
-/// number.
+/// A real number, or a representation of one: `f32`, `f64`, a symbol, a big float, a dual number.
 ///
 /// There is no ordering on purpose: a program that is traced cannot branch on a value, so a choice
 /// between two values is written `S::select(x.positive(), a, b)`, which every scalar can do.
@@ -19,14 +18,14 @@ pub trait Scalar:
     + core::ops::Div<Output = Self>
     + core::ops::Neg<Output = Self>
 {
-    /// The outcome of a comparison: `bool`, or what stands for one.
+    /// The outcome of a comparison: `bool`, or its representation.
     type Mask: Copy;
 
-    /// Bits of its significand: how far a power series has to go.
+    /// Bits of its significand: they decide the length of power series.
     const BITS: u32 = f64::MANTISSA_DIGITS;
 
-    /// Whether what is computed with zeros and ones costs nothing, as they are known before: then
-    /// sparse factors one after the other cost less than their product.
+    /// Whether computing with zeros and ones costs nothing, as they are known before: then sparse
+    /// factors one after the other cost less than their product.
     const FOLDS: bool = false;
 
     /// The scalar nearest to `x`.

@@ -20,7 +20,7 @@ pub struct Settings {
     /// Last time, s; after `start`.
     pub end: f64,
     /// Fixed steps of this length, s, the last of a stretch shortened to end with it. `None`: steps
-    /// are chosen by the tolerances, which only the integrators do that are `adaptive` in
+    /// are chosen by the tolerances, only by integrators that are `adaptive` in
     /// [`crate::integrator::integrators`].
     pub step: Option<f64>,
     /// Relative tolerance of a step's error, coordinate by coordinate.
@@ -43,14 +43,14 @@ pub struct Settings {
     /// How sharply the time of an event is found, s; never sharper than four units of rounding of
     /// t.
     pub event_tolerance: f64,
-    /// What to do where an explicit integrator meets a stiff motion.
+    /// The action if an explicit integrator meets a stiff motion.
     pub stiffness: Stiffness,
 }
 
 /// When to record.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Output {
-    /// At the start, every so many seconds, and at the end.
+    /// At the start, at this interval in seconds, and at the end.
     Every(f64),
     /// At the start, and at these times, in order.
     At(Vec<f64>),
@@ -60,17 +60,17 @@ pub enum Output {
     Ends,
 }
 
-/// What to do where an explicit integrator meets a stiff motion.
+/// Actions if an explicit integrator meets a stiff motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Stiffness {
-    /// End with `SimulateError::Unstable`, or with `SimulateError::Stiff` where more than 20 000
-    /// steps of the length that stability admits would be left to the end; where they are fewer,
-    /// they are made, and the time is noted as by [`Self::Note`].
+    /// End with `SimulateError::Unstable`, or with `SimulateError::Stiff` if more than 20 000 steps
+    /// of the length that stability admits remain to the end. If fewer remain, they are made, and
+    /// the time is recorded as by [`Self::Note`].
     #[default]
     Refuse,
     /// Note the time in `Counts::stiff_at` and go on.
     Note,
-    /// Never look, and spend no evaluation on it: for loops that know their step to be stable. A
+    /// Never check, and spend no evaluation on it: for loops with a step known to be stable. A
     /// motion that is not stable ends where its numbers are not finite.
     Ignore,
 }
@@ -101,11 +101,11 @@ impl Default for Settings {
 pub struct SettingError {
     /// Its key.
     pub key: &'static str,
-    /// The keys with which it does not go; none where it is wrong by itself.
+    /// The keys that conflict with it; empty if it is invalid by itself.
     pub with: &'static [&'static str],
-    /// What it was.
+    /// The value found.
     pub found: String,
-    /// What would be right.
+    /// The expected value, in words.
     pub right: String,
 }
 
@@ -120,10 +120,10 @@ impl core::error::Error for SettingError {}
 /// Most numbers that the records of `Output::Every` may have together: 8 GB.
 const MOST_RECORDED: f64 = 1e9;
 
-/// What goes by the times of a motion.
+/// Keys of the times of a motion.
 const TIMES: &[&str] = &["end", "start"];
 
-/// A setting that is a number: its key, where it has to be, its unit, and it.
+/// A numeric setting: its key, its range, its unit, and its value.
 type Number = (&'static str, Range, &'static str, fn(&Settings) -> Option<f64>);
 
 const NUMBERS: &[Number] = &[
@@ -138,14 +138,14 @@ const NUMBERS: &[Number] = &[
     ("output", Range::POSITIVE, ", s", |s| if let Output::Every(every) = s.output { bounded(every) } else { None }),
 ];
 
-/// An infinite bound is none.
+/// An infinite bound means no bound.
 fn bounded(x: f64) -> Option<f64> {
     Some(x).filter(|x| *x != f64::INFINITY)
 }
 
 impl Settings {
-    /// Everything that is wrong with them for a robot of this shape, each key once. Of what goes
-    /// with a key that is wrong nothing is said.
+    /// All errors for a robot of this shape, each key once. Settings that depend on a key with an
+    /// error are not reported.
     pub fn problems(&self, shape: Shape) -> Vec<SettingError> {
         let mut found = Problems(Vec::new());
         for (key, range, unit, of) in NUMBERS {
@@ -171,8 +171,8 @@ impl Settings {
         16.0 * f64::EPSILON * self.start.abs().max(self.end.abs())
     }
 
-    /// What a time between samples of a controller, s, has to be, if it is not: samples end steps,
-    /// so time has to tell them apart, and there are no more of them than steps.
+    /// The requirement on a sampling period of a controller, s, if it is not met: samples end
+    /// steps, so they must be distinct in time, and there are no more of them than steps.
     pub fn wrong_period(&self, period: f64) -> Option<String> {
         let (least, length, most) = (self.least_step(), self.end - self.start, self.max_steps);
         if !Range::POSITIVE.has(period) {
@@ -234,7 +234,7 @@ impl Settings {
         }
     }
 
-    /// Records that time can tell apart, and that there is room for.
+    /// Checks that records are distinct in time, and that memory suffices for them.
     fn check_every(&self, every: f64, shape: Shape, found: &mut Problems) {
         // t, q, v, τ, five energies, momentum
         let each = (1 + shape.nq + 2 * shape.nv + 5 + 6) as f64;
@@ -258,7 +258,7 @@ fn short(x: f64) -> Plain {
 struct Problems(Vec<SettingError>);
 
 impl Problems {
-    /// One more, unless something is wrong already with what it is about.
+    /// Adds an error, unless its key, or one that it conflicts with, has one already.
     fn add(&mut self, (key, with): (&'static str, &'static [&'static str]), found: &dyn fmt::Display, right: impl Into<String>) {
         if !self.0.iter().any(|told| told.key == key || with.contains(&told.key)) {
             self.0.push(SettingError { key, with, found: found.to_string(), right: right.into() });
@@ -310,7 +310,7 @@ mod tests {
         };
         // Near 1e15 s the time is a multiple of 1/8 s, near 1e12 s of 1/8192 s.
         assert_eq!([at(1e15, 1e15 + 4.0), at(1e12, 1e12 + 4.0)], [vec!["step"], vec![]]);
-        // Of both ends the one that is farther from zero counts.
+        // The end that is farther from zero counts.
         assert_eq!([at(-1e15, 4.0), at(-4.0, 1e15)], [vec!["step"], vec!["step"]]);
         let settings = Settings { integrator: IntegratorId::rk4, ..Settings::default() };
         let least = settings.least_step();
@@ -319,7 +319,7 @@ mod tests {
         }
     }
 
-    /// So many numbers as there is room for, whatever the robot; and no two records at one time.
+    /// As many numbers as memory allows, whatever the robot; and no two records at one time.
     #[test]
     fn records_are_as_many_as_there_is_room_and_time_for() {
         let told = |nv: usize, start: f64, every: f64| {

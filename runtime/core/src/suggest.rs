@@ -12,8 +12,8 @@ const MOST_PAIRS: usize = 3_000_000;
 /// Fewer letters are not taken for the beginning or the end of a name.
 const LEAST: usize = 3;
 
-/// Finds what was meant, with a bound on the work: one for a file, which makes no suggestions
-/// beyond it.
+/// Finds the intended name with bounded work: one for a file, which makes no suggestions beyond the
+/// bound.
 #[derive(Clone, Debug)]
 pub struct Suggester {
     left: usize,
@@ -37,8 +37,8 @@ impl Suggester {
         self.found(wrong, names).and_then(|(misspelt, _)| misspelt)
     }
 
-    /// The name that differs least, and the shortest that begins with `wrong`; nothing where that
-    /// is too much work.
+    /// The name that differs least, and the shortest that begins with `wrong`; `None` if that is
+    /// too much work.
     fn found<'a>(&mut self, wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Option<(Option<&'a str>, Option<&'a str>)> {
         let letters: Vec<char> = small(wrong).take(LONGEST + 1).collect();
         if letters.len() > LONGEST {
@@ -66,12 +66,12 @@ impl Suggester {
     }
 }
 
-/// What [`Suggester::nearest`] finds, for one name.
+/// As [`Suggester::nearest`], for one name.
 pub fn nearest<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Option<String> {
     Suggester::default().nearest(wrong, names).map(String::from)
 }
 
-/// Its letters, all of them small.
+/// Its letters, in lower case.
 fn small(name: &str) -> impl Iterator<Item = char> {
     name.chars().flat_map(char::to_lowercase)
 }

@@ -6,7 +6,7 @@ use super::integrator::{Method, Start};
 use super::system::System;
 use super::{Control, SimulateError};
 
-/// The last step's curve, and room for a point of it.
+/// The last step's curve, and memory for a point of it.
 pub(crate) struct Curve<'a, R: Dynamics<f64>> {
     pub(crate) method: &'a mut dyn Method<R>,
     pub(crate) start: Start<'a>,
@@ -30,7 +30,7 @@ impl Point {
 }
 
 impl<R: Dynamics<f64>> Curve<'_, R> {
-    /// Computes what the curve needs.
+    /// Computes the data of the curve.
     pub(crate) fn prepare(&mut self, system: &mut System<R>, control: &mut dyn Control) -> Result<(), SimulateError> {
         self.method.prepare(system, control, self.start, self.end)
     }

@@ -1,9 +1,9 @@
-//! What effects do to the balance of energy: motors between command and joint, and losses.
+//! Effects in the balance of energy: motors between command and joint, and losses.
 
 use articulated_core::dynamics::Dynamics;
 
-/// The torques that the motors give for the commanded ones, `[nv]`; false where the robot has no
-/// such function: they are then the commanded ones.
+/// Torques of the motors for the commanded ones, `[nv]`; false if the robot has no such function:
+/// they are then the commanded ones.
 pub(crate) fn motor_torques<R: Dynamics<f64>>(robot: &R, ws: &mut R::Workspace, v: &[f64], tau: &[f64], out: &mut [f64]) -> bool {
     robot.motor_torques(ws, v, tau, out).is_ok()
 }

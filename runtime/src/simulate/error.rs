@@ -10,7 +10,7 @@ use articulated_core::{Plain, listed};
 
 use super::{IntegratorId, SettingError, TableError};
 
-/// Why a simulation could not begin or did not go on.
+/// Errors at the start of a simulation, or during it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SimulateError {
     /// Invalid settings; all of them.
@@ -23,12 +23,12 @@ pub enum SimulateError {
     NotFinite {
         /// Time, s.
         t: f64,
-        /// What is not finite.
+        /// The quantity that is not finite.
         what: &'static str,
         /// Their indices, in order.
         index: Vec<usize>,
-        /// Names of the joints that they belong to, each once, as far as the robot can tell; of an
-        /// event its own.
+        /// Names of the joints that they belong to, each once, as far as the robot knows them; for
+        /// an event its own name.
         names: Vec<String>,
     },
     /// There are no accelerations: the mass matrix is singular.
@@ -38,7 +38,7 @@ pub enum SimulateError {
         /// The joint where it is.
         cause: Singular,
     },
-    /// The tolerances ask for a step that is too short to be made.
+    /// The tolerances require a step that is too short to be made.
     StepTooSmall {
         /// Time, s.
         t: f64,
@@ -46,12 +46,12 @@ pub enum SimulateError {
         step: f64,
         /// Where the error is largest: the step of q, or v.
         what: &'static str,
-        /// Which of its numbers.
+        /// Index of the number there.
         index: usize,
-        /// Name of the joint that it belongs to, where the robot can tell.
+        /// Name of the joint that it belongs to, if the robot knows it.
         joint: Option<String>,
-        /// The shortest step that the settings allow, s, where that is what is in the way, and not
-        /// what time can tell apart.
+        /// The shortest step that the settings allow, s, if that is the limit, and not the
+        /// resolution of time.
         least: Option<f64>,
     },
     /// More steps than allowed.
@@ -61,7 +61,7 @@ pub enum SimulateError {
         /// Steps made, rejected ones included.
         steps: u64,
     },
-    /// The tolerances ask for steps so short that the end would take far more steps than are
+    /// The tolerances require steps so short that the end would take far more steps than are
     /// allowed.
     NoProgress {
         /// Time, s.
@@ -71,7 +71,7 @@ pub enum SimulateError {
         /// Number of such steps to the end, rejected ones included.
         left: f64,
         /// The number whose error limits most steps: its vector (the step of q, or v), its index
-        /// there, and the name of its joint, where the robot can tell.
+        /// there, and the name of its joint, if the robot knows it.
         limiting: Option<(&'static str, usize, Option<String>)>,
     },
     /// The step of an explicit integrator is longer than it is stable at.
@@ -123,7 +123,7 @@ pub enum SimulateError {
         turn: f64,
         /// The limit of the rotation, rad.
         most: f64,
-        /// Name of the joint, where the robot can tell.
+        /// Name of the joint, if the robot knows it.
         joint: Option<String>,
     },
     /// An event that maps the state recurs at one time without end.
@@ -151,11 +151,11 @@ pub enum StateError {
     NotFinite {
         /// The vector.
         vector: &'static str,
-        /// Which of its numbers.
+        /// Index of the number.
         index: usize,
         /// The number.
         found: f64,
-        /// Name of the joint that it belongs to, where the robot can tell.
+        /// Name of the joint that it belongs to, if the robot knows it.
         joint: Option<String>,
     },
     /// A table over time, as a controller has it.
@@ -174,7 +174,7 @@ pub enum StateError {
         index: usize,
         /// Its norm.
         norm: f64,
-        /// Name of the joint that it belongs to, where the robot can tell.
+        /// Name of the joint that it belongs to, if the robot knows it.
         joint: Option<String>,
     },
     /// A frame index out of range.
@@ -190,7 +190,7 @@ pub enum StateError {
         event: String,
         /// The vector.
         vector: &'static str,
-        /// Which of its numbers.
+        /// Index of the number.
         index: usize,
         /// How many it has.
         length: usize,
@@ -206,7 +206,7 @@ pub enum StateError {
     },
     /// An invalid number.
     Value {
-        /// What it is.
+        /// Its name.
         what: &'static str,
         /// The number.
         found: f64,
@@ -239,7 +239,7 @@ impl StateError {
         series.problems(width).into_iter().map(move |wrong| Self::Table { table, wrong })
     }
 
-    /// `Ok` if there are no errors, else all of them.
+    /// `Ok` if there are no errors, otherwise all of them.
     pub(crate) fn none(wrong: impl Iterator<Item = Self>) -> Result<(), SimulateError> {
         let wrong: Vec<Self> = wrong.collect();
         if wrong.is_empty() { Ok(()) } else { Err(SimulateError::State(wrong)) }
@@ -361,7 +361,7 @@ impl SimulateError {
     }
 }
 
-/// Name of the joint that a degree of freedom belongs to, where the robot can tell.
+/// Name of the joint that a degree of freedom belongs to, if the robot knows it.
 pub(crate) fn joint<R: Dynamics<f64>>(robot: &R, freedom: usize) -> Option<String> {
     robot.joint_of(freedom).filter(|name| !name.is_empty()).map(str::to_owned)
 }

@@ -58,7 +58,7 @@ pub(crate) struct Manifold {
 }
 
 impl Manifold {
-    /// What the function `integrate` shows: q = (½, ½, …) is a configuration of any robot, and a
+    /// Found by the function `integrate`: q = (½, ½, …) is a configuration of any robot, and a
     /// small turn of a joint moves its quaternion alone.
     pub(crate) fn of<R: Dynamics<f64>>(robot: &R) -> Result<Self, FunctionError> {
         let shape = robot.shape();
@@ -153,14 +153,14 @@ impl Manifold {
         all
     }
 
-    /// The joint that turns fastest of those that turn freely, by the first of its degrees of
-    /// freedom, and how fast, rad/s.
+    /// The fastest of the joints that turn freely, by its first degree of freedom, and its speed,
+    /// rad/s.
     pub(crate) fn fastest_turn(&self, v: &[f64]) -> Option<(usize, f64)> {
         self.free.iter().map(|free| (free.v, three(v, free.v).norm())).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// What errors of the steps of q are relative to: the coordinate, 1 for a turn, the distance
-    /// from the origin for a position.
+    /// Reference of the relative errors of the steps of q: the coordinate, 1 for a turn, the
+    /// distance from the origin for a position.
     pub(crate) fn magnitudes(&self, q: &[f64], out: &mut [f64]) {
         let (mut at, mut free) = ((0, 0), self.free.iter());
         loop {
@@ -204,8 +204,8 @@ impl Manifold {
     }
 
     /// The step vector that turns by 2 atan(½|w|) about w = step where exp turns by |w|: Cayley's
-    /// map as an exponential. On SE(3) the same with dual numbers, so that what it carries is (1 −
-    /// ½ ad)⁻¹(1 + ½ ad). Plain coordinates stay as they are.
+    /// map as an exponential. On SE(3) the same with dual numbers, so that its adjoint is (1 − ½
+    /// ad)⁻¹(1 + ½ ad). Plain coordinates stay as they are.
     pub(crate) fn cayley(&self, step: &mut [f64]) {
         for free in &self.free {
             let (w, at) = (three(step, free.v), free.v);
@@ -241,7 +241,7 @@ impl Manifold {
         StateError::of(vector, q, self.nq, |i| joint(robot, self.freedom_of(i))).chain(quaternions)
     }
 
-    /// What is wrong with a state.
+    /// Errors in a state.
     pub(crate) fn wrong_state<R: Dynamics<f64>>(&self, robot: &R, q: &[f64], v: &[f64]) -> impl Iterator<Item = StateError> {
         self.wrong(robot, "q", q).chain(StateError::of_freedoms("v", v, robot))
     }
@@ -266,7 +266,7 @@ fn carried(omega: Vector3<f64>, w: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>)
 const SMALL_TURN: f64 = 0.01;
 
 /// u̇ = v + ½ [u, v] + Σ B_2k/(2k)! [u, [u, … v]] of 2k brackets (Munthe-Kaas 1998): as many as
-/// count at θ², which is below [`SMALL_TURN`].
+/// matter at θ², which is below [`SMALL_TURN`].
 fn small_turn_rates(free: &Free, u: &[f64], v: &[f64], turn: f64, out: &mut [f64]) {
     const COEFFICIENTS: [f64; 4] = [1.0 / 12.0, -1.0 / 720.0, 1.0 / 30_240.0, -1.0 / 1_209_600.0];
     let at = free.v;
@@ -382,8 +382,8 @@ mod tests {
         }
     }
 
-    /// Against the closed form, from turns of nothing to the largest that the series takes, with
-    /// steps that move far.
+    /// Against the closed form, from turns of zero to the largest that the series takes, with steps
+    /// that move far.
     #[test]
     fn rates_of_small_turns_are_those_of_the_closed_form() {
         use articulated_core::nalgebra::Vector6;

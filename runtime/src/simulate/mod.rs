@@ -20,7 +20,7 @@
 //! # Ok(()) }
 //! ```
 //!
-//! Which integrator when, what each promises, and how events are found: `docs/simulation.md`.
+//! Choice of integrators, their properties, and the search for events: `docs/simulation.md`.
 
 mod control;
 mod curve;

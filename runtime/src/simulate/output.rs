@@ -1,4 +1,4 @@
-//! When something is recorded, and what.
+//! Times and contents of records.
 
 use articulated_core::algorithm::FunctionError;
 use articulated_core::dynamics::Dynamics;
@@ -18,8 +18,8 @@ impl Times {
         Self { next: 0 }
     }
 
-    /// The next time after the start at which something is recorded; infinite where each step is,
-    /// or none.
+    /// The next time after the start at which something is recorded; infinite if each step is, or
+    /// none.
     pub(crate) fn next(&self, settings: &Settings) -> f64 {
         match &settings.output {
             Output::Every(s) => {
@@ -36,7 +36,7 @@ impl Times {
         self.next += 1;
     }
 
-    /// How many there will be, as far as that is known, and as far as room for them is worth making
+    /// Number of records, as far as it is known, and as far as memory for them is worth allocating
     /// beforehand.
     pub(crate) fn count(settings: &Settings) -> usize {
         let count = match &settings.output {
@@ -49,24 +49,24 @@ impl Times {
     }
 }
 
-/// What a robot can tell about its motion.
+/// Known quantities of a robot's motion.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Known {
     kinetic: bool,
     potential: bool,
     momentum: bool,
     tau: Vec<f64>,
-    /// What the maps of events have brought since the start, J.
+    /// Energy from the maps of events since the start, J.
     pub(crate) from_events: f64,
     /// T + U where the motion began, J.
     at_start: f64,
-    /// What the balance lacked after the last step, J, and in all steps over stiff layers.
+    /// Imbalance after the last step, J, and in all steps over stiff layers.
     lacked: f64,
     left_out: f64,
 }
 
 impl Known {
-    /// The functions that the robot answers when it is asked.
+    /// The functions that the robot has.
     pub(crate) fn of<R: Dynamics<f64>>(system: &mut System<R>) -> Self {
         let (q, v) = (system.origin.clone(), vec![0.0; system.nv()]);
         let (robot, ws) = (system.robot, &mut system.ws);
@@ -105,7 +105,7 @@ impl Known {
         recording
     }
 
-    /// Nothing is recorded but whose motion it will be.
+    /// Starts a recording: only the robot of the motion is recorded.
     pub(crate) fn begin<R: Dynamics<f64>>(&self, system: &System<R>, recording: &mut Recording) {
         let names = [
             ("kinetic_energy", self.kinetic),
@@ -181,7 +181,7 @@ impl Known {
         Ok(())
     }
 
-    /// T and U, J, as far as they are there.
+    /// T and U, J, as far as the robot has them.
     fn energies<R: Dynamics<f64>>(
         &self,
         system: &mut System<R>,
@@ -198,7 +198,7 @@ impl Known {
         Ok((self.kinetic.then_some(t[0]), self.potential.then_some(u[0])))
     }
 
-    /// T + U, J; zero if one of them is not there.
+    /// T + U, J; zero if the robot lacks one of them.
     pub(crate) fn energy<R: Dynamics<f64>>(&self, system: &mut System<R>, q: &[f64], v: &[f64]) -> Result<f64, FunctionError> {
         let (kinetic, potential) = self.energies(system, q, v)?;
         Ok(kinetic.zip(potential).map_or(0.0, |(t, u)| t + u))

@@ -1,10 +1,10 @@
-//! What is kept of a motion.
+//! Records of a motion.
 
 use std::sync::Arc;
 
 use super::Direction;
 
-/// What was done.
+/// Counts of the work done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Counts {
     /// Steps accepted.
@@ -13,7 +13,8 @@ pub struct Counts {
     pub rejected: u64,
     /// Evaluations of forward dynamics for steps and curves.
     pub evaluations: u64,
-    /// Evaluations of forward dynamics to see whether a fixed step is stable; not among the others.
+    /// Evaluations of forward dynamics that check whether a fixed step is stable; not included in
+    /// the others.
     pub checks: u64,
     /// Evaluations of its derivatives.
     pub derivatives: u64,
@@ -28,14 +29,13 @@ pub struct Counts {
     /// The shortest step, s.
     pub smallest_step: f64,
     /// Steps over a stiff layer: the motion has a decay that is faster than the step, and the
-    /// integrator goes over it without its shape. Work and losses in such a step are those of the
-    /// change of energy, and the step is left out of the balance. Counted if the balance is
-    /// requested.
+    /// integrator does not resolve it. Work and losses in such a step are those of the change of
+    /// energy, and the step is left out of the balance. Counted if the balance is requested.
     pub layers: u64,
     /// When an explicit integrator was first held back by stiffness, s.
     pub stiff_at: Option<f64>,
-    /// Of steps that tolerances choose: which of the 2·nv numbers of a step (step of q, then v) had
-    /// the largest error in most steps so far, where one had it in more than half of them.
+    /// For steps chosen by tolerances: which of the 2·nv numbers of a step (step of q, then v) had
+    /// the largest error in most steps so far, if one had it in more than half of them.
     pub limited_by: Option<usize>,
 }
 
@@ -62,7 +62,7 @@ impl Default for Counts {
 /// An event that happened.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hit {
-    /// Which of the events.
+    /// Index of the event.
     pub event: usize,
     /// Its name.
     pub name: Arc<str>,
@@ -70,7 +70,7 @@ pub struct Hit {
     pub t: f64,
     /// Which way its function went through zero.
     pub direction: Direction,
-    /// What the map of the event gave.
+    /// The result of the map of the event.
     pub value: Option<f64>,
 }
 
@@ -133,15 +133,15 @@ pub struct Recording {
     pub kinetic: Vec<f64>,
     /// Potential energy, J; empty for a robot without the function.
     pub potential: Vec<f64>,
-    /// Work of the torques since the start, J: of those that the motors give, where there are some.
-    /// Empty unless requested by
+    /// Work of the torques since the start, J: of the torques of motors, if there are any. Empty
+    /// unless requested by
     /// [`Simulation::with_energy_balance`](super::Simulation::with_energy_balance).
     pub work: Vec<f64>,
-    /// Energy of the effects that are not conservative since the start, J; negative where they took
+    /// Energy of the effects that are not conservative since the start, J; negative if they took
     /// some. Empty unless requested, as `work`.
     pub dissipated: Vec<f64>,
-    /// Energy that the maps of events brought since the start, J: change of T + U, negative where
-    /// they took some; empty for a robot without one of the two.
+    /// Energy from the maps of events since the start, J: change of T + U, negative if they took
+    /// some; empty for a robot without one of the two.
     pub from_events: Vec<f64>,
     /// Momentum about the centre of mass [k; l], `[n][6]`, N·m·s and N·s, world axes; empty for a
     /// robot without the function.
@@ -154,7 +154,7 @@ pub struct Recording {
     /// [`Simulation::with_energy_balance`](super::Simulation::with_energy_balance) and the robot
     /// has both energies.
     pub balance: Option<Balance>,
-    /// What was done.
+    /// Counts of the work done.
     pub counts: Counts,
     /// Why it ended.
     pub ended: Ended,
@@ -166,7 +166,7 @@ impl Recording {
         self.t.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no records.
     pub fn is_empty(&self) -> bool {
         self.t.is_empty()
     }
@@ -199,13 +199,13 @@ impl Recording {
         Some(self.kinetic.get(i)? + self.potential.get(i)?)
     }
 
-    /// What the balance of energy lacks in record i, J: T + U − (T + U at the start) − work −
-    /// dissipated − what events brought. `None` where one of them is not recorded.
+    /// Imbalance of energy in record i, J: T + U − (T + U at the start) − work − dissipated −
+    /// energy from events. `None` if one of them is not recorded.
     pub fn imbalance(&self, i: usize) -> Option<f64> {
         Some(self.energy(i)? - self.energy(0)? - self.work.get(i)? - self.dissipated.get(i)? - self.from_events.get(i)?)
     }
 
-    /// Nothing, but the room.
+    /// Removes everything but the memory.
     pub(crate) fn clear(&mut self) {
         let columns = [
             &mut self.t,

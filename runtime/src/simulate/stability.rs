@@ -4,8 +4,8 @@
 //! A vector z is driven by the Jacobian again and again, J z ≈ (f(y + εz) − f(y))/ε, until it lies
 //! in the plane of the fastest motions; the last two of z, Jz, J²z then give the λ² = aλ + b of
 //! that plane, real or complex (power iteration with a fit to a pair: Wilkinson, *The Algebraic
-//! Eigenvalue Problem*, 1965, §9.3). z is kept from one look to the next, so that later ones need
-//! two evaluations.
+//! Eigenvalue Problem*, 1965, §9.3). z is kept from one check to the next, so that later checks
+//! need two evaluations.
 
 use articulated_core::dynamics::Dynamics;
 
@@ -13,14 +13,14 @@ use super::integrator::{Method, roots};
 use super::system::System;
 use super::{Control, SimulateError};
 
-/// Steps between two looks, and between looks that find nothing near.
+/// Steps between two checks, and between checks without fast motion.
 const EVERY: u64 = 16;
 const SELDOM: u64 = 256;
 
-/// |hλ| below which looks become seldom.
+/// |hλ| below which checks become rare.
 const CALM: f64 = 0.5;
 
-/// What a step may see of fast motion, |hλ| roughly, before it is reason to look.
+/// |hλ|, roughly, of fast motion in a step from which on a check is due.
 pub(crate) const SUSPICIOUS: f64 = 0.6;
 
 /// Growth tolerated in a step: eigenvalues are not known well enough to distinguish slight damping
@@ -30,7 +30,7 @@ const SUFFERED: f64 = 1e-3;
 /// Growth accepted in a step reported as stable: rounding.
 const TOLD: f64 = 1e-5;
 
-/// Rounds at most of a look that begins anew, and of one that confirms.
+/// Largest number of rounds of a check that begins anew, and of one that confirms.
 const ROUNDS: usize = 40;
 
 #[derive(Clone, Debug)]
@@ -39,15 +39,15 @@ pub(crate) struct Stability {
     at: Vec<f64>,
     fresh: bool,
     largest: f64,
-    /// Steps to the next look, and the step of it.
+    /// Steps to the next check, and its step.
     interval: u64,
     next: u64,
     wait: u64,
-    /// What the step saw that was reason for the last look.
+    /// |hλ| of the step that caused the last check.
     seen: f64,
 }
 
-/// What a look found: λ² = aλ + b, and |λ|.
+/// Result of a check: λ² = aλ + b, and |λ|.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pair {
     a: f64,
@@ -79,8 +79,8 @@ impl Stability {
         self.fresh = true;
     }
 
-    /// Whether it is time to look after this many steps, or the motion has jumped: the largest
-    /// velocity is more than eight times what it ever was.
+    /// Whether a check is due after this many steps, or the motion has jumped: the largest velocity
+    /// is more than eight times its largest value so far.
     pub(crate) fn due(&mut self, steps: u64, v: &[f64]) -> bool {
         let size = v.iter().fold(0.0, |most: f64, v| if v.is_finite() { most.max(v.abs()) } else { f64::INFINITY });
         let jumped = size > 8.0 * self.largest && self.largest > 0.0;
@@ -95,8 +95,8 @@ impl Stability {
         due
     }
 
-    /// Whether what a step saw of fast motion, |hλ| roughly, is reason to look; not twice in a row,
-    /// unless it is much faster than what was looked at.
+    /// Whether fast motion in a step, |hλ| roughly, requires a check; not twice in a row, unless it
+    /// is much faster than at the last check.
     pub(crate) fn suspects(&mut self, steps: u64, seen: f64) -> bool {
         let look = seen > SUSPICIOUS && (steps >= self.wait || seen > 4.0 * self.seen);
         if look {
@@ -124,9 +124,9 @@ impl Stability {
         let calm = found.is_some_and(|pair| h * pair.rate < CALM);
         self.interval = if calm { (2 * self.interval).min(SELDOM) } else { EVERY };
         let Some(pair) = found.filter(|pair| !stable(method, *pair, h)) else { return Ok(None) };
-        // The first step beyond |hλ| = 1 that is not stable bounds those that are: of those that
-        // are told not even one that makes next to nothing grow, for how many there will be nobody
-        // knows.
+        // The first step beyond |hλ| = 1 that is not stable bounds the admissible ones. Even a step
+        // with very little growth is not reported as admissible, since the number of steps is
+        // unknown.
         let mut admissible = (1.0 / pair.rate).min(h);
         while admissible < h && excess(method, pair, 1.01 * admissible) <= TOLD {
             admissible *= 1.01;
@@ -158,8 +158,8 @@ impl Stability {
             let Some(pair) = fit(&self.z[0][..n], &self.z[1][..n], &self.z[2][..n]) else { return Ok(before) };
             let settled = before.is_some_and(|b| (b.rate - pair.rate).abs() <= 0.01 * pair.rate);
             before = Some(pair);
-            // The next round begins with Jz: with J²z alone, pairs ±λ would never be told apart
-            // from where they began.
+            // The next round begins with Jz: with J²z alone, pairs ±λ would never separate from
+            // their initial mix.
             self.z.swap(0, 1);
             if settled {
                 break;
@@ -168,8 +168,8 @@ impl Stability {
         Ok(before)
     }
 
-    /// What was fast is looked at again; a little of everything, in numbers without a pattern, lets
-    /// in what has become fast.
+    /// The previous fast motion is checked again; small parts of all motions, in numbers without a
+    /// pattern, admit newly fast ones.
     fn begin(&mut self, n: usize) {
         let size = norm(&self.z[0][..n]);
         let kept = if self.fresh || !(size > 0.0 && size.is_finite()) { 0.0 } else { 1.0 / size };
@@ -206,7 +206,7 @@ fn stable<R: Dynamics<f64>>(method: &dyn Method<R>, pair: Pair, h: f64) -> bool 
     h * pair.rate <= 1.0 || excess(method, pair, h) <= SUFFERED
 }
 
-/// By what part a step of length h makes the pair grow more than it does by itself, at least −1.
+/// Relative growth of the pair in a step of length h beyond its own growth, at least −1.
 fn excess<R: Dynamics<f64>>(method: &dyn Method<R>, pair: Pair, h: f64) -> f64 {
     let grows = roots(pair.a, pair.b).into_iter().map(|(re, _)| (h * re).exp()).fold(1.0, f64::max);
     method.amplification(pair.a, pair.b, h).map_or(-1.0, |r| r / grows - 1.0)
@@ -235,10 +235,10 @@ mod tests {
     fn a_look_is_due_now_and_then_and_where_the_motion_jumps() {
         let mut stability = Stability::new(2);
         assert!(stability.due(0, &[0.0, 0.0]));
-        // What begins from rest does not jump.
+        // A start from rest is no jump.
         assert_eq!([0.0, 1.0, -8.0, 8.0].map(|v| stability.due(1, &[v, 0.0])), [false; 4]);
         assert_eq!([-64.0, 513.0, 100.0].map(|v| stability.due(1, &[0.0, v])), [false, true, false]);
-        // Of what is no number nothing is kept.
+        // Infinite or NaN sizes are not kept.
         assert_eq!([f64::NAN, f64::INFINITY, 5000.0].map(|v| stability.due(1, &[v, 1.0])), [true; 3]);
         assert_eq!([EVERY, EVERY + 1, EVERY + 2, 3 * EVERY].map(|steps| stability.due(steps, &[1.0, 1.0])), [false, true, false, true]);
     }

@@ -32,11 +32,11 @@ impl Norm {
     pub(crate) fn scale(&self, i: usize, y: &[f64]) -> f64 {
         let half = self.before.len() / 2;
         let after = if i < half { self.before[i] + y[i].abs() } else { y[i].abs() };
-        // Nothing is known better than to rounding.
+        // No number is known better than to rounding.
         (self.atol[i] + self.rtol * self.before[i].max(after)).max(f64::MIN_POSITIVE)
     }
 
-    /// √(mean of (e_i/scale_i)²), and the number whose part is largest.
+    /// √(mean of (e_i/scale_i)²), and the number with the largest part.
     pub(crate) fn of(&self, error: impl Fn(usize) -> f64, y: &[f64]) -> Error {
         let n = self.before.len();
         let (mut sum, mut largest, mut index) = (0.0, 0.0, 0);
@@ -73,8 +73,8 @@ pub(crate) struct Controller {
 }
 
 impl Controller {
-    /// For an error that falls with the power `order` of the step; `beta` is what the error before
-    /// has to say; steps change by factors from `least` to `most`.
+    /// For an error that falls with the power `order` of the step; `beta` is the weight of the
+    /// error before; steps change by factors from `least` to `most`.
     pub(crate) fn new(order: f64, beta: f64, least: f64, most: f64) -> Self {
         Self { alpha: 1.0 / order - 0.75 * beta, beta, least, most, before: 1e-4, rejected: false }
     }

@@ -18,11 +18,11 @@ pub(crate) struct System<'r, R: Dynamics<f64>> {
     pub(crate) manifold: Manifold,
     /// Origin of the chart, `[nq]`.
     pub(crate) origin: Vec<f64>,
-    /// The torques of a sampled controller, `[nv]`, where it is one.
+    /// The torques of the controller if it is sampled, `[nv]`.
     pub(crate) held: Vec<f64>,
     pub(crate) holds: bool,
-    /// The next time at which the torques have a kink or a jump, s: up to there they are those
-    /// before it.
+    /// The next time at which the torques have a kink or a jump, s: up to it, they are those before
+    /// it.
     pub(crate) kink: f64,
     pub(crate) counts: Counts,
     /// Configuration and torques of the last evaluation.
@@ -92,8 +92,8 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         self.no_torque = self.no_torque.or(not_finite(t, (q, v), tau));
     }
 
-    /// The configuration u of the chart and the commanded torques there: in `q` and `tau`. Where a
-    /// step ends at a jump, those before it.
+    /// The configuration u of the chart and the commanded torques there, in `q` and `tau`. If a
+    /// step ends at a jump, the torques are those before it.
     fn command_at(&mut self, control: &mut dyn Control, t: f64, u: &[f64], v: &[f64]) -> Result<(), FunctionError> {
         self.place(u)?;
         command(self.holds.then_some(&self.held), control, self.within(t), (&self.q, v), &mut self.tau);
@@ -144,7 +144,7 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         Some(kinetic[0] + potential[0])
     }
 
-    /// The torques that the motors give in a state, `[nv]`, in `given`.
+    /// The torques of the motors in a state, `[nv]`, in `given`.
     pub(crate) fn motor_torques(&mut self, control: &mut dyn Control, t: f64, y: &[f64], given: &mut [f64]) -> Result<(), SimulateError> {
         let nv = self.nv();
         let (u, v) = (&y[..nv], &y[nv..2 * nv]);
@@ -166,8 +166,8 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         Ok(())
     }
 
-    /// vᵀτ of what the motors give, and the power of the effects, at the configuration and torques
-    /// of the last evaluation.
+    /// vᵀτ of the motors, and the power of the effects, at the configuration and torques of the
+    /// last evaluation.
     fn powers(&mut self, v: &[f64]) -> [f64; 2] {
         if !self.follows_work {
             return [0.0; 2];
@@ -204,7 +204,7 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
     }
 
     /// The joint at which the mass matrix is singular where the chart begins, at these velocities,
-    /// if the robot has the functions that tell.
+    /// if the robot has the functions to find it.
     pub(crate) fn without_mass(&mut self, v: &[f64]) -> Option<Singular> {
         let zero = vec![0.0; self.nv()];
         let state = [&self.origin[..], v, &zero];
@@ -215,7 +215,7 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         }
     }
 
-    /// The next chart begins where this one has got to, `u`.
+    /// The next chart begins at the point `u` of this one.
     pub(crate) fn move_origin(&mut self, u: &[f64]) -> Result<(), FunctionError> {
         self.place(u)?;
         std::mem::swap(&mut self.origin, &mut self.q);
@@ -237,7 +237,7 @@ fn not_finite(t: f64, (q, v): (&[f64], &[f64]), tau: &[f64]) -> Option<(f64, usi
     q.iter().chain(v).all(|x| x.is_finite()).then_some((t, index))
 }
 
-/// The torques that are held, or else those that the controller gives.
+/// The torques that are held, or otherwise those of the controller.
 fn command(held: Option<&[f64]>, control: &mut dyn Control, t: f64, (q, v): (&[f64], &[f64]), tau: &mut [f64]) {
     if let Some(held) = held {
         tau.copy_from_slice(held);

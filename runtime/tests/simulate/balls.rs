@@ -59,7 +59,7 @@ fn a_ball_pendulum_with_a_spring_and_a_limit_keeps_its_energy() {
     }
 }
 
-/// Damping of a stop takes energy, and the balance says how much.
+/// Damping of a stop takes energy, and the balance includes it.
 #[test]
 fn what_a_damped_limit_takes_is_in_the_balance() {
     let model = ball(0.3, -9.81, &[(EffectId::limit, &[0.5, 200.0, 0.4])]);

@@ -28,7 +28,7 @@ fn a_blow_hands_over_what_the_ball_and_the_mass_behind_the_point_say() {
     let lost = before - energy(&v) - 0.5 * ball * struck.ball_speed.powi(2);
     let expected = 0.5 * (1.0 - restitution * restitution) * approach.powi(2) * head * ball / (head + ball);
     assert!((lost - expected).abs() < 1e-14, "{lost} J, not {expected} J");
-    // Newton's law: what is left of the speed towards each other, reversed.
+    // Newton's law: the remaining approach speed, reversed.
     let after = impact.strike(&q, &mut v, struck.ball_speed).unwrap();
     assert!((after.approach + restitution * approach).abs() < 1e-14 && after.impulse == 0.0);
 }
@@ -59,7 +59,7 @@ fn a_blow_off_the_centre_turns_a_free_body() {
     }
 }
 
-/// A ball of next to no mass leaves at (1 + e) times the speed of the point.
+/// A ball of negligible mass leaves at (1 + e) times the speed of the point.
 #[test]
 fn a_ball_of_no_weight_to_speak_of_is_struck() {
     let robot = slider();
@@ -70,8 +70,8 @@ fn a_ball_of_no_weight_to_speak_of_is_struck() {
     }
 }
 
-/// What an event that strikes records is the ball's speed, and the motion goes on with what is
-/// left; what cannot strike is refused.
+/// The record of an event that strikes is the ball's speed, and the motion goes on with the new
+/// state; an event that cannot strike is refused.
 #[test]
 fn an_event_that_strikes_gives_the_speed_of_the_ball() {
     let robot = model("chain", Base::Fixed);
@@ -129,7 +129,7 @@ fn all_that_is_wrong_with_a_blow_or_a_contact_is_said_at_once() {
     assert!(Impact::new(&robot, at(next, [0.0; 3], [0.0, 0.0, 1.0]), 1.0, 0.5).is_err());
 }
 
-/// Of such a normal no number says the length.
+/// A normal whose length is beyond the range of numbers.
 #[test]
 fn a_contact_is_found_whatever_the_length_of_its_normal() {
     let robot = model("ball", Base::Fixed);

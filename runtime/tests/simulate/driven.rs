@@ -1,4 +1,4 @@
-//! What drives a robot, and the balance of energy.
+//! Controllers of a robot, and the balance of energy.
 
 use std::cell::RefCell;
 
@@ -11,7 +11,7 @@ use articulated::{Base, Dynamics, Origin};
 
 use crate::robots::{apart, chain, free, handle, model, one_joint, satellite, slider, stepping, to};
 
-/// q̈ = u between samples: the sums are exact, and the samples come when they must.
+/// q̈ = u between samples: the sums are exact, and the samples come at their times.
 #[test]
 fn a_sampled_controller_is_asked_at_its_times_and_held_between() {
     for id in [IntegratorId::dopri5, IntegratorId::rodas4, IntegratorId::rk4] {
@@ -56,8 +56,8 @@ impl Control for Sampled {
     }
 }
 
-/// Rows between two samples are nothing to a controller that is sampled: they neither ask it nor
-/// take a sample away.
+/// Rows between two samples have no effect on a sampled controller: they neither call it nor
+/// replace a sample.
 #[test]
 fn a_sampled_table_is_asked_at_samples_alone() {
     let rows = ([0.0, 0.3, 0.5, 0.55, 0.8], [0.0, 1.0, 2.0, 0.0, 0.2]);
@@ -106,7 +106,7 @@ impl Control for Jump {
     }
 }
 
-/// Steps end at the jump, and no stage of the step before it sees what comes after: parabolas are
+/// Steps end at the jump, and no stage of the step before it sees torques after it: parabolas are
 /// exact.
 #[test]
 fn a_step_that_ends_at_a_jump_is_made_with_the_torques_before_it() {
@@ -119,7 +119,7 @@ fn a_step_that_ends_at_a_jump_is_made_with_the_torques_before_it() {
     }
 }
 
-/// Far from the zero of time as near it, and steps by tolerance are no shorter there.
+/// The same far from the zero of time as near it, and steps by tolerance are no shorter there.
 #[test]
 fn a_jump_late_in_time_is_a_jump() {
     struct Late;
@@ -254,7 +254,7 @@ fn the_curve_of_dop853_is_of_order_seven() {
     }
 }
 
-/// Records are where they were asked for: none twice, none left out, whatever rounding makes of the
+/// Records are at the requested times: none twice, none left out, whatever the rounding of the
 /// times.
 #[test]
 fn outputs_come_at_their_times() {
@@ -276,8 +276,8 @@ fn outputs_come_at_their_times() {
     assert_eq!(times(to(IntegratorId::dopri5, 1.0, 1e-9)), [0.0, 1.0]);
 }
 
-/// The first step is the one that was asked for, none is longer than allowed, and where one shorter
-/// than allowed would be needed, that is an error.
+/// The first step is the requested one, none is longer than allowed, and if one shorter than
+/// allowed is needed, that is an error.
 #[test]
 fn steps_keep_the_bounds_that_they_are_given() {
     let (q, v) = ([0.4, -0.7, 0.5], [1.0, 0.5, -1.5]);
@@ -290,7 +290,7 @@ fn steps_keep_the_bounds_that_they_are_given() {
             "{id}: {:?}",
             motion.counts
         );
-        // A jump that nobody told of.
+        // A jump that the control does not announce.
         let mut jump = |t: f64, _: &[f64], _: &[f64], tau: &mut [f64]| tau[0] = if t < 0.05 { 0.0 } else { 1e3 };
         let run = |min_step, jump: &mut dyn Control| {
             let settings = Settings { min_step, ..to(id, 0.2, 1e-9) };
@@ -302,7 +302,7 @@ fn steps_keep_the_bounds_that_they_are_given() {
     }
 }
 
-/// An end that is a rounding behind a step or a record is none of its own.
+/// An end that is a rounding after a step or a record is not a separate one.
 #[test]
 fn what_rounding_leaves_before_the_end_is_no_step_and_no_record() {
     let settings = Settings { output: Output::Every(0.1), ..stepping(IntegratorId::rk4, 0.3 + 1e-11, 0.1) };
@@ -325,8 +325,8 @@ impl Control for Kinks {
     }
 }
 
-/// Steps that could be longer than half of what is left are halves, and one that a stretch is too
-/// short for says nothing about the next.
+/// Steps that could be longer than half of the rest are halves, and a step that is longer than its
+/// stretch does not affect the next.
 #[test]
 fn steps_are_alike_where_stretches_are_not_whole_multiples_of_them() {
     for id in [IntegratorId::dopri5, IntegratorId::dop853, IntegratorId::rodas4] {
@@ -340,8 +340,7 @@ fn steps_are_alike_where_stretches_are_not_whole_multiples_of_them() {
     }
 }
 
-/// From rest, where the state says nothing about its own size: a hundred of the steps of 1 µs that
-/// it was tried with.
+/// From rest, where the state has no size of its own: a hundred of the trial steps of 1 µs.
 #[test]
 fn a_first_step_is_no_longer_than_a_hundred_trials() {
     for id in [IntegratorId::dopri5, IntegratorId::dop853] {
@@ -351,8 +350,7 @@ fn a_first_step_is_no_longer_than_a_hundred_trials() {
     }
 }
 
-/// Nothing of one motion is left in the next: neither torques that were held, nor derivatives, nor
-/// records.
+/// Nothing of one motion remains in the next: neither held torques, nor derivatives, nor records.
 #[test]
 fn a_motion_is_the_same_whatever_the_simulation_did_before() {
     let robot = model("chain", Base::Fixed);
@@ -376,7 +374,7 @@ fn a_motion_is_the_same_whatever_the_simulation_did_before() {
     }
 }
 
-/// Torques are zero when they come, at each sample too: what is added to them is added to nothing.
+/// The torque array is zero at each call, also at each sample: additions do not accumulate.
 #[test]
 fn torques_that_are_added_do_not_add_up() {
     let settings = Settings { output: Output::Every(0.25), ..stepping(IntegratorId::rk4, 1.0, 0.05) };
@@ -386,8 +384,8 @@ fn torques_that_are_added_do_not_add_up() {
     assert!((motion.v[4] - 1.0).abs() < 1e-14, "{:?}", motion.v);
 }
 
-/// The rounds of an implicit step begin at the acceleration of the step before, and at none where a
-/// motion begins.
+/// The rounds of an implicit step begin at the acceleration of the step before, and at zero at the
+/// start of a motion.
 #[test]
 fn rounds_are_as_many_as_without_a_motion_before() {
     let robot = slider();
@@ -398,7 +396,7 @@ fn rounds_are_as_many_as_without_a_motion_before() {
 }
 
 /// τ = k_p·(target − q) + k_d·(rate − v): once under way, a body that is to follow a rate lags by
-/// what its own acceleration and friction ask for, which is nothing here.
+/// the torque of its own acceleration and friction, which is zero here.
 #[test]
 fn a_controller_with_rates_holds_them() {
     let robot = slider();
@@ -460,7 +458,7 @@ fn every_bundled_robot_keeps_its_energy() {
     }
 }
 
-/// A servo of 1e7 N·m/rad moves far more energy between two records than is left at any of them:
+/// A servo of 1e7 N·m/rad moves far more energy between two records than remains at any of them:
 /// the balance is that of all steps, whatever is recorded.
 #[test]
 fn the_balance_of_energy_does_not_depend_on_what_is_recorded() {
@@ -480,8 +478,8 @@ fn the_balance_of_energy_does_not_depend_on_what_is_recorded() {
     assert_eq!(balance(Output::Ends, false), None);
 }
 
-/// Of a body that is thrown up and falls on a map that stops it: T, work and what events brought
-/// are known at the end, and nothing is lacking.
+/// For a body that is thrown up and falls on a map that stops it: T, work and energy from events
+/// are known at the end, and the balance is zero.
 #[test]
 fn the_balance_of_energy_counts_what_events_bring() {
     let robot = one_joint("prismatic", 0.0);

@@ -1,4 +1,4 @@
-//! How a motion ends, and what of it is recorded.
+//! The end of a motion, and its records.
 
 use std::cell::Cell;
 
@@ -6,7 +6,7 @@ use articulated::simulate::{Action, Ended, Event, IntegratorId, NoTorque, Output
 
 use crate::robots::{any, chain, one_joint, slider, stepping, to};
 
-/// A recording belongs to the robot whose motion it is, whatever was in it.
+/// A recording belongs to the robot of its motion, whatever it contained before.
 #[test]
 fn a_recording_may_be_taken_from_another_robot() {
     let (robot, settings) = (one_joint("prismatic", 0.0), to(IntegratorId::dopri5, 0.1, 1e-6));
@@ -19,7 +19,7 @@ fn a_recording_may_be_taken_from_another_robot() {
     }
 }
 
-/// A motion that stops where something is recorded anyway has one record of it.
+/// A motion that stops at a time of output has one record of it.
 #[test]
 fn a_stop_at_a_time_of_output_is_recorded_once() {
     let still = one_joint("prismatic", 0.0).with_gravity([0.0; 3]);
@@ -112,8 +112,8 @@ fn one_who_watches_can_end_it() {
     assert_eq!((recording.ended, recording.counts.steps, calls.get()), (Ended::ByObserver, 50, 50));
 }
 
-/// What happens where the motion ends has happened: the state behind it is recorded too, and one
-/// who watches is asked.
+/// Events at the end of the motion have happened: the state after them is recorded too, and the
+/// observer is called.
 #[test]
 fn a_map_at_the_end_is_part_of_the_motion() {
     let robot = slider();

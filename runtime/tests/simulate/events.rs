@@ -1,4 +1,4 @@
-//! Events are found where they are, and none is stepped over.
+//! Events are found where they are, and no step misses one.
 
 use articulated::effect::{Applied, EffectId};
 use articulated::simulate::{
@@ -34,7 +34,7 @@ fn a_falling_ball_bounces_when_it_must() {
     }
 }
 
-/// Each bounce leaves e² of the energy; at every time of output the balance knows it.
+/// Each bounce leaves e² of the energy; at every time of output the balance includes it.
 #[test]
 fn what_a_map_takes_is_booked() {
     let (robot, restitution) = (one_joint("prismatic", 0.0), 0.8);
@@ -64,7 +64,7 @@ fn what_a_map_takes_is_booked() {
     }
 }
 
-/// None of two that touch the floor together is forgotten.
+/// Of two that touch the floor together, both are recorded.
 #[test]
 fn what_happens_at_one_time_all_happens() {
     let text = r#"<robot name="two"><link name="base"/><link name="a"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
@@ -92,9 +92,9 @@ fn what_happens_at_one_time_all_happens() {
     assert!((motion.energy(1).unwrap() / motion.energy(0).unwrap() - 1.0).abs() < 1e-10);
 }
 
-/// A map may take the state away from the zero of its event, as one does that winds a coordinate
-/// back: then it is on the side that its function says. Where a map leaves it at the zero, as a
-/// bounce does, what the search left says nothing, however much that is.
+/// A map may take the state away from the zero of its event, for example by winding a coordinate
+/// back: then the event is on the side of its function. If a map leaves the state at the zero, as a
+/// bounce does, the remainder of the search means nothing, however large.
 #[test]
 fn what_a_map_takes_away_from_a_zero_is_not_found_there_again() {
     let robot = one_joint("prismatic", 0.0);
@@ -144,7 +144,7 @@ fn a_ball_that_bounces_ever_faster_is_an_error_that_names_the_event() {
 }
 
 /// A map that leaves a ball at rest on the floor, which does not hold it, and a ball that lies
-/// there from the start on: neither falls through unnoticed.
+/// there from the start: both are noticed when they fall through.
 #[test]
 fn what_lies_at_zero_and_goes_on_is_an_event() {
     let robot = one_joint("prismatic", 0.0);
@@ -162,8 +162,8 @@ fn what_lies_at_zero_and_goes_on_is_an_event() {
         let told = fall(event, 1.0).unwrap_err();
         assert!(told.starts_with("at t = 0.4515") && told.contains("`floor` happens again and again"), "{told}");
     }
-    // A section on which a motion begins is none of its returns, unless it is said that it arrives
-    // there.
+    // The start of a motion on a section is not a return to it, unless the event is declared as
+    // arriving there.
     let section = || Event::new("section", |_, q: &[f64], _: &[f64]| q[0]).direction(Direction::Falling);
     assert_eq!(fall(section(), 0.0).unwrap(), []);
     let arrived = fall(section().arriving(Direction::Falling), 0.0).unwrap();
@@ -198,8 +198,8 @@ fn a_pair_of_zeros_within_a_step_is_not_stepped_over() {
     }
 }
 
-/// In the middle between two of the places where a step is looked at, and so near to each other
-/// that only the least value leads to them.
+/// In the middle between two of the sample points of a step, and so near to each other that only
+/// the least value leads to them.
 #[test]
 fn a_pair_of_zeros_is_found_wherever_it_is_in_a_step() {
     let robot = slider();
@@ -213,8 +213,7 @@ fn a_pair_of_zeros_is_found_wherever_it_is_in_a_step() {
     }
 }
 
-/// What happens at one time again and again happens at many: pairs of maps are counted anew at
-/// each.
+/// Repetition at many times is no repetition at one: pairs of maps are counted anew at each.
 #[test]
 fn two_maps_at_each_of_many_times_are_no_error() {
     let map = |name| {
@@ -266,7 +265,8 @@ fn events_that_are_only_recorded_change_nothing() {
     assert_eq!((plain.q, plain.v), (watched.q, watched.v));
 }
 
-/// Nor does one that never happens: a body that floats takes no other turn for being looked at.
+/// Nor does an event that never happens: its evaluation does not change the turn of a floating
+/// body.
 #[test]
 fn what_is_looked_for_does_not_move_a_body_that_floats() {
     let robot = model("satellite", Base::Floating);
@@ -281,7 +281,7 @@ fn what_is_looked_for_does_not_move_a_body_that_floats() {
     }
 }
 
-/// In whatever order they stand.
+/// In any order of the events.
 #[test]
 fn what_is_recorded_where_another_event_maps_happens_once() {
     let robot = one_joint("prismatic", 0.0);
@@ -304,8 +304,8 @@ fn what_is_recorded_where_another_event_maps_happens_once() {
     }
 }
 
-/// In the order of time, whatever that of their list, and where one maps the state, the others of
-/// its time happen with it.
+/// In the order of time, whatever that of their list; if one maps the state, the others of its time
+/// happen with it.
 #[test]
 fn events_of_one_step_happen_in_order() {
     let still = one_joint("prismatic", 0.0).with_gravity([0.0; 3]);
@@ -336,7 +336,7 @@ fn events_of_one_step_happen_in_order() {
     }
 }
 
-/// Between walls a billionth of a step apart two events take turns for ever.
+/// Between walls a billionth of a step apart, two events alternate for ever.
 #[test]
 fn two_events_that_cause_each_other_are_an_error_too() {
     let still = one_joint("prismatic", 0.0).with_gravity([0.0; 3]);
@@ -353,7 +353,7 @@ fn two_events_that_cause_each_other_are_an_error_too() {
     assert!(matches!(error, SimulateError::Chattering { t, .. } if t < 1e-9), "{error}");
 }
 
-/// What a map makes of the state has to be one.
+/// The result of a map must be a state.
 #[test]
 fn a_map_that_gives_no_state_is_an_error() {
     let run = |change: &'static dyn Fn(&mut [f64], &mut [f64])| {
@@ -387,7 +387,7 @@ fn a_coordinate_leaves_its_limits_at_both_ends() {
     }
 }
 
-/// What files have for no bound at all is one, as good as none.
+/// The largest numbers, which files use for no bound, are bounds without effect.
 #[test]
 fn the_largest_numbers_are_bounds() {
     let robot = slider();
@@ -423,7 +423,7 @@ fn bounds_that_nothing_is_between_are_an_error() {
     }
 }
 
-/// Stretch by stretch nothing is lost and nothing comes twice: what is zero where a stretch ends
+/// Stretch by stretch no event is lost and none comes twice: a zero at the end of a stretch
 /// happened in it.
 #[test]
 fn an_event_where_two_stretches_meet_happens_once() {
@@ -447,7 +447,7 @@ fn an_event_where_two_stretches_meet_happens_once() {
     }
 }
 
-/// What stays at zero does not come to it.
+/// A function that stays at zero does not reach it.
 #[test]
 fn what_is_at_zero_all_the_while_is_no_event_at_the_end() {
     let still = Event::new("still", |t: f64, q: &[f64], _| if t == 0.0 { -1.0 } else { q[0] });

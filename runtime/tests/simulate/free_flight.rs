@@ -93,9 +93,9 @@ fn difference(rest: &Recording, moving: &Recording, frame: Vector3<f64>) -> f64 
         .fold(0.0, f64::max)
 }
 
-/// Galilean invariance: a constant velocity of the frame changes no relative motion, and no
-/// momentum but by m times itself. `semi_implicit_euler` keeps it to rounding, every other method
-/// to its order.
+/// Galilean invariance: a constant velocity of the frame changes no relative motion, and momentum
+/// only by m times itself. `semi_implicit_euler` keeps it to rounding, every other method to its
+/// order.
 #[test]
 fn the_speed_of_the_frame_changes_no_motion() {
     let frame = Vector3::new(40.0, -25.0, 15.0);

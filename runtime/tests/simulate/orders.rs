@@ -37,7 +37,7 @@ fn slopes<R: Dynamics<f64>>(robot: &R, q: &[f64], v: &[f64], end: f64, derivativ
                 let motion = driven(robot, stepping(row.id, end, end / steps), q, v);
                 assert_eq!(motion.counts.steps, steps as u64);
                 // An implicit step that is solved to rounding takes fewer rounds the shorter it is:
-                // there steps are what it costs.
+                // there the cost is the number of steps.
                 let cost = if row.id == IntegratorId::lie_midpoint { motion.counts.steps } else { motion.counts.evaluations };
                 ((cost as f64).ln(), apart(robot, &exact, &motion).ln())
             })
@@ -72,7 +72,7 @@ fn errors_on_a_floating_robot_with_a_ball_joint_fall_with_the_order() {
     slopes(&model("satellite", Base::Floating), &q, &v, 1.0, true);
 }
 
-/// Their tables are written by hand, since they say more.
+/// Their tables are written by hand, since they contain more.
 #[test]
 fn the_manuals_name_every_integrator_with_its_order() {
     for (file, text) in
@@ -85,9 +85,9 @@ fn the_manuals_name_every_integrator_with_its_order() {
     }
 }
 
-/// Hairer, Nørsett & Wanner 1993, §II.4, by hand, of a body of 1 kg that nothing drives: with d_0 =
-/// |y|, d_1 = |f| in units of the tolerances h_0 = 0.01 d_0/d_1, and the step is (0.01/d_1)^(1/6),
-/// 100 h_0 at most; 1e-6 s where nothing moves.
+/// Hairer, Nørsett & Wanner 1993, §II.4, by hand, for an undriven body of 1 kg: with d_0 = |y|, d_1
+/// = |f| in units of the tolerances h_0 = 0.01 d_0/d_1, and the step is (0.01/d_1)^(1/6), 100 h_0
+/// at most; 1e-6 s at rest.
 #[test]
 fn a_first_step_is_estimated_by_the_rates() {
     let first = |(rtol, atol): (f64, f64), q: f64, v: f64| {

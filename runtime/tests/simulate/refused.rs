@@ -1,4 +1,4 @@
-//! What is refused, and what cannot go on: every mistake at once, with the joint that it is about.
+//! Refused simulations, and those that cannot go on: every mistake at once, with its joint.
 
 use std::f64::consts::{PI, TAU};
 
@@ -40,7 +40,7 @@ fn what_cannot_be_simulated_is_said_at_once() {
     }
 }
 
-/// A robot that nothing can move stands still, whatever would drive it.
+/// A robot without moving joints stays at rest, whatever would drive it.
 #[test]
 fn a_robot_without_a_joint_stands_still() {
     let robot = load_bytes("still.urdf", b"<robot name='still'><link name='base'/></robot>", Base::Fixed).unwrap();
@@ -53,7 +53,7 @@ fn a_robot_without_a_joint_stands_still() {
 }
 
 articulated::robot! {
-    /// A base and nothing else.
+    /// Only a base.
     mod still {
         urdf = "tests/simulate/urdf/still.urdf",
         functions = [placements, jacobians_body, mass_matrix, coriolis_matrix, gravity_torque, inverse_dynamics_derivatives, torque_regressor,
@@ -61,7 +61,7 @@ articulated::robot! {
     }
 }
 
-/// Of matrices without rows generated code gives what the library gives: nothing, and no panic.
+/// For matrices without rows, generated code agrees with the library: empty results, and no panic.
 #[test]
 fn a_generated_robot_without_a_joint_answers_as_the_library_does() {
     let (model, mut answered) = (model("still", Base::Fixed), 0);
@@ -81,8 +81,7 @@ fn a_generated_robot_without_a_joint_answers_as_the_library_does() {
     assert_eq!(answered, 12);
 }
 
-/// A longest step that time cannot tell from none, and a shortest one that the tolerances need
-/// shorter.
+/// A longest step that time cannot resolve, and a shortest one that is too long for the tolerances.
 #[test]
 fn bounds_of_steps_are_kept_or_told() {
     let far = Settings { start: 1.7e9, end: 1.7e9 + 0.01, max_step: 1e-6, ..to(IntegratorId::dopri5, 1.0, 1e-6) };
@@ -105,7 +104,7 @@ fn a_period_that_is_no_length_of_time_is_refused() {
     }
 }
 
-/// Samples that time cannot tell apart, or that are more than a motion may have steps.
+/// Samples that are not distinct in time, or that are more than the allowed steps of a motion.
 #[test]
 fn a_period_that_a_motion_cannot_have_is_an_error_that_says_which_it_can() {
     let refused = |start: f64, period: f64| {
@@ -151,7 +150,7 @@ fn what_is_wrong_with_a_state_its_events_and_its_torques_is_said_at_once() {
     assert_eq!(error.to_string().lines().collect::<Vec<_>>(), expected);
 }
 
-/// What rounding to four digits leaves of the norm is taken, and normalised.
+/// A norm with a rounding error of four digits is accepted, and normalised.
 #[test]
 fn quaternions_have_norm_one_to_four_digits() {
     let started = |w: f64| free(&handle::Robot, &to(IntegratorId::dopri5, 0.1, 1e-6), &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, w], &[0.0; 6]);
@@ -163,7 +162,7 @@ fn quaternions_have_norm_one_to_four_digits() {
     assert!([1.0005, 0.9995].into_iter().all(|w| started(w).unwrap().q_at(1)[6] == 1.0));
 }
 
-/// A coordinate's joint is found behind quaternions too.
+/// A coordinate's joint is found after quaternions too.
 #[test]
 fn coordinates_are_told_with_their_joints() {
     let robot = model("satellite", Base::Floating);
@@ -177,8 +176,8 @@ fn coordinates_are_told_with_their_joints() {
     }
 }
 
-/// Links without mass behind the elbow: every acceleration is none, and it is the last joint that
-/// moves nothing.
+/// Links without mass after the elbow: no acceleration is a number, and the cause is the last
+/// joint, which moves no mass.
 #[test]
 fn a_joint_that_moves_no_mass_is_named() {
     let joint = |name: &str, parent: &str, child: &str| {
@@ -203,8 +202,8 @@ fn a_joint_that_moves_no_mass_is_named() {
     }
 }
 
-/// Torques that are finite and no motion: all accelerations that are none are told, with their
-/// joints.
+/// Torques that are finite and no motion: all accelerations that are not finite are reported, with
+/// their joints.
 #[test]
 fn accelerations_that_are_not_finite_are_all_told() {
     let robot = model("chain", Base::Fixed);
@@ -252,7 +251,7 @@ fn a_step_that_turns_too_far_says_by_how_much() {
     }
 }
 
-/// Numbers that are none: a period, a ball's speed; a kink that is not to come does not hold up the
+/// Invalid numbers: a period, a ball's speed; a kink that is not in the future does not stop the
 /// motion.
 #[test]
 fn what_a_controller_or_a_ball_says_is_looked_at() {

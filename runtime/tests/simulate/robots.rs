@@ -7,7 +7,8 @@ macro_rules! generated {
     ($($(#[$doc:meta])* $name:ident, $urdf:literal, $base:ident, $gravity:literal $(, $more:ident)?;)*) => {
         $(articulated::robot! {
             $(#[$doc])*
-            // Two have moments that break the triangle inequality, of which the macro warns.
+            // Two have moments that break the triangle inequality, for which the macro gives
+            // warnings.
             #[allow(deprecated)]
             pub(crate) mod $name {
                 urdf = $urdf,
@@ -67,12 +68,12 @@ pub(crate) fn stepping(integrator: IntegratorId, end: f64, step: f64) -> Setting
     Settings { step: Some(step), ..to(integrator, end, 1e-6) }
 }
 
-/// Settings that every integrator can do, with a fixed step where there is no other.
+/// Settings for every integrator, with a fixed step if it has no other.
 pub(crate) fn any(integrator: IntegratorId, end: f64) -> Settings {
     if integrator.row().adaptive { to(integrator, end, 1e-10) } else { stepping(integrator, end, 0.03) }
 }
 
-/// A motion that nothing drives.
+/// An undriven motion.
 pub(crate) fn free<R: Dynamics<f64>>(robot: &R, settings: &Settings, q: &[f64], v: &[f64]) -> Result<Recording, SimulateError> {
     Simulation::new(robot, settings.clone())?.with_energy_balance().run(q, v, &mut NoTorque, &mut [])
 }

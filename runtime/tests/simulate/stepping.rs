@@ -1,4 +1,4 @@
-//! Steps one by one, and what is computed only on request.
+//! Steps one by one, and quantities that are computed only on request.
 
 use articulated::Dynamics;
 use articulated::simulate::{
@@ -95,8 +95,7 @@ fn stability_is_not_looked_for_where_it_is_ignored() {
     assert!(ignored.q[1].abs() > 1e3, "{:?}", ignored.q);
 }
 
-/// What looks for stability every 16 steps looks seldom where the motion is slow: at most every 256
-/// steps.
+/// Checks of stability every 16 steps become rare in a slow motion: at most every 256 steps.
 #[test]
 fn a_slow_motion_is_looked_at_seldom() {
     let settings = stepping(IntegratorId::rk4, 4.0, 1e-3);

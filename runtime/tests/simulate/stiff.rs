@@ -1,5 +1,5 @@
-//! Stiff effects: implicit steps decay without a change of sign, explicit ones refuse and say which
-//! step they can take.
+//! Stiff effects: implicit steps decay without a change of sign; explicit ones refuse, and report
+//! their admissible step.
 
 use articulated::effect::{Applied, EffectId};
 use articulated::simulate::{Hold, IntegratorId, NoTorque, Output, Pd, Settings, SimulateError, Simulation, Stiffness, integrators};
@@ -49,8 +49,8 @@ fn implicit_steps_of_any_length_decay_without_a_change_of_sign() {
     }
 }
 
-/// What damping has brought below the least normal number rests: each of a thousand steps leaves
-/// some third of the velocity.
+/// A velocity that damping has brought below the least normal number rests: each of a thousand
+/// steps leaves some third of the velocity.
 #[test]
 fn a_motion_that_dies_away_goes_on_to_its_end() {
     let robot = with(EffectId::damping, vec![1000.0]);
@@ -89,8 +89,8 @@ fn explicit_steps_beyond_stability_are_refused_with_the_one_that_is_not() {
             println!("{integrator}, {effect:?}: {:.3}/rate", admissible * rate);
             assert_eq!(step, 0.05);
             assert!((found / rate - 1.0).abs() < 0.02, "{integrator}: {found} 1/s");
-            // What grows by less than 1e-5 a step is as good as stable: an oscillation by dopri5,
-            // up to 1.02.
+            // Growth of less than 1e-5 a step counts as stable: an oscillation by dopri5, up to
+            // 1.02.
             assert!((0.98..1.03).contains(&(admissible * rate / limit)), "{integrator}, {effect:?}: {admissible} s");
             let motion = free(&robot, &stepping(integrator, 20.0, 0.97 * admissible), &[1e-3], &[0.1]).unwrap();
             assert!((0..motion.len()).all(|i| motion.v[i].abs() <= 1.5), "{integrator}, {effect:?}: {motion:?}");
@@ -109,8 +109,8 @@ fn a_damped_oscillation_that_a_step_damps_less_is_not_refused() {
     assert!(motion.q.last().unwrap().abs() < 1e-20, "{motion:?}");
 }
 
-/// What steps are made counts, and not what steps are asked for: none is longer than from sample to
-/// sample, or than the motion.
+/// The actual steps count, and not the requested ones: none is longer than from sample to sample,
+/// or than the motion.
 #[test]
 fn steps_that_a_sample_or_the_end_cuts_short_are_not_refused() {
     let robot = with(EffectId::damping, vec![100.0]);
@@ -140,7 +140,7 @@ fn a_step_that_becomes_unstable_on_the_way_is_refused_there() {
 }
 
 /// An arm of two links falls against the stop of its shoulder: the first stage behind it is thrown
-/// so far that what follows moves at any rate at all. The stop's is √(k/m_eff).
+/// so far that later stages move at any rate. The stop's is √(k/m_eff).
 #[test]
 fn a_motion_that_is_thrown_within_a_step_is_refused_at_the_rate_of_what_throws_it() {
     let links = [("upper", 2.0, 0.25, 0.05), ("lower", 1.5, 0.2, 0.02)].map(|(name, mass, x, i)| {
@@ -197,7 +197,8 @@ fn a_stiff_motion_that_is_soon_over_is_noted_and_made() {
     }
 }
 
-/// A light wrist under the gains of its shoulder is stiff, and over before anybody would care.
+/// A light wrist under the gains of its shoulder is stiff, but its motion is over before that
+/// matters.
 #[test]
 fn an_arm_under_a_firm_controller_arrives() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/urdf/ur5_like.urdf");
@@ -214,7 +215,7 @@ fn an_arm_under_a_firm_controller_arrives() {
     assert!(explicit.counts.stiff_at.is_some() && explicit.counts.steps < 20_000 && far < 1e-6, "{far:e}, {:?}", explicit.counts);
 }
 
-/// What begins well can become dear: noted at first, refused when a stop is reached.
+/// A cheap start can become expensive: noted at first, refused when a stop is reached.
 #[test]
 fn a_motion_that_becomes_stiffer_is_refused_then() {
     let on = |effect, parameters| Applied { effect, on: "joint".into(), at: Origin::default(), parameters };
@@ -234,7 +235,7 @@ fn a_motion_that_becomes_stiffer_is_refused_then() {
 fn a_body_comes_to_rest_on_a_limit_of_a_giganewton_a_metre() {
     let applied = Applied { effect: EffectId::limit, on: "joint".into(), at: Origin::default(), parameters: vec![0.0, 10.0, 1e9, 1e4] };
     let robot = one_joint("prismatic", 0.0).with_effects(&[applied]).unwrap();
-    // Dropped from 1 mm, with a contact that dissipates: what is left is the force balance, 9.81 nm
+    // Dropped from 1 mm, with a contact that dissipates: it ends in the force balance, 9.81 nm
     // below the limit.
     let settings = to(IntegratorId::rodas4, 1.0, 1e-4);
     let motion = free(&robot, &settings, &[1e-3], &[0.0]).unwrap();
@@ -290,8 +291,8 @@ fn an_oscillation_may_grow_by_a_thousandth_in_a_step() {
     assert!(matches!(run(1.4), Err(SimulateError::Unstable { .. })), "{:?}", run(1.4));
 }
 
-/// Hairer & Wanner 1996, §IV.2: looked for after a thousand steps, and told after fifteen that
-/// stability holds back.
+/// Hairer & Wanner 1996, §IV.2: checked after a thousand steps, and reported after fifteen that
+/// stability limits.
 #[test]
 fn stiffness_is_told_after_fifteen_steps_that_it_holds_back() {
     let robot = with(EffectId::damping, vec![1e5]);

@@ -15,7 +15,7 @@ fn results(graph: &Graph) -> Vec<Array> {
     vec![Array { start: 0, lengths: vec![graph.outputs.len()] }]
 }
 
-/// The statements, held to the rules and to the graph.
+/// The statements, checked against the rules and the graph.
 fn rows(graph: &Graph) -> Vec<Stmt> {
     let results = results(graph);
     let lowering = lowering(graph, &results);

@@ -1,11 +1,9 @@
-//! Results that lie side by side, stored through two pointers in turn of which a compiler cannot
-//! know that they are one.
+//! Neighbouring results, stored in turn through two pointers that a compiler cannot prove equal.
 //!
-//! Where a compiler sees two neighbours it looks for two vectors to make them from, all the way
-//! back to the inputs, and reorders the statements of the whole function each time. Of the
-//! derivatives of a seven-axis arm that was a third of the time to compile, and saved no time when
-//! they ran. Values that pieces of a long function hand on are kept apart by their places
-//! ([`super::outline`]).
+//! A compiler that sees two neighbours looks for two vectors to build them from, back to the
+//! inputs, and reorders the statements of the whole function each time. For the derivatives of a
+//! seven-axis arm that took a third of the compile time, and saved no run time. Values passed
+//! between pieces of a long function are kept apart by their places ([`super::outline`]).
 
 use crate::graph::Graph;
 

@@ -1,4 +1,4 @@
-//! Passes over statements. Each keeps what a body computes; the interpreter holds it to that.
+//! Passes over statements. Each preserves the results of a body; the interpreter checks that.
 
 pub(crate) mod alias_barrier;
 pub(crate) mod outline;

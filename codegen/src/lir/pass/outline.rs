@@ -1,16 +1,16 @@
 //! A long function as several short ones, one after the other: compilers take time that grows
 //! faster than a function's length, and spill more.
 //!
-//! What one piece makes and a later one needs is kept in a struct, in which a place is used again
-//! once its value is not needed any more. Inputs are read where they are needed, and results are
-//! written where they are made.
+//! A value that one piece computes and a later one needs is a field of a struct. A field is reused
+//! once its value is no longer needed. Inputs are read where they are needed, and results are
+//! written where they are computed.
 
 use std::collections::HashMap;
 
 use crate::lir::lower::is_light;
 use crate::lir::{Stmt, Temp};
 
-/// The statements in pieces of so many that compute, and how many values are kept between them.
+/// The statements in pieces of `length` that compute, and the number of values kept between them.
 /// Inputs and comparisons move to their first use in each piece.
 pub(crate) fn outline(statements: Vec<Stmt>, length: usize) -> (Vec<Vec<Stmt>>, usize) {
     let mut light: HashMap<Temp, Stmt> = HashMap::new();
@@ -28,7 +28,7 @@ pub(crate) fn outline(statements: Vec<Stmt>, length: usize) -> (Vec<Vec<Stmt>>, 
     (written, plan.slots)
 }
 
-/// The statements in pieces with so many that define values, at least one piece.
+/// The statements in pieces with `length` that define values; at least one piece.
 fn pieces(statements: Vec<Stmt>, length: usize) -> Vec<Vec<Stmt>> {
     let (mut pieces, mut defining) = (vec![Vec::new()], 0);
     for statement in statements {
@@ -46,7 +46,7 @@ fn pieces(statements: Vec<Stmt>, length: usize) -> Vec<Vec<Stmt>> {
     pieces
 }
 
-/// What goes where.
+/// The pieces, and the slots of the values between them.
 struct Plan {
     pieces: Vec<Vec<Stmt>>,
     /// The slot of each value that a later piece needs.
@@ -90,7 +90,7 @@ fn heavy_needs(statement: &Stmt, light: &HashMap<Temp, Stmt>, see: &mut impl FnM
     }
 }
 
-/// Slots, as they are given away.
+/// Allocator of slots.
 #[derive(Default)]
 struct Slots {
     free: Vec<usize>,
@@ -101,8 +101,8 @@ struct Slots {
 const NOWHERE: usize = usize::MAX;
 
 impl Slots {
-    /// A slot for piece `c` to write to, and not beside another: of neighbours a compiler would
-    /// look for vectors to make them from.
+    /// A slot for piece `c` to write to, and not next to another: a compiler would look for vectors
+    /// to build from neighbours.
     fn take(&mut self, c: usize) -> usize {
         let beside = |slot: usize| [slot.wrapping_sub(1), slot + 1].into_iter().any(|k| self.written.get(k) == Some(&c));
         let found = self.free.iter().rposition(|&slot| !beside(slot));

@@ -1,4 +1,4 @@
-//! Results that lie side by side and are made soon after one another, by one store.
+//! Neighbouring results that are computed soon after one another, by one store.
 //!
 //! A processor stores once a cycle, and large matrices are mostly stores: the mass matrix of a
 //! humanoid takes a tenth less time.
@@ -7,8 +7,8 @@ use std::collections::BTreeMap;
 
 use crate::lir::{Array, Number, Stmt, Store};
 
-/// Two results go together if at most so many statements lie between them: longer kept, they would
-/// fill the registers.
+/// Largest number of statements between two results of a pair: kept longer, they would fill the
+/// registers.
 const APART: usize = 100;
 
 /// The statements with stores of columns 2j and 2j + 1 of a row of a matrix as one, where the

@@ -1,15 +1,15 @@
-//! Which values are in registers at each step, and which wait in memory: the one that is needed
-//! last makes room (L. A. Belady, "A study of replacement algorithms for a virtual-storage
-//! computer", IBM Systems Journal 5 (2), 1966).
+//! Values in registers and values in memory at each step: the value that is needed last is spilled
+//! (L. A. Belady, "A study of replacement algorithms for a virtual-storage computer", IBM Systems
+//! Journal 5 (2), 1966).
 
 /// Values that are held in registers. Intermediate results of an instruction have the other two.
 const REGISTERS: usize = 14;
 
-/// A value that is needed again within so many steps is loaded into a register. Others are read
+/// A value that is needed again within this many steps is loaded into a register. Others are read
 /// from memory where they are needed.
 const SOON: usize = 8;
 
-/// What a step needs and makes: values by their numbers.
+/// Values that a step needs and defines, by their numbers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Step {
     /// The values that it makes and that may be spilled.
@@ -33,18 +33,18 @@ impl Uses {
         uses
     }
 
-    /// The next step behind `at` that needs a value.
+    /// The next step after `at` that needs a value.
     fn next(&self, k: usize, at: usize) -> Option<usize> {
         let uses = &self.0[k];
         uses.get(uses.partition_point(|&other| other <= at)).copied()
     }
 
-    /// Whether no step behind `at` needs it.
+    /// Whether no step after `at` needs it.
     pub(crate) fn is_over(&self, k: usize, at: usize) -> bool {
         self.next(k, at).is_none()
     }
 
-    /// How many steps lie between two that need it, on the average, from `at` on.
+    /// Average number of steps between two uses of it, from `at` on.
     pub(crate) fn rarity(&self, k: usize, at: usize) -> usize {
         self.0[k].last().map_or(0, |last| (last - at) / self.0[k].len())
     }
@@ -83,7 +83,7 @@ impl Plan {
         plan
     }
 
-    /// Spills values until no more are held than there are registers, but for those of `kept`.
+    /// Spills values, except those of `kept`, until the rest fits into the registers.
     fn make_room(&mut self, held: &mut Vec<usize>, uses: &Uses, at: usize, kept: &[usize]) {
         while held.len() > REGISTERS {
             let candidates = held.iter().enumerate().filter(|(_, k)| !kept.contains(k));
@@ -94,7 +94,7 @@ impl Plan {
     }
 }
 
-/// The step behind `at` that needs a value, beyond all steps if none does.
+/// The next step after `at` that needs a value, beyond all steps if none does.
 fn later(uses: &Uses, k: usize, at: usize) -> usize {
     uses.next(k, at).unwrap_or(usize::MAX)
 }
@@ -119,8 +119,8 @@ mod tests {
         (0..n).map(&mut step).collect()
     }
 
-    /// Carries a plan out: whether each operand is where the plan says, and how many registers are
-    /// full at most.
+    /// Executes a plan and checks that each operand is where the plan says. Returns the largest
+    /// number of full registers.
     fn carried_out(steps: &[Step], uses: &Uses, plan: &Plan) -> usize {
         let (mut known, mut most) = (Vec::new(), 0);
         for (at, step) in steps.iter().enumerate() {
@@ -132,7 +132,7 @@ mod tests {
                 assert!(known.contains(k) || plan.folded[at] == Some(*k), "step {at}: {k} is nowhere");
             }
             known.extend(&step.defined);
-            // What is read from memory next needs no register until then.
+            // A value that is next read from memory needs no register until then.
             let next = |k: usize| (at + 1..steps.len()).find(|&s| steps[s].used.contains(&k));
             known.retain(|&k| next(k).is_some_and(|s| !plan.loads[s].contains(&k) && plan.folded[s] != Some(k)));
             most = most.max(known.len());

@@ -18,7 +18,7 @@ pub(crate) enum Cell {
 }
 
 impl Cell {
-    /// What an output is.
+    /// The cell of an output.
     pub(crate) fn of(graph: &Graph, output: NodeId) -> Self {
         let node = graph.node(output);
         if let Some(x) = node.constant() {
@@ -36,7 +36,7 @@ impl Cell {
     }
 }
 
-/// What one column of a group is made of, a number a lane.
+/// One column of a group, one number per lane.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Column {
     /// The lanes of a node.
@@ -47,19 +47,19 @@ pub(crate) enum Column {
 /// Numbers that are written together.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Group {
-    /// The lanes of a node one behind the other.
+    /// The lanes of a node one after the other.
     Whole(usize, usize),
-    /// Three numbers of each lane, the lanes one behind the other.
+    /// Three numbers of each lane, the lanes one after the other.
     InTurn([Column; 3], usize),
     /// Four numbers of each lane, each lane's at a place of its own.
     Fours([Column; 4], [usize; WIDTH]),
     /// Two of each.
     Twos([Column; 2], [usize; WIDTH]),
-    /// Two numbers side by side, whatever they are lanes of.
+    /// Two neighbouring numbers, of any nodes.
     Pair([Cell; 2], usize),
     /// One number.
     One(Cell, usize),
-    /// As many equal constants side by side.
+    /// Equal neighbouring constants: value, first place, count.
     Constant(f64, usize, usize),
 }
 
@@ -92,8 +92,8 @@ pub(crate) fn groups(cells: &[Cell]) -> Vec<Group> {
     groups
 }
 
-/// Where a node's lanes stand, the first of each, the second of each and so on, of all nodes of
-/// which all lanes are wanted; in the order of places.
+/// The places of the four lanes of each node whose lanes are all results, for the first occurrence
+/// of each lane, the second and so on; in the order of places.
 fn families(cells: &[Cell]) -> Vec<[usize; WIDTH]> {
     let mut places: BTreeMap<usize, [Vec<usize>; WIDTH]> = BTreeMap::new();
     for (k, cell) in cells.iter().enumerate() {
@@ -108,14 +108,14 @@ fn families(cells: &[Cell]) -> Vec<[usize; WIDTH]> {
     families
 }
 
-/// What is in no group yet.
+/// The cells that are in no group yet.
 struct Open<'a> {
     cells: &'a [Cell],
     taken: Vec<bool>,
 }
 
 impl Open<'_> {
-    /// The group that the node whose lanes stand `at` these places begins or is in.
+    /// The group that starts at or contains the node whose lanes are `at` these places.
     fn group(&mut self, at: &[usize; WIDTH]) -> Option<Group> {
         if at.iter().any(|&k| self.taken[k]) {
             return None;
@@ -138,7 +138,7 @@ impl Open<'_> {
         self.columns(at, 1).map(|columns| Group::Twos(columns, *at))
     }
 
-    /// The group of what stands alone at `k`.
+    /// The group of a remaining cell `k`.
     fn rest(&mut self, k: usize) -> Group {
         let next = self.cells[k + 1..].iter().zip(&self.taken[k + 1..]).take_while(|(_, taken)| !**taken).map(|(cell, _)| *cell);
         let (group, n) = match self.cells[k] {
@@ -155,7 +155,7 @@ impl Open<'_> {
         group
     }
 
-    /// Takes the columns from these places on if at least so many are no constants.
+    /// Takes the columns from these places on if at least `least` are not constants.
     fn columns<const N: usize>(&mut self, at: &[usize; WIDTH], least: usize) -> Option<[Column; N]> {
         let columns: Vec<Column> = (0..N).map(|n| self.column(at, n)).collect::<Option<_>>()?;
         let mut cells: Vec<usize> = at.iter().flat_map(|k| *k..k + N).collect();
@@ -227,7 +227,7 @@ mod tests {
         assert_eq!(all, cells.into_iter().enumerate().collect::<Vec<_>>());
     }
 
-    /// Lanes of nodes at equal distances that get into each other's way, and between them whatever.
+    /// Lanes of nodes at equal distances that overlap, and any cells between them.
     fn any(seed: u64) -> Vec<Cell> {
         let mut state = seed;
         let mut below = |n: u64| {

@@ -1,28 +1,28 @@
 //! Spill slots for x86-64 without AVX-512, which has sixteen registers.
 //!
-//! In a long function half of a compiler's instructions only move values out of registers and back,
-//! nine and ten bytes each, since they name places far from the end of the stack: more than such a
-//! processor keeps decoded. Here values wait on shelves that an instruction reaches by one byte:
-//! two of 128 bytes behind each pointer, since that byte has a sign. Values that wait long are not
-//! worth those bytes, and are in one struct for all.
+//! In a long function, half of a compiler's instructions only move values out of registers and
+//! back. They take nine and ten bytes each, since they address places far from the end of the
+//! stack: more than such a processor keeps decoded. Here values are spilled to shelves that an
+//! instruction addresses by one byte: two of 128 bytes around each pointer, since that byte has a
+//! sign. Values with long waits are not worth those bytes, and share one struct.
 //!
-//! A target hides from its compiler where the pointers lead, so that a value is read there where
-//! [`Plan`] says.
+//! A target hides from its compiler where the pointers lead, so that a value is read where [`Plan`]
+//! requires.
 
 use std::collections::{HashMap, VecDeque};
 
 use super::registers::{Plan, Step, Uses};
 use crate::lir::{Angle, Expr, Operand, Slot, Slots, Stmt, Temp, Ty};
 
-/// From this many nodes on, some 12 kB. Below, a processor keeps the code decoded whatever waits,
-/// if nothing else runs on its core, and compilers know better how long an instruction takes.
+/// From this many nodes on, some 12 kB. Shorter code stays decoded in any case, if nothing else
+/// runs on the core, and compilers know the latency of instructions better.
 pub(crate) const FROM: usize = 1000;
 
-/// So many times must a hundred statements read a slot, of one number each or in lanes: where it is
-/// less, compilers do as well.
+/// Smallest number of slot reads per hundred statements, for plain numbers and for lanes: with
+/// fewer, compilers do as well.
 const READS: [usize; 2] = [26, 18];
 
-/// A value that is needed once in so many steps, or less often, does not wait on a shelf.
+/// A value that is needed once in this many steps, or less often, is not put on a shelf.
 const RARELY: usize = 500;
 
 /// Bytes of a shelf: as far as one byte reaches on either side of a pointer.
@@ -31,7 +31,7 @@ const SHELF: usize = 128;
 /// Lanes of AVX2, for which spill slots of many states are planned. As many bytes of either type.
 const AVX2_LANES: usize = 4;
 
-/// How many values of a type lie on a shelf.
+/// Number of values of a type on a shelf.
 fn per_shelf(ty: Ty) -> usize {
     let bytes = match ty {
         Ty::F32 => 4,
@@ -74,14 +74,14 @@ pub(crate) fn pays(statements: &[Stmt], in_lanes: bool) -> bool {
     100 * reads >= READS[usize::from(in_lanes)] * others
 }
 
-/// What a statement takes and gives, for the plan of registers.
+/// Operands and results of a statement, for the plan of registers.
 fn step(statement: &Stmt, ty: Ty) -> Step {
     let mut defined = Vec::new();
     // Masks and sums over lanes stay in registers.
     if !statement.compares() && !matches!(statement, Stmt::SumLanes(..)) {
         statement.defines(|temp| defined.push(temp.index()));
     }
-    // Sines of numbers go four at a time: of fewer angles the others are constants.
+    // Sines of numbers go four at a time: with fewer angles, the others are constants.
     let are_fewer = |angles: &[Angle]| matches!(ty, Ty::F64 | Ty::F32) && angles.len() < 4;
     let mut has_constant = matches!(statement, Stmt::SinCos { angles, .. } if are_fewer(angles));
     let mut all = Vec::new();
@@ -92,15 +92,15 @@ fn step(statement: &Stmt, ty: Ty) -> Step {
     let mut used = all.clone();
     used.sort_unstable();
     used.dedup();
-    // A constant is in memory already, a value that is used twice has to be loaded, and so has one
-    // that stands alone.
+    // A constant is in memory already. A value that is used twice, or is the only operand, must be
+    // loaded.
     let is_computed = matches!(statement, Stmt::Let(_, Expr::Op(..)) | Stmt::SinCos { .. } | Stmt::SumLanes(..));
     let once = |k: &usize| all.iter().filter(|other| *other == k).count() == 1;
     let foldable = if !is_computed || all.len() < 2 || has_constant { Vec::new() } else { all.iter().copied().filter(once).collect() };
     Step { defined, used, foldable }
 }
 
-/// Slots that are given away and become free again.
+/// Allocator of slots, which are freed again.
 #[derive(Default)]
 struct Places {
     free: VecDeque<usize>,
@@ -174,8 +174,8 @@ mod tests {
         Operand::Temp(Temp::of(id))
     }
 
-    /// So many inputs, and multiply-adds of the first with each of the others from the last one on,
-    /// so that all are needed until the end.
+    /// `n` inputs, and multiply-adds of the first with each of the others from the last one on, so
+    /// that all are needed until the end.
     fn long(n: usize) -> Vec<Stmt> {
         let inputs = (0..n).map(|k| Stmt::Let(Temp::of(k), Expr::Input { argument: 0, index: k as u32 }));
         let sums = (1..n).map(|k| {

@@ -7,7 +7,7 @@
 
 use crate::lir::{Array, Number, Operand, Stmt, Store};
 
-/// So many numbers at once are written in place. More would be a call.
+/// Largest number of zeros that are written in place together. More would be a call.
 const MOST: usize = 16;
 
 /// The statements that write the zeros of a result, runs of them within a row. `barrier`: one by

@@ -34,7 +34,7 @@ impl Array<'_> {
     }
 }
 
-/// What there is of a function: the states one after the other, or blocks of them.
+/// Forms of a function: the states one after the other, or blocks of them.
 #[derive(Clone, Copy, PartialEq)]
 enum Form {
     States,
@@ -141,13 +141,13 @@ impl Source<'_> {
         if one_line.len() <= 100 { one_line } else { format!("{name}({})", list.join(&format!(",\n{indent}"))) }
     }
 
-    /// The name of what computes a vector of states, or a piece of it.
+    /// The name of the function for a vector of states, or for a piece of it.
     fn lanes_name(&self, function: &Function, real: Real, piece: Option<usize>) -> String {
         let piece = piece.map_or(String::new(), |c| format!("_piece_{c}"));
         format!("{}_{}_lanes_{}{piece}", self.prefix, function.spec.name, real.name())
     }
 
-    /// What computes a vector of states, in pieces where it is long.
+    /// The function for a vector of states, in pieces if it is long.
     fn of_lanes(&self, out: &mut String, function: &Function, states: &States, real: Real) {
         let prefix = format!("{}_{}", self.prefix, real.name());
         let numbers = Numbers {
@@ -207,7 +207,7 @@ impl Source<'_> {
             let _ = writeln!(out, "        {}_{}({});\n    }}", self.prefix, function.spec.name, list.join(", "));
             return;
         }
-        // There are no arrays of no numbers in C.
+        // C has no arrays of length zero.
         let block = |a: &Array| format!("    {}_ALIGNED {ty} {}_block[{n} * ({})];\n", self.upper, a.name, a.length);
         for a in &arrays {
             *out += &if a.numbers > 0 { block(a) } else { format!("    (void){};\n", a.name) };

@@ -1,4 +1,4 @@
-//! M X = B for many columns, left a loop, as in Rust: [`articulated_core::lanes::COLUMNS`].
+//! M X = B for many columns as a loop, as in Rust: [`articulated_core::lanes::COLUMNS`].
 //!
 //! Four vectors of columns stay in registers while a row takes its share of the others.
 
@@ -17,7 +17,7 @@ pub(super) fn text(prefix: &str, linkage: &str, columns: &MultiRhsSolve) -> Stri
     ] {
         let all: Vec<String> = rows.iter().flatten().map(usize::to_string).collect();
         let starts: Vec<String> = (0..=n).map(|i| rows[..i].iter().map(Vec::len).sum::<usize>().to_string()).collect();
-        // There are no arrays of no numbers in C.
+        // C has no arrays of length zero.
         let numbers = if all.is_empty() { "0".to_owned() } else { all.join(", ") };
         let _ = writeln!(tables, "    /* {what} */\n    static const unsigned short {name}[] = {{{numbers}}};");
         let _ = writeln!(tables, "    static const unsigned short {name}_at[{}] = {{{}}};", n + 1, starts.join(", "));

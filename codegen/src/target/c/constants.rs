@@ -1,4 +1,4 @@
-//! What the header says of the robot: sizes, names, limits, and indices of joints and frames.
+//! The robot in the header: sizes, names, limits, and indices of joints and frames.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -16,7 +16,7 @@ fn upper(name: &str) -> String {
     name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' }).collect()
 }
 
-/// The same with everything else by its code point, for names that [`upper`] makes equal.
+/// The same with all other characters as code points, for names that [`upper`] makes equal.
 fn by_code_points(name: &str) -> String {
     let one = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase().to_string() } else { format!("U{:X}_", u32::from(c)) };
     name.chars().map(one).collect()
@@ -32,7 +32,7 @@ fn distinct<'a>(names: impl Iterator<Item = &'a str> + Clone, request: &Request)
     names.map(one).collect()
 }
 
-/// Reports new names that are for nothing, or that two joints or two links have then.
+/// Reports renames of unknown names, and equal new names of two joints or two links.
 pub(in crate::target) fn check_names(model: &Model<f64>, request: &Request, log: &mut Diagnostics) {
     let groups = [("joint", joints(model)), ("link", frames(model))];
     let mut error = |code, found: String, expected: &str| {
@@ -74,7 +74,7 @@ struct Table {
 
 fn tables(model: &Model<f64>) -> Vec<Table> {
     type Count = fn(&JointInfo) -> usize;
-    // As many as the joint has of each, in q or in v.
+    // One for each coordinate of the joint, in q or in v.
     let each = |count: Count, of: fn(&Limit) -> f64, none: f64| -> Vec<f64> {
         model.joints().iter().flat_map(|j| vec![j.limit.as_ref().map_or(none, of); count(j)]).collect()
     };

@@ -267,7 +267,7 @@ const SINES_F: &str = "\
     const @T_b bits = __builtin_convertvector((@T_db)rounded, @T_b);
 ";
 
-/// What sines of `float` are computed with.
+/// Types for the sines of `float`.
 const WIDE_TYPES: &str = "\
 #if @U_VECTOR
 typedef double @T_d __attribute__((vector_size(2 * @U_VECTOR)));
@@ -275,7 +275,7 @@ typedef unsigned long long @T_db __attribute__((vector_size(2 * @U_VECTOR)));
 #endif
 ";
 
-/// What follows: the quadrant, and angles beyond the limit.
+/// The rest: the quadrant, and angles beyond the limit.
 const TURN: &str = "\
     /* The quadrant: exchange for an odd one, and signs. */
     const @T_b odd = -(bits & 1);
@@ -315,7 +315,7 @@ const OF_STATES: [&str; 2] = [
 ",
 ];
 
-/// A vector of so many doubles of one state.
+/// A vector of several doubles of one state.
 const LIMB_TYPES: &str = "\
 #if @U_VECTOR
 typedef double @T_v __attribute__((vector_size(@SIZE)));
@@ -343,7 +343,7 @@ const OF_LIMBS: [&str; 2] = [
 ",
 ];
 
-/// The same of n angles that are no vector.
+/// The same for n angles that are not a vector.
 const OF_FOUR: &str = "\
 /* Sines and cosines of n angles, at most four, rad. */
 @U_INLINE void @P_sin_cos_of_four(double a, double b, double c, double d, int n, double *sines, double *cosines) {

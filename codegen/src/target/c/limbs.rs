@@ -16,9 +16,9 @@ pub(super) const FOUR: usize = 4;
 pub(super) struct Printer<'a> {
     pub(super) body: &'a Body,
     pub(super) arguments: &'a [Argument],
-    /// What all names begin with.
+    /// Prefix of all names.
     pub(super) prefix: &'a str,
-    /// What the names of mathematical functions begin with.
+    /// Prefix of the names of mathematical functions.
     pub(super) math: &'a str,
     /// The macro for infinity.
     pub(super) infinity: &'a str,

@@ -1,4 +1,4 @@
-//! What C has in place of `math.h`, for processors without a mathematical library.
+//! Replacement of `math.h` in C, for processors without a mathematical library.
 //!
 //! Angles are reduced by π/2 in three parts. Polynomials are on [−π/4, π/4] and [0, 7/16]. Their
 //! coefficients, and π/2, are those of fdlibm's `k_sin.c`, `k_cos.c` and `s_atan.c` (Sun

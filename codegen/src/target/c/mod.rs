@@ -45,7 +45,7 @@ const INLINE: &str = "\
 /// Choices for C.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct COptions {
-    /// What all names begin with; the robot's name in lower case if none is given.
+    /// Prefix of all names; by default the robot's name in lower case.
     pub prefix: Option<String>,
     /// One header with `static inline` functions in place of a header and a source.
     pub header_only: bool,
@@ -55,8 +55,8 @@ pub struct COptions {
     pub no_libm: bool,
 }
 
-/// Numbers, and vectors where compilers have them; in pieces where a function is long. The compiler
-/// decides what waits in memory.
+/// Numbers, and vectors if the compiler has them; in pieces if a function is long. The compiler
+/// chooses the values to spill.
 pub(super) fn capabilities(options: &Options, c: &COptions) -> Capabilities {
     let (vectors, states) = (options.level.has_lanes(), !options.batch.is_empty());
     // CasADi needs to know which numbers are zero, which loops hide.
@@ -86,7 +86,7 @@ pub(super) fn check(options: &Options, c: &COptions, log: &mut Diagnostics) {
     }
 }
 
-/// Whether C takes this for the beginning of a name.
+/// Whether this is a valid beginning of a name in C.
 fn is_identifier(text: &str) -> bool {
     text.starts_with(|c: char| c.is_ascii_alphabetic()) && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
 }
@@ -223,7 +223,7 @@ impl Source<'_> {
         inline + &math + &width + &vectors + &columns.unwrap_or_default()
     }
 
-    /// What a file says of itself.
+    /// The head of a file.
     fn origin(&self, out: &mut String) {
         let Module { request, model, .. } = self.module;
         let [x, y, z]: [f64; 3] = model.gravity().into();
@@ -294,13 +294,13 @@ impl Source<'_> {
         function.arguments.iter().map(argument).chain(results.iter().zip(&function.spec.parts).map(result)).collect()
     }
 
-    /// The parameter for an array. There are no arrays of no numbers in C.
+    /// The parameter for an array. C has no arrays of length zero.
     fn array(&self, ty: &str, name: &str, dims: &[Dim], function: &Function) -> String {
         let numbers: usize = dims.iter().map(|d| d.len(function.shape)).product();
         if numbers == 0 { format!("{ty} *{name}") } else { format!("{ty} {name}[{}]", self.lengths(dims)) }
     }
 
-    /// The function, with vectors where compilers have them and without where they have not.
+    /// The function, with vectors for compilers that have them and without for others.
     fn function(&self, out: &mut String, function: &Function) {
         let body = (&function.body, function.ending, function.columns.is_some());
         let Some((scalar, ending)) = &function.scalar else { return self.of_body(out, function, body) };

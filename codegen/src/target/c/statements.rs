@@ -16,7 +16,7 @@ pub(super) struct Numbers<'a> {
     pub(super) outside: &'static str,
     /// Whether literals are of type `float`.
     pub(super) is_single: bool,
-    /// What all names begin with.
+    /// Prefix of all names.
     pub(super) prefix: &'a str,
     /// The same, where mathematical functions are the module's own.
     pub(super) own_math: Option<&'a str>,
@@ -27,7 +27,7 @@ pub(super) struct Numbers<'a> {
 /// Vectors with a number of each of several states.
 #[derive(Clone)]
 pub(super) struct Lanes {
-    /// What the names of their types and functions begin with.
+    /// Prefix of the names of their types and functions.
     pub(super) prefix: String,
     /// How far apart two numbers of a state are.
     pub(super) stride: usize,

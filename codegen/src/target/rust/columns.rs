@@ -1,12 +1,11 @@
-//! M X = B for many columns, left a loop: four columns per vector, all vectors of a row in
-//! registers.
+//! M X = B for many columns as a loop: four columns per vector, all vectors of a row in registers.
 //!
 //! Written out, the solution is two multiply-adds for each number of L and each column, which is
-//! most of the derivatives of forward dynamics. A function that leaves it a loop writes B and the
-//! factors of M = Lᵀ D L where the result is to be, which `columns` makes of them.
+//! most of the derivatives of forward dynamics. A function with the loop writes B and the factors
+//! of M = Lᵀ D L into the memory of the result, which `columns` computes from them.
 //!
 //! The loop is core's text [`COLUMNS`], tested there; here it gets the tree's tables.
-//! `tests/generated` holds the two together to the generic library on every robot.
+//! `tests/generated` compares the two together with the generic library on every robot.
 
 use std::fmt::Write;
 
@@ -39,7 +38,7 @@ impl<'a> Layout<'a> {
         ALL_AT_ONCE.map(|(lanes, vectors)| if vectors.contains(&self.n().div_ceil(lanes)) { 3 } else { 1 })
     }
 
-    /// How the tree stands, and the function `columns`.
+    /// The tables of the tree, and the function `columns`.
     pub(crate) fn module(&self, out: &mut String) {
         let before = &self.columns.ways;
         let beyond: Vec<Vec<usize>> = (0..self.n()).map(|i| (0..self.n()).filter(|&k| before[k].contains(&i)).collect()).collect();

@@ -1,4 +1,4 @@
-//! Instruction sets: what a build has, what the processor has, and which functions profit.
+//! Instruction sets: those of a build, those of the processor, and functions that profit.
 
 use crate::Precision;
 use crate::graph::Op;
@@ -8,27 +8,27 @@ use crate::lir::{Body, Expr, Stmt};
 /// Whether the processor has AVX2 and FMA.
 pub(crate) const HAS_AVX2: &str = "::std::is_x86_feature_detected!(\"avx2\") && ::std::is_x86_feature_detected!(\"fma\")";
 
-/// Stands before what is for x86-64 alone, and there for builds that may run without AVX2.
+/// Attribute of code for x86-64 only, in builds that may run without AVX2.
 pub(crate) const NOT_COMPILED_FOR_AVX2: &str =
     "#[cfg(all(target_arch = \"x86_64\", not(all(target_feature = \"avx2\", target_feature = \"fma\"))))]";
 
-/// Stands before what is for builds that run with AVX2 and FMA alone.
+/// Attribute of code for builds that require AVX2 and FMA.
 pub(crate) const COMPILED_FOR_AVX2: &str = "#[cfg(all(target_feature = \"avx2\", target_feature = \"fma\"))]";
 
-/// What holds of builds that run with AVX-512 alone.
+/// Condition of builds that require AVX-512.
 pub(crate) const COMPILED_FOR_AVX512: &str =
     "all(target_arch = \"x86_64\", target_feature = \"avx512dq\", target_feature = \"avx512vl\", target_feature = \"avx512vbmi2\")";
 
-/// What holds of those of them on which a few vectors of eight among vectors of four cost nothing:
-/// AMD's, which alone have SSE4a. Intel's do without one of their two ports for vectors of four
-/// until some time after a vector of eight.
+/// Condition of those of them on which a few vectors of eight among vectors of four cost nothing:
+/// AMD's, which alone have SSE4a. Intel's lose one of their two ports for vectors of four until
+/// some time after a vector of eight.
 pub(crate) const COMPILED_FOR_AVX512_BESIDE_AVX2: &str = "all(target_arch = \"x86_64\", target_feature = \"avx512dq\", target_feature = \"avx512vl\", \
                                                          target_feature = \"avx512vbmi2\", target_feature = \"sse4a\")";
 
-/// Stands before what is for builds that may run without AVX2, on whatever processor.
+/// Attribute of code for builds that may run without AVX2, on any processor.
 pub(crate) const MAY_LACK_AVX2: &str = "#[cfg(not(all(target_arch = \"x86_64\", target_feature = \"avx2\", target_feature = \"fma\")))]";
 
-/// Stands before what is for processors other than x86-64 and 64-bit Arm.
+/// Attribute of code for processors other than x86-64 and 64-bit Arm.
 pub(crate) const OTHERS: &str = "#[cfg(not(any(target_arch = \"aarch64\", target_arch = \"x86_64\")))]";
 
 /// Whether the function profits from an instruction set that not every processor has.

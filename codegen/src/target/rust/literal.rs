@@ -1,7 +1,6 @@
 //! Numbers in source.
 
-/// The shortest literal that is read back as exactly `x`; infinities, and what is no number, by
-/// their names.
+/// The shortest literal that is read back as exactly `x`; infinities and NaN by their names.
 pub(crate) fn literal(x: f64) -> String {
     match x {
         x if x.is_nan() => "f64::NAN".into(),
@@ -27,7 +26,7 @@ pub(crate) fn single(x: f64) -> String {
     }
 }
 
-/// An operand that stands by itself: a negative number without its brackets.
+/// An operand on its own: a negative number without its brackets.
 pub(crate) fn bare(operand: &str) -> &str {
     match operand.strip_prefix('(') {
         Some(rest) => rest.strip_suffix(')').unwrap_or(operand),

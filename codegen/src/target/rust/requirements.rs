@@ -22,12 +22,12 @@ impl Requirements {
         self.0.extend(words.map(str::to_owned));
     }
 
-    /// Adds what the statements of a body of vectors call.
+    /// Adds the functions that the statements of a body of vectors call.
     pub(crate) fn add_body(&mut self, body: &Body) {
         if !matches!(body.ty, Ty::Vector(_) | Ty::States) {
             return;
         }
-        // Values that pieces hand on begin as zeros.
+        // Values passed between pieces are initialised with zeros.
         self.add(["k"]);
         for statement in body.pieces.iter().flatten() {
             match statement {

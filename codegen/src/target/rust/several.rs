@@ -1,5 +1,5 @@
-//! Sines of several vectors of lanes at once: in wider registers, where that does not slow down
-//! what comes after.
+//! Sines of several vectors of lanes at once: in wider registers, if that does not slow down later
+//! code.
 
 use std::fmt::Write;
 
@@ -11,7 +11,7 @@ pub(crate) fn is_used(body: &Body) -> bool {
     body.pieces.iter().flatten().any(|s| matches!(s, Stmt::SinCos { angles, .. } if angles.len() > 1))
 }
 
-/// The name of the function for so many vectors.
+/// The name of the function for this many vectors.
 pub(crate) fn name(vectors: usize) -> &'static str {
     match vectors {
         1 => "sin_cos",
@@ -20,7 +20,7 @@ pub(crate) fn name(vectors: usize) -> &'static str {
     }
 }
 
-/// The module for vectors of so many lanes.
+/// The module for vectors of this many lanes.
 pub(crate) fn module(out: &mut String, width: usize) {
     let _ = writeln!(out, "/// Sines and cosines of several vectors of {width}: in wider ones where there are such.");
     *out += "#[allow(unsafe_code, dead_code, unused_imports, unreachable_pub, unused_results, clippy::all, clippy::pedantic)]\n";
@@ -67,7 +67,7 @@ fn avx2(width: usize) -> String {
     text
 }
 
-/// The function for so many vectors.
+/// The function for this many vectors.
 fn function(vectors: usize, attributes: &str, body: &str) -> String {
     let takes: Vec<String> = ["a", "b", "c", "d"][..vectors].iter().map(|x| format!("{x}: V")).collect();
     let (name, takes) = (name(vectors), takes.join(", "));

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use crate::lir::Slots;
 use crate::lir::function::Function;
 
-/// Stands before what is for processors with sixteen registers, and before what is for others.
+/// Attributes of code for processors with sixteen registers, and of code for others.
 pub(crate) const FEW_REGISTERS: &str = "#[cfg(all(target_arch = \"x86_64\", not(target_feature = \"avx512f\")))]";
 pub(crate) const MORE_REGISTERS: &str = "#[cfg(not(all(target_arch = \"x86_64\", not(target_feature = \"avx512f\"))))]";
 
@@ -14,7 +14,7 @@ pub(crate) fn is_used(function: &Function) -> bool {
     function.few_registers.is_some() || function.states.as_ref().is_some_and(|states| states.few_registers.is_some())
 }
 
-/// The statements of a function of which there are both.
+/// The statements of a function that has both forms.
 pub(crate) fn by_registers(few: &str, more: &str) -> String {
     format!("    {FEW_REGISTERS}\n    return {{\n{few}    }};\n    {MORE_REGISTERS}\n    return {{\n{more}    }};\n")
 }
@@ -35,11 +35,10 @@ mod spills {
 
 ";
 
-/// What stands behind the statements, and behind what is made of them.
+/// Text after the statements, and after the result made of them.
 pub(crate) const END: &str = "    }\n";
 
-/// What stands before the statements: the slots, and pointers of which compilers do not know where
-/// they lead.
+/// The code before the statements: the slots, and pointers whose targets are hidden from compilers.
 pub(crate) fn beginning(out: &mut String, slots: &Slots, ty: &str) {
     *out += "    // Explicit spill slots for 16-register x86-64.\n    use ::core::hint::black_box as hidden;\n";
     *out += "    use self::spills::spill;\n";
@@ -63,7 +62,7 @@ pub(crate) fn beginning(out: &mut String, slots: &Slots, ty: &str) {
     *out += "    // SAFETY: each slot is written before it is read.\n    unsafe {\n";
 }
 
-/// Room for what is made of a struct of so many slots.
+/// Memory for `made`, which consists of structs of this many slots.
 fn room(out: &mut String, (name, place): (&str, &str), slots: usize, made: &str, ty: &str) {
     let fields: Vec<String> = (0..slots).map(|k| format!("m{k}: {ty}")).collect();
     let _ = writeln!(out, "    #[allow(dead_code)]\n    struct {place} {{ {} }}", fields.join(", "));

@@ -14,21 +14,21 @@ pub(crate) const ZERO: &str = "0.0";
 
 /// From this many names on they are declared before the statements.
 ///
-/// To a compiler that keeps track of names for debuggers, what follows a `let` is inside of it, and
-/// some thousands inside of one another are more than its stack holds. Their type is declared with
-/// them: the time to infer it grows as the square of their number.
+/// A compiler that tracks names for debuggers nests the code after a `let` inside it, and some
+/// thousands of levels overflow its stack. Their type is declared with them: the time to infer it
+/// grows as the square of their number.
 const HOISTED_FROM: usize = 1000;
 
-/// How many names one `let` declares.
+/// Number of names that one `let` declares.
 const DECLARED_TOGETHER: usize = 100;
 
 /// How many angles `trig::four` takes.
 const FOUR: usize = 4;
 
-/// So many slots are fields of one struct: a compiler looks at them one by one.
+/// Largest number of slots in one struct: a compiler looks at them one by one.
 pub(crate) const FIELDS: usize = 1024;
 
-/// Where a number is: the array that it is in and its index there, or by itself.
+/// Place of a number: its array and its index there, or a variable.
 pub(crate) struct Place {
     pub(crate) array: String,
     pub(crate) index: Option<usize>,
@@ -51,12 +51,12 @@ pub(crate) struct Printer<'a> {
     pub(crate) level: Precision,
     /// Where each number of the result is.
     pub(crate) places: &'a dyn Fn(usize) -> Place,
-    /// Whether there need not be numbers yet.
+    /// Whether the memory may be uninitialised.
     pub(crate) is_raw: bool,
 }
 
 impl Printer<'_> {
-    /// A piece of the body, but for the numbers of the result that are put together at the end.
+    /// A piece of the body, except for the numbers of the result that are put together at the end.
     pub(crate) fn statements(&self, out: &mut String, statements: &[Stmt]) {
         let hoisted = self.hoisted(statements);
         for names in hoisted.chunks(DECLARED_TOGETHER) {
@@ -369,7 +369,7 @@ fn optional(temp: Option<Temp>) -> String {
     temp.map_or_else(|| "_".to_owned(), name)
 }
 
-/// The field of a value that pieces hand on.
+/// The field of a value passed between pieces.
 pub(crate) fn kept(slot: usize) -> String {
     format!("m.k{}.m{}", slot / FIELDS, slot % FIELDS)
 }

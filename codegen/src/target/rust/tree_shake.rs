@@ -1,5 +1,5 @@
-//! Helpers without the functions that nothing calls: each compiler would check them all the same,
-//! and users read them.
+//! Removes functions of helpers that are never called: each compiler would check them, and users
+//! read them.
 //!
 //! The texts are those of [`articulated_core::lanes`] and its like, in which functions are items of
 //! a known form.
@@ -16,7 +16,7 @@ struct Item<'a> {
 }
 
 /// The text of helpers without functions that are neither called nor needed by one that is. Modules
-/// inside of it count as one with it.
+/// inside a function are part of it.
 pub(crate) fn tree_shake(text: &str, calls: &Requirements) -> String {
     let lines: Vec<&str> = text.lines().collect();
     let items = items(&lines);
@@ -30,8 +30,7 @@ pub(crate) fn tree_shake(text: &str, calls: &Requirements) -> String {
     without_gaps(&rest).iter().map(|line| format!("{line}\n")).collect()
 }
 
-/// The lines without blocks that hold nothing, and without empty lines at the ends of blocks or
-/// behind one another.
+/// The lines without empty blocks, and without empty lines at the ends of blocks or in succession.
 fn without_gaps<'a>(lines: &[&'a str]) -> Vec<&'a str> {
     let mut kept: Vec<&str> = Vec::new();
     for line in lines {
@@ -69,7 +68,7 @@ fn live<'a>(lines: &[&'a str], items: &[Item<'a>], first: Vec<&'a str>) -> HashS
     live
 }
 
-/// The functions, in their order; one inside of another is part of it.
+/// The functions, in their order; a function inside another is part of it.
 fn items<'a>(lines: &[&'a str]) -> Vec<Item<'a>> {
     let mut items: Vec<Item> = Vec::new();
     let mut next = 0;

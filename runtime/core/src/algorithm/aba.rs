@@ -19,9 +19,9 @@ use crate::spatial::{ArticulatedInertia, Matrix3, Motion, Twist, Vector3, rate_m
 /// a = M(q)⁻¹·(τ − h(q, v)), in a time that grows with the number of joints.
 ///
 /// q: `[nq]`; v: `[nv]`; tau: `[nv]` N·m|N; out: `[nv]` rad/s²|m/s². For models in which no joint
-/// follows another. Where M is singular to working precision the result is what rounding made of a
-/// pivot: infinite, not a number, or finite and of no meaning; [`super::checked_forward_dynamics`]
-/// tells. A model with [`Model::massless_joints`] is singular everywhere.
+/// follows another. If M is singular to working precision, a pivot is only rounding error, and the
+/// result is infinite, NaN, or finite and meaningless; [`super::checked_forward_dynamics`] reports
+/// it. A model with [`Model::massless_joints`] is singular everywhere.
 ///
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`]

@@ -1,4 +1,4 @@
-//! What functions of the table take, and the dimensions of that and of what they give.
+//! Arguments of the functions of the table, and the dimensions of arguments and results.
 
 use core::fmt;
 
@@ -17,7 +17,7 @@ pub enum Dim {
     Frames,
     /// One for each moving link.
     Links,
-    /// So many.
+    /// This many.
     Of(usize),
 }
 
@@ -67,7 +67,7 @@ pub(crate) use dims;
 
 macro_rules! arguments {
     ($($(#[$doc:meta])* $variant:ident $name:ident [$($dim:ident $(($n:literal))?),*] $unit:literal;)*) => {
-        /// What a function takes.
+        /// An argument of a function.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Argument {
             $($(#[$doc])* $variant,)*
@@ -128,7 +128,7 @@ arguments! {
     /// Numbers in [0, 1), `[nq]`.
     Uniform uniform [Nq] "each uniform in 0 to 1";
     /// sin q and cos q of each coordinate, `[nq][2]`, for callers that have them: generated
-    /// functions take it where they are asked to.
+    /// functions take it on request.
     SinCos sines [Nq, Of(2)] "[sin q, cos q] of each coordinate that is an angle; the others are not read";
 }
 

@@ -1,5 +1,5 @@
-//! Base parameters: the inertial parameters that joint torques depend on, and which of them torques
-//! determine.
+//! Base parameters: the inertial parameters that joint torques depend on, and their identifiability
+//! from torques.
 //!
 //! The structure is that of Khalil & Dombre, *Modeling, Identification and Control of Robots*,
 //! 2002, §9.4; the independent parameters are those of the numeric rank of torques at random states
@@ -16,14 +16,14 @@ use crate::joint::Joint;
 use crate::model::Model;
 use crate::spatial::SpatialInertia;
 
-/// What joint torques tell of an inertial parameter, when those before it in the list are known.
+/// Identifiability of an inertial parameter from joint torques, given those before it in the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Identifiability {
-    /// Its value.
+    /// Its value is identifiable.
     Alone,
-    /// A combination of it with parameters before it.
+    /// Only a combination of it with parameters before it is.
     WithOthers,
-    /// Nothing: no torque depends on it.
+    /// Not identifiable: no torque depends on it.
     Never,
 }
 
@@ -34,10 +34,10 @@ pub struct BaseParameter {
     pub name: &'static str,
     /// kg, kg·m or kg·m².
     pub value: f64,
-    /// What one unit of it is in m, h and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz
+    /// One unit of it in terms of m, h and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz
     /// ([`SpatialInertia::parameters`]).
     pub direction: [f64; 10],
-    /// What torques tell of it.
+    /// Its identifiability from torques.
     pub identifiability: Identifiability,
 }
 
@@ -46,17 +46,16 @@ pub struct BaseParameter {
 pub struct BodyParameters {
     /// Index of the body in the model.
     pub body: BodyId,
-    /// What regrouping leaves to it.
+    /// The parameters that regrouping leaves in it.
     pub parameters: Vec<BaseParameter>,
 }
 
 /// The base parameters of a model that is regrouped ([`crate::model::regroup`]), body by body from
 /// the tips inward.
 ///
-/// A universal or planar joint is several bodies, and regrouping leaves parameters to each of
-/// these; not all are independent of each other then. Work grows as the cube of the number of
-/// bodies. A parameter of whose torques less than 10⁻⁷ is independent of those before it counts as
-/// dependent.
+/// A universal or planar joint is several bodies. Regrouping leaves parameters in each of them,
+/// which are then not all independent. Work grows as the cube of the number of bodies. A parameter
+/// counts as dependent if less than 10⁻⁷ of its torques is independent of those before it.
 pub fn base_parameters(model: &Model<f64>) -> Vec<BodyParameters> {
     let mut found = ranks(&torque_columns(model, |i| left_by_regrouping(model.bodies[i].joint))).into_iter();
     let body = |i: BodyId| {
@@ -80,7 +79,7 @@ pub fn identifiable_parameters(model: &Model<f64>) -> usize {
     found.iter().filter(|one| **one == Identifiability::Alone).count()
 }
 
-/// A name, what one unit of it is in the ten, and its value in terms of the ten. A revolute body
+/// A name, one unit of it in terms of the ten, and its value in terms of the ten. A revolute body
 /// has Σ_zz = 0, which ties I_xx and I_yy to I_zz.
 type Direction = (&'static str, [f64; 10], [f64; 10]);
 
@@ -117,7 +116,7 @@ const ALL: &[Direction] = &[
     plain("I_zz", 9),
 ];
 
-/// What regrouping leaves to the body of a joint.
+/// The parameters that regrouping leaves in the body of a joint.
 fn left_by_regrouping(joint: Joint) -> &'static [Direction] {
     match joint {
         Joint::Revolute => REVOLUTE,
@@ -150,8 +149,8 @@ fn torque_columns(model: &Model<f64>, parameters: impl Fn(BodyId) -> &'static [D
     columns
 }
 
-/// So many states that the parameters of the bodies on one coordinate, which may be seen in its
-/// torque alone, can be told apart.
+/// Number of states that distinguishes the parameters of all bodies on one coordinate, which may
+/// appear in its torque alone.
 fn number_of_states(model: &Model<f64>, parameters: &impl Fn(BodyId) -> &'static [Direction]) -> usize {
     let mut on_coordinate = vec![0; model.nv];
     model.outward().for_each(|i| on_coordinate[model.bodies[i].coordinates.v] += parameters(i).len());
@@ -159,7 +158,7 @@ fn number_of_states(model: &Model<f64>, parameters: &impl Fn(BodyId) -> &'static
     on_coordinate.into_iter().max().unwrap_or(0).max(2 * all / model.nv.max(1)) + 2
 }
 
-/// Rates and accelerations of states lie in ± this.
+/// Bound of the rates and accelerations of states.
 const RATE: f64 = 2.0;
 
 /// States at random, always the same: configurations within limits, rates and accelerations in ±2.
@@ -187,7 +186,7 @@ fn splitmix64(mut seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// A column of which less than this is independent of others depends on them.
+/// A column is dependent if less than this part of it is independent of others.
 const DEPENDENT: f64 = 1e-7;
 
 /// Which columns are independent of those before them: modified Gram–Schmidt on columns of unit

@@ -1,10 +1,10 @@
-//! What a call of a function has to fit, and why it does not.
+//! Checks of the call of a function, and its errors.
 
 use core::fmt;
 
 use super::FunctionId;
 
-/// Why a function could not be called.
+/// Errors of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FunctionError {
     /// A slice has another length than the model says.

@@ -1,13 +1,13 @@
-//! The outward sweep in common axes, from which everything that pairs joints with joints is read.
+//! The outward sweep in common axes, the source of all functions over pairs of joints.
 //!
-//! All bodies of a tree are expressed in the same axes, each about its own origin: to carry a
-//! wrench from body to body takes a cross product and no rotation, and no moment is ever taken
-//! about a far point, where it would cancel. The axes are those of the world frame, or
-//! ([`Axes::Tree`]) those of the body in the middle of the tree: the fewer joints lie between, the
-//! more zeros there are. Or those of its first body, where gravity is constant if its joint stands
-//! upright, and the axes of joints that are parallel to the next one are too. Dynamics do not
-//! depend on how fast the base moves either: where a tree hangs on a floating joint, its inertial
-//! frame moves with that joint's body.
+//! All bodies of a tree are expressed in the same axes, each about its own origin. To carry a
+//! wrench from body to body takes a cross product and no rotation, and no moment is taken about a
+//! far point, where it would cancel. The axes are those of the world frame, or ([`Axes::Tree`])
+//! those of the body in the middle of the tree: the fewer joints lie between, the more zeros there
+//! are. Or those of its first body: gravity is constant there if its joint is upright, and so are
+//! the axes of joints that are parallel to the next one. Dynamics do not depend on the speed of the
+//! base either: if a tree hangs on a floating joint, its inertial frame moves with that joint's
+//! body.
 
 use super::Workspace;
 use super::workspace::{Column, CommonState};
@@ -103,7 +103,7 @@ pub(super) fn twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes: A
         let columns = ws.columns_of(i);
         let joint = columns.clone().fold(Twist::zero(), |sum, c| sum + ws.columns[c].axis.times(v[ws.columns[c].at]));
         let twist = if moves_along(body, axes) { Twist { angular: joint.angular, linear: Vector3::zeros() } } else { carried + joint };
-        // Of a joint of one degree of freedom Ṡ = ψ̇, as S × S q̇ is nothing.
+        // For a joint of one degree of freedom Ṡ = ψ̇, since S × S q̇ = 0.
         let alone = columns.len() == 1;
         for c in columns {
             let column = &mut ws.columns[c];
@@ -115,8 +115,7 @@ pub(super) fn twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes: A
     }
 }
 
-/// Spatial acceleration of every body, on top of that of the base (−g, or nothing); after
-/// [`twists`].
+/// Spatial acceleration of every body, on top of that of the base (−g or zero); after [`twists`].
 pub(super) fn accelerations<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, v: &[S], a: &[S], base: Vector3<S>) {
     for i in model.outward() {
         let body = &model.bodies[i];
@@ -157,7 +156,7 @@ pub(super) fn forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
     }
 }
 
-/// Visits the columns on the way from body `i` to the base, each with how far a point is from the
+/// Visits the columns on the path from body `i` to the root, each with how far a point is from the
 /// origin that the column is about: the point is `from` away from that of body `i`.
 #[inline(always)]
 pub(super) fn on_the_way<S: Scalar>(
@@ -175,8 +174,8 @@ pub(super) fn on_the_way<S: Scalar>(
     }
 }
 
-/// Visits the columns of body `i` and of those on the way to the base, with wrenches on `i` carried
-/// along: (whether it is of body `i`, wrenches, column).
+/// Visits the columns of body `i` and of those on the path to the root, with wrenches on `i`
+/// carried along: (whether it is of body `i`, wrenches, column).
 #[inline(always)]
 pub(super) fn carry<S: Scalar, const N: usize>(
     model: &Model<S>,

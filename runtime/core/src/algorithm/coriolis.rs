@@ -33,7 +33,7 @@ pub fn coriolis_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[
     }
 }
 
-/// What column `k` of body `i` has with itself and those on the way to the base.
+/// Entries of column `k` of body `i` with itself and with the columns on the path to the root.
 fn row_and_column<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: BodyId, k: usize, out: &mut [S]) {
     let (n, state, column) = (model.nv, &ws.common[i], &ws.columns[k]);
     // C_kl = S_kᵀ (B s_l + I Ṡ_l) = (Bᵀ S_k)·s_l + (I S_k)·Ṡ_l

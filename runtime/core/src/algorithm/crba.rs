@@ -30,9 +30,9 @@ pub fn mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], 
     effects::add_inertia(model, ws, q, out);
 }
 
-/// The inertia that joint `i` shares with itself and with each joint beyond: what their columns'
-/// wrenches, carried as far as its body, ask of it. Then hands them, and the inertia of all that it
-/// carries, on to the parent.
+/// Entries of M for joint `i` with itself and with each joint beyond: the components of their
+/// columns' wrenches, carried to its body, along the joint. Then passes them, and the inertia of
+/// all that it carries, on to the parent.
 #[inline(always)]
 fn joint<S: Scalar, P: JointLaw<S>>(model: &Model<S>, ws: &mut Workspace<S>, i: BodyId, p: &P, out: &mut [S]) {
     let (n, body) = (model.nv, &model.bodies[i]);

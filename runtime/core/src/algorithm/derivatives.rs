@@ -26,8 +26,8 @@ use crate::index::BodyId;
 use crate::model::Model;
 use crate::spatial::{Reference, Twist, Vector3, Wrench, rotate};
 
-/// ∂τ/∂q, ∂τ/∂v and ∂τ/∂a = M of τ = inverse dynamics, with external wrenches that stay as they are
-/// in their reference.
+/// ∂τ/∂q, ∂τ/∂v and ∂τ/∂a = M of τ = inverse dynamics, with external wrenches that are constant in
+/// their reference.
 ///
 /// q: `[nq]`; v, a: `[nv]`; wrenches: `[frames][6]`, as [`Model::wrench_reference`] says, or empty;
 /// out: `[3][nv][nv]`, entry (i, j) of each is ∂τ_i/∂x_j. q in the tangent space: a quaternion
@@ -109,8 +109,8 @@ pub fn static_torque_derivative<S: Scalar>(model: &Model<S>, ws: &mut Workspace<
     }
 }
 
-/// ∂a/∂q, ∂a/∂v and ∂a/∂τ = M⁻¹ of a = forward dynamics, with external wrenches that stay as they
-/// are in their reference.
+/// ∂a/∂q, ∂a/∂v and ∂a/∂τ = M⁻¹ of a = forward dynamics, with external wrenches that are constant
+/// in their reference.
 ///
 /// q: `[nq]`; v, tau: `[nv]`; wrenches: `[frames][6]`, as [`Model::wrench_reference`] says, or
 /// empty; out: `[3][nv][nv]`, entry (i, j) of each is ∂a_i/∂x_j. q in the tangent space.
@@ -166,8 +166,8 @@ pub(super) fn unsolved_derivatives<S: Scalar>(
     ws.matrix = matrix;
 }
 
-/// ∂τ/∂q and ∂τ/∂v at the acceleration that τ makes, the slopes of motors with them, in `out`;
-/// returns the factors of M, in the workspace's matrix.
+/// ∂τ/∂q and ∂τ/∂v at the acceleration due to τ, including the slopes of motors, in `out`; returns
+/// the factors of M, in the workspace's matrix.
 fn unsolved<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,
@@ -193,12 +193,12 @@ fn unsolved<S: Scalar>(
     matrix
 }
 
-/// Whether no motor stands between τ and the joints.
+/// Whether there are no motors between τ and the joints.
 pub(super) fn without_motors<S: Scalar>(model: &Model<S>) -> bool {
     !model.has_motors()
 }
 
-/// Common axes: those in the middle of each tree, where nothing asks how bodies stand in the base.
+/// Common axes: those in the middle of each tree, unless poses of bodies in the base are needed.
 fn axes<S: Scalar>(model: &Model<S>) -> Axes {
     if effects::any_on_bodies(model) { Axes::Base } else { Axes::Tree }
 }
@@ -225,8 +225,8 @@ fn curls<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
     }
 }
 
-/// V̇_λ × S. What hangs on the base by a revolute joint falls as the base does: then the product is
-/// taken before its factors are turned, and is nothing for a joint that stands upright.
+/// V̇_λ × S. A body on the base by a revolute joint falls as the base does: then the product is
+/// taken before its factors are turned, and is zero for an upright joint.
 fn falling<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: BodyId, k: usize, carried: &Twist<S>) -> Twist<S> {
     let body = &model.bodies[i];
     if body.parent != BodyId::BASE || !body.joint.is_rotation_about_axis() {
@@ -237,7 +237,7 @@ fn falling<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: BodyId, k: usize, 
     body.coordinates.rate_of_one().map_or(product, |m| product.times(m))
 }
 
-/// Hands what a body and all beyond it have together to its parent.
+/// Adds the sums of a body and all beyond it to its parent.
 fn collect<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: BodyId) {
     let (parent, state) = (model.bodies[i].parent, ws.common[i]);
     if parent != BodyId::BASE {
@@ -261,7 +261,7 @@ impl<S: Scalar> Matrices<'_, S> {
         }
     }
 
-    /// What column `k` of body `i` has with itself and those on the way to the base.
+    /// Entries of column `k` of body `i` with itself and with the columns on the path to the root.
     fn row_and_column(&mut self, model: &Model<S>, ws: &Workspace<S>, i: BodyId, k: usize) {
         let (n, state, column) = (model.nv, &ws.common[i], &ws.columns[k]);
         let two = S::from_f64(2.0);
@@ -291,8 +291,8 @@ impl<S: Scalar> Matrices<'_, S> {
     }
 }
 
-/// Subtracts external wrenches from the forces of bodies. Those that do not turn with their body,
-/// as the sweep will take all forces to do, are put right in ∂τ/∂q.
+/// Subtracts external wrenches from the forces of bodies. The sweep assumes that all forces turn
+/// with their body; ∂τ/∂q is corrected for those that do not.
 fn external<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], wrenches: &[S], by_q: &mut [S]) {
     let reference = model.wrench_reference;
     let mut frame = model.frames.iter().filter(|f| f.body != BodyId::BASE);
@@ -307,10 +307,10 @@ fn external<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], wrenche
     });
 }
 
-/// For each pair (l, k) of columns on the way from `body` to the base, ∂τ_l/∂q_k −= S_lᵀ δ_k, with
-/// δ_k what a unit step of k does to the wrench, less what it would do if the wrench turned with
-/// the body, S_k ×* w. In space the wrench stays as it is, but for its moment if it moves along
-/// with the point at `offset`.
+/// For each pair (l, k) of columns on the path from `body` to the root, ∂τ_l/∂q_k −= S_lᵀ δ_k. δ_k
+/// is the change of the wrench for a unit step of k, less its change if the wrench turned with the
+/// body, S_k ×* w. In space the wrench is constant, except for its moment if it moves with the
+/// point at `offset`.
 fn put_right<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, body: BodyId, w: &Wrench<S>, offset: Option<Vector3<S>>, by_q: &mut [S]) {
     on_the_way(model, ws, body, Vector3::zeros(), |column, d| {
         let (k, axis) = (column.at, column.axis.at(d));

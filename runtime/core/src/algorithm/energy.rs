@@ -22,8 +22,8 @@ pub fn kinetic_energy<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S
     ws.row = row;
 }
 
-/// U = −Σ m gᵀc = −gᵀ Σ (m p + R h), zero at the world frame's origin, and what springs, stops,
-/// buoyancy and contacts store.
+/// U = −Σ m gᵀc = −gᵀ Σ (m p + R h), zero at the world frame's origin, and the energy of springs,
+/// stops, buoyancy and contacts.
 ///
 /// q: `[nq]`; out: one number, J. Links fixed to the base do not count.
 ///

@@ -8,8 +8,8 @@ use crate::spatial::SpatialInertia;
 /// Choices for the bodies of a model, by their indices; a body beyond the end of a list has the
 /// default. [`super::Workspace::with_formulation`] takes it.
 ///
-/// The caller answers for it that results are the same: that rotations and inertias go with the
-/// frames and inertias of the model.
+/// The caller guarantees that results are the same: rotations and inertias must match the frames
+/// and inertias of the model.
 #[derive(Clone, Debug)]
 pub struct Formulation<S> {
     /// How the frames of bodies on a rotation about an axis rotate; by default as
@@ -18,7 +18,7 @@ pub struct Formulation<S> {
     /// Mass properties for inverse dynamics: any that have the same torques; by default the
     /// model's.
     pub torque_inertias: ById<BodyId, SpatialInertia<S>>,
-    /// What inverse dynamics finds rate matrices from.
+    /// Source of the rate matrices in inverse dynamics.
     pub kinematics: ById<BodyId, AngularKinematics>,
 }
 
@@ -27,12 +27,12 @@ pub struct Formulation<S> {
 pub struct FrameRotation<S> {
     /// The angle of the frame where the joint's coordinate is zero.
     pub offset: Angle<S>,
-    /// One: the frame rotates with the body. Zero: it stays; the body has to be axisymmetric then,
-    /// or the constants that are given have to be those at one configuration.
+    /// One: the frame rotates with the body. Zero: it does not; then the body must be axisymmetric,
+    /// or the given constants must be those at one configuration.
     pub share: S,
 }
 
-/// What inverse dynamics finds a body's rate matrix U ([`crate::spatial::rate_matrix`]) from.
+/// Source of a body's rate matrix U ([`crate::spatial::rate_matrix`]) in inverse dynamics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AngularKinematics {
     /// From ω and ω̇, for a joint of any kind.
@@ -40,8 +40,8 @@ pub enum AngularKinematics {
     AngularAcceleration,
     /// For a revolute joint, from ω, ω̇_z and the second derivative ë of the joint's axis e
     /// ([`crate::spatial::rates_about`]). The axis is fixed in both bodies of the joint, so that ë
-    /// = U_λ e is a column of what the parent has already: it is turned in place of ω̇, and what is
-    /// added to ω̇ is not computed.
+    /// = U_λ e is a column that the parent already has. It is turned in place of ω̇, and the terms
+    /// added to ω̇ are not computed.
     AxisAcceleration,
     /// The same, and U's diagonal from ë_z = −(ω_x² + ω_y²) as well.
     AxisAccelerationAndDiagonal,

@@ -12,9 +12,9 @@ use crate::model::Model;
 ///
 /// q: `[nq]`; v: `[nv]`; tau: `[nv]` N·m|N; wrenches: `[frames][6]` N·m and N, as
 /// [`Model::wrench_reference`] says, or empty; out: `[nv]` rad/s²|m/s². By M = Lᵀ D L; Featherstone
-/// 2008, §6.5. Where M is singular to working precision the result is what rounding made of a
-/// pivot: infinite, not a number, or finite and of no meaning; [`super::checked_forward_dynamics`]
-/// tells. A model with [`Model::massless_joints`] is singular everywhere.
+/// 2008, §6.5. If M is singular to working precision, a pivot is only rounding error, and the
+/// result is infinite, NaN, or finite and meaningless; [`super::checked_forward_dynamics`] reports
+/// it. A model with [`Model::massless_joints`] is singular everywhere.
 ///
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`]
@@ -64,7 +64,7 @@ pub fn mass_matrix_inverse<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q
     ws.matrix = matrix;
 }
 
-/// M(q) as `factor` leaves it. The matrix is the workspace's, to be given back.
+/// M(q) factored by `factor`. The matrix belongs to the workspace and must be returned.
 pub(super) fn factored<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]) -> alloc::vec::Vec<S> {
     let mut matrix = core::mem::take(&mut ws.matrix);
     mass_matrix(model, ws, q, &mut matrix);

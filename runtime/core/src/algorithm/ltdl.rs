@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use crate::Scalar;
 
-/// The degrees of freedom on the way from `k` to the base, `k` not among them.
+/// The degrees of freedom on the path from `k` to the root, without `k`.
 pub(crate) fn path_to_root(parent_dof: &[usize], k: usize) -> impl Iterator<Item = usize> {
     let next = |k: usize| parent_dof[k].checked_sub(1);
     core::iter::successors(next(k), move |&i| next(i))
@@ -13,7 +13,7 @@ pub(crate) fn path_to_root(parent_dof: &[usize], k: usize) -> impl Iterator<Item
 /// How many multiplications [`factor`] takes where no element on the way between two joints is
 /// zero.
 pub(super) fn multiplications(parent_dof: &[usize]) -> u64 {
-    // Joints between each and the base: a joint stands after those.
+    // Number of joints between each and the base; these come before it.
     let mut depths: Vec<u64> = Vec::with_capacity(parent_dof.len());
     for &next in parent_dof {
         depths.push(next.checked_sub(1).map_or(0, |i| depths[i] + 1));
@@ -73,7 +73,7 @@ pub(super) fn inverse<S: Scalar>(l: &[S], parent_dof: &[usize], x: &mut [S]) {
     let n = parent_dof.len();
     x.fill(S::zero());
     (0..n).for_each(|k| x[k * n + k] = S::one());
-    // L⁻ᵀ has nothing below its diagonal, and of what is the same twice one is enough.
+    // L⁻ᵀ is zero below its diagonal, and one half of a symmetric result is enough.
     solve_from(l, parent_dof, x, |k| k);
     for j in 0..n {
         (0..j).for_each(|i| x[j * n + i] = x[i * n + j]);

@@ -68,10 +68,10 @@ pub fn difference<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, q: &[S], ta
 
 /// A configuration from numbers in [0, 1): uniform if they are.
 ///
-/// uniform: `[nq]`, of the last of each quaternion's four no use is made; out: `[nq]`
-/// rad|m|quaternion. Coordinates in their boxes ([`coordinate_box`]). Rotations uniform: Shoemake,
-/// *Uniform random rotations*, Graphics Gems III, 1992. Those of a ball joint with a range are
-/// uniform among the rotations by at most that angle ([`JointInfo::cone`]).
+/// uniform: `[nq]`, the last of each quaternion's four is ignored; out: `[nq]` rad|m|quaternion.
+/// Coordinates in their boxes ([`coordinate_box`]). Rotations uniform: Shoemake, *Uniform random
+/// rotations*, Graphics Gems III, 1992. Those of a ball joint with a range are uniform among the
+/// rotations by at most that angle ([`JointInfo::cone`]).
 ///
 /// # Panics
 /// As [`integrate`].
@@ -97,7 +97,7 @@ pub fn random_configuration<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, u
     }
 }
 
-/// The configuration of zeros, with quaternions that turn nothing: `[nq]` rad|m|quaternion.
+/// The configuration of zeros, with identity quaternions: `[nq]` rad|m|quaternion.
 ///
 /// # Panics
 /// If `out` is shorter than that.
@@ -110,7 +110,7 @@ pub fn neutral<S: Scalar>(model: &Model<S>, out: &mut [S]) {
     }
 }
 
-/// What a joint's coordinates are points of.
+/// The space of a joint's coordinates.
 pub(super) enum Space {
     /// Numbers, to which steps are added.
     Numbers,
@@ -177,10 +177,10 @@ fn put_quaternion<S: Scalar>(out: &mut [S], q: &Quaternion<S>) {
     out[..4].copy_from_slice(&q.normalised().to_array());
 }
 
-/// The box of coordinate `k` of a joint, its lower end first, rad or m: within limits where there
-/// are some, in whichever order they are written; a bound that is open is 2π or 2 m from the other,
-/// ±π and ±1 m where both are, as those of a sliding joint may be. Of a floating joint ±1 m, and ±1
-/// for the numbers of a quaternion.
+/// The box of coordinate `k` of a joint, its lower end first, rad or m: its limits, if any, in
+/// whichever order they are written. An open bound is 2π or 2 m from the other; if both are open,
+/// as they may be for a sliding joint, ±π and ±1 m. For a floating joint ±1 m, and ±1 for the
+/// numbers of a quaternion.
 pub fn coordinate_box(joint: &JointInfo, k: usize) -> (f64, f64) {
     if joint.kind.quaternion().is_some() {
         return (-1.0, 1.0);

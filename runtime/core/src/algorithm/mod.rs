@@ -1,5 +1,4 @@
-//! The algorithms, each written once over the scalar, and the table of the functions that they
-//! give.
+//! The algorithms, each written once over the scalar, and the table of their functions.
 
 mod aba;
 pub(crate) mod argument;

@@ -29,10 +29,9 @@ pub fn operational_space_inertia_inverse<S: Scalar>(model: &Model<S>, ws: &mut W
 
 /// Λ = (J M⁻¹ Jᵀ)⁻¹ of each frame by itself.
 ///
-/// q: `[nq]`; out: `[frames][6][6]`, symmetric. Not a number for a frame with less than six degrees
-/// of freedom on its way to the base. In a configuration in which they do not move it in all six
-/// directions Λ⁻¹ is singular, and its inverse what rounding makes of it: large numbers that mean
-/// nothing.
+/// q: `[nq]`; out: `[frames][6][6]`, symmetric. NaN for a frame with less than six degrees of
+/// freedom on its path to the root. In a configuration in which they do not move it in all six
+/// directions, Λ⁻¹ is singular and its inverse is rounding error: large meaningless numbers.
 ///
 /// # Panics
 /// As [`operational_space_inertia_inverse`].

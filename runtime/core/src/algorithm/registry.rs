@@ -1,4 +1,4 @@
-//! What a function of the table is: what it takes, what it gives, what it needs.
+//! A function of the table: its arguments, its results, its requirements.
 
 use super::argument::size;
 use super::{Argument, Dim, FunctionError, FunctionId, Workspace, check_count, check_length, functions};
@@ -19,8 +19,8 @@ pub struct Shape {
 }
 
 impl<S: Scalar> Model<S> {
-    /// For each degree of freedom those on the way to the base, the next first: where row k of M
-    /// and of the factors of M = Lᵀ D L has numbers before the diagonal.
+    /// For each degree of freedom its path to the root, the next first: the entries before the
+    /// diagonal in row k of M and of the factors of M = Lᵀ D L.
     pub fn paths_to_root(&self) -> alloc::vec::Vec<alloc::vec::Vec<usize>> {
         let parent_dof = super::workspace::parent_dof(self);
         (0..self.nv).map(|k| super::ltdl::path_to_root(&parent_dof, k).collect()).collect()
@@ -32,7 +32,7 @@ impl<S: Scalar> Model<S> {
     }
 }
 
-/// What must hold of a robot for a function to be defined.
+/// Requirements on a robot for a function to be defined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Needs {
     /// Nothing.
@@ -45,7 +45,7 @@ pub enum Needs {
     FreeFrames,
 }
 
-/// What an algorithm gets, by the number of the argument; an empty slice is zeros.
+/// Arguments of an algorithm, by their numbers; an empty slice means zeros.
 pub(super) struct Inputs<'a, S>(pub(super) [&'a [S]; Argument::ALL.len()]);
 
 impl<'a, S> Inputs<'a, S> {
@@ -65,15 +65,15 @@ pub(super) type Run<S> = fn(&Model<S>, &mut Workspace<S>, &Inputs<'_, S>, &mut [
 pub struct Way<S: 'static> {
     /// Its name in the ledger.
     pub name: &'static str,
-    /// Whether it can be had for a model.
+    /// Whether it is defined for a model.
     pub applies: fn(&Model<S>) -> bool,
-    /// It takes at least so many multiplications where all joints feel each other; zero where that
-    /// says nothing. What cannot be the cheapest way need not be tried.
+    /// Lower bound of its multiplications if all joints feel each other; zero if the bound is
+    /// unknown. A way that cannot be the cheapest need not be tried.
     pub least: fn(&Model<S>) -> u64,
     pub(super) run: Run<S>,
 }
 
-/// A group of functions: for lists that people read, and to ask for them by one word.
+/// A group of functions: for printed lists, and to request them by one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
     /// Of frames.
@@ -88,7 +88,7 @@ pub enum Group {
     Regressors,
     /// Λ and its inverse.
     OperationalSpace,
-    /// What a scene's effects do.
+    /// Effects of a scene.
     Effects,
     /// Steps, differences and draws.
     Configurations,
@@ -126,7 +126,7 @@ impl Group {
         Self::ALL.into_iter().find(|group| group.name() == name)
     }
 
-    /// What is in it.
+    /// Its title in lists.
     pub fn title(self) -> &'static str {
         match self {
             Self::Kinematics => "Kinematics of frames",
@@ -155,30 +155,30 @@ impl Group {
 pub struct Function<S: 'static> {
     /// Its number.
     pub id: FunctionId,
-    /// The row: the function with all arguments. Of a preset, which is that function with zeros for
-    /// what it does not take, another one.
+    /// The row: the function with all arguments. A preset is the function of another row, with
+    /// zeros for the arguments that it does not take.
     pub general: FunctionId,
     /// Its name everywhere: in Rust, in scenes, on the command line.
     pub name: &'static str,
-    /// The equation and what it means.
+    /// The equation and its meaning.
     pub summary: &'static str,
     /// The algorithm and its source.
     pub source: &'static str,
-    /// What it takes, in order.
+    /// Its arguments, in order.
     pub takes: &'static [Argument],
-    /// The dimensions of what it gives; none for a single number.
+    /// The dimensions of its result; empty for a single number.
     pub gives: &'static [Dim],
-    /// The units of what it gives, and what the dimensions stand for.
+    /// The units of its result, and the meaning of the dimensions.
     pub unit: &'static str,
     /// Its group in lists.
     pub group: Group,
-    /// What the robot must be like.
+    /// Requirements on the robot.
     pub needs: Needs,
-    /// Whether it asks for nothing but joint torques and what follows from them, so that mass may
-    /// be moved along joints that cannot feel it, and frames along their axes.
+    /// Whether it depends only on joint torques and quantities that follow from them, so that mass
+    /// may be moved along joints that cannot feel it, and frames along their axes.
     pub regrouped: bool,
-    /// Ways to compute it, from which the generator takes the cheapest; the first is what
-    /// [`Function::call`] runs where it applies.
+    /// Ways to compute it. The generator takes the cheapest, [`Function::call`] the first that
+    /// applies.
     pub ways: &'static [Way<S>],
     /// All of it but the solution of M X = −B for all columns of `[3][nv][nv]` numbers: two
     /// matrices B, and the factors of M = Lᵀ D L in the third, L below the diagonal and D⁻¹ on it;
@@ -187,7 +187,7 @@ pub struct Function<S: 'static> {
 }
 
 impl<S: Scalar> Function<S> {
-    /// What of the row's arguments is zero; nothing for a row.
+    /// The row's arguments that are zero; none for a row.
     pub fn zeros(&self) -> impl Iterator<Item = Argument> + '_ {
         self.general.row::<S>().takes.iter().copied().filter(|argument| !self.takes.contains(argument))
     }
@@ -208,13 +208,13 @@ impl<S: Scalar> Function<S> {
         matches!(self.needs, Needs::MassMatrix | Needs::FreeFrames)
     }
 
-    /// Whether it takes something or gives something for each frame.
+    /// Whether it takes or returns something for each frame.
     pub fn asks_for_frames(&self) -> bool {
         let of_frames = |dims: &[Dim]| dims.contains(&Dim::Frames);
         of_frames(self.gives) || self.takes.iter().any(|a| of_frames(a.dims()))
     }
 
-    /// How many numbers it gives.
+    /// The number of its results.
     pub fn len(&self, shape: Shape) -> usize {
         size(self.gives, shape)
     }

@@ -46,8 +46,8 @@ pub fn torque_regressor<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &
     }
 }
 
-/// What a motion (s; t) does on a body whose points at r accelerate by a + U r: per unit of each
-/// parameter.
+/// Generalised force along a motion (s; t) of a body whose points at r accelerate by a + U r, per
+/// unit of each parameter.
 fn entries<S: Scalar>(axis: &Twist<S>, a: &Vector3<S>, u: &Matrix3<S>) -> [S; PARAMETERS] {
     let (s, t) = (axis.angular, axis.linear);
     // m: t·a;  h: t·(U h) + s·(h × a) = h·(Uᵀt + a × s)

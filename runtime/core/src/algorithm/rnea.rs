@@ -79,8 +79,8 @@ pub(super) fn recursion<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &
     }
 }
 
-/// What a recursion has to do on a model, found in one look at its bodies: with one look for each,
-/// inverse dynamics takes a twentieth longer on numbers.
+/// Features of a model that a recursion handles, found in one pass over its bodies: with one pass
+/// for each, inverse dynamics takes a twentieth longer on numbers.
 #[derive(Default)]
 struct ModelFeatures {
     on_bodies: bool,
@@ -99,8 +99,8 @@ impl ModelFeatures {
     }
 }
 
-/// The wrench that each joint passes to its child link, gravity included: the torque is what of it
-/// the joint feels.
+/// The wrench that each joint passes to its child link, gravity included: the torque is its
+/// component along the joint.
 ///
 /// q: `[nq]`; v, a: `[nv]`; out: `[links][6]`, N·m and N, in axes of the link about its origin. The
 /// model must be as it was read: a pass that moves mass between bodies changes these wrenches.

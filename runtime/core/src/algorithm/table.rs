@@ -7,9 +7,9 @@
 //! name(arguments) -> [dimensions] "units", group, needs, regrouped?, "what it is", "algorithm and source";
 //! ```
 //!
-//! with `by` and a list of ways where there is more than one (its name, where it can be had, its
-//! least cost, its algorithm, and in whose axes if not the usual) and `columns` where there is a
-//! part of it before M X = B is solved.
+//! with `by` and a list of ways if there are several (name, condition, lower bound of the cost,
+//! algorithm, and its axes if not the usual), and `columns` if it has a part before M X = B is
+//! solved.
 //!
 //! A preset is a row at zeros. It takes everything but its name, its arguments and its summary from
 //! the row. An argument of the row that it does not list is zero: the algorithm gets an empty slice
@@ -25,7 +25,7 @@ use super::argument::{argument, dims, told};
 use super::registry::Inputs;
 use super::workspace::near_the_middle;
 #[allow(clippy::wildcard_imports)]
-// Why: the rows name every algorithm there is.
+// Why: the rows name every algorithm.
 use super::*;
 use crate::Scalar;
 use crate::model::Model;
@@ -327,7 +327,7 @@ fn untied<S: Scalar>(model: &Model<S>) -> bool {
     !model.has_followers()
 }
 
-/// All functions, in the order in which they are listed to people.
+/// All functions, in the order of printed lists.
 pub fn functions<S: Scalar>() -> &'static [Function<S>] {
     Table::<S>::ROWS
 }

@@ -1,4 +1,4 @@
-//! What an algorithm keeps between its sweeps.
+//! State of an algorithm between its sweeps.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -20,7 +20,7 @@ use crate::spatial::{ArticulatedInertia, CoriolisInertia, Motion, Placement, Spa
 pub struct Workspace<S> {
     /// The sizes of the model it was made for.
     pub(super) shape: Shape,
-    /// The body that each hangs on, as in that model, and whether it is a link.
+    /// The parent of each body, as in that model, and whether it is a link.
     tree: ById<BodyId, (BodyId, bool)>,
     pub(super) bodies: ById<BodyId, BodyState<S>>,
     pub(super) placements: ById<BodyId, Placement<S>>,
@@ -46,7 +46,7 @@ pub struct Workspace<S> {
     firsts: Centers,
     /// One row of a matrix, `[nv]`.
     pub(super) row: Vec<S>,
-    /// For each degree of freedom the next one on the way to the base, as [`below`] gives them.
+    /// For each degree of freedom the next one on the path to the root, as [`below`] gives them.
     pub(super) parent_dof: Vec<usize>,
     /// `[nv · nv]`.
     pub(super) matrix: Vec<S>,
@@ -88,7 +88,7 @@ pub(super) struct CommonState<S> {
     pub(super) carried_twist: Twist<S>,
     pub(super) carried_acceleration: Twist<S>,
     pub(super) twist: Twist<S>,
-    /// Spatial acceleration, gravity subtracted where it was asked for.
+    /// Spatial acceleration, with gravity subtracted if requested.
     pub(super) acceleration: Twist<S>,
     pub(super) inertia: SpatialInertia<S>,
     pub(super) coriolis: CoriolisInertia<S>,
@@ -222,7 +222,7 @@ impl<S: Scalar> Workspace<S> {
         self.first[i.0]..self.first[i.0 + 1]
     }
 
-    /// The columns of the joint of body `i` and of all beyond it: bodies stand depth-first.
+    /// The columns of the joint of body `i` and of all beyond it: bodies are in depth-first order.
     #[inline(always)]
     pub(super) fn columns_from(&self, i: BodyId) -> Range<usize> {
         self.first[i.0]..self.end[i]
@@ -279,7 +279,7 @@ fn middles<S: Scalar>(model: &Model<S>) -> Vec<BodyId> {
     }
     let middle = |root: BodyId| {
         let heavy = |i: &BodyId| weight[*i] * 2 > weight[root];
-        // Children stand after their parents.
+        // Children come after their parents.
         let next = |i: &BodyId| (i.0 + 1..model.bodies.len()).map(BodyId).find(|k| model.bodies[*k].parent == *i && heavy(k));
         core::iter::successors(Some(root), next).last().unwrap_or(root)
     };
@@ -294,9 +294,9 @@ fn firsts<S: Scalar>(model: &Model<S>) -> impl Iterator<Item = BodyId> + '_ {
 /// How far from its first body the middle of a tree may be for [`near_the_middle`].
 const NEAR: usize = 4;
 
-/// Whether the first bodies of trees are other bodies than those in the middle, but not far from
-/// them, and nothing but turns lies between: then theirs may be the cheaper axes, as zeros of
-/// parallel joints are not where the middle is.
+/// Whether the first bodies of trees differ from those in the middle, but are near them with only
+/// rotations between. Then their axes may be cheaper, since they have zeros of parallel joints that
+/// the middle lacks.
 pub(super) fn near_the_middle<S: Scalar>(model: &Model<S>) -> bool {
     let way = |i: BodyId| core::iter::successors(Some(i), |&i| Some(model.bodies[i].parent).filter(|p| !p.is_base()));
     let ways = || middles(model).into_iter().map(way);

@@ -9,8 +9,8 @@ use crate::model::Model;
 use crate::spatial::{Reference, Vector3, Wrench};
 
 /// The wrenches of `[frames][6]` one by one, as (body, wrench on it in its axes about its origin),
-/// added up by `add`; none for an empty slice. Wrenches on the base are left out: nothing feels
-/// them.
+/// added up by `add`; none for an empty slice. Wrenches on the base are left out: they have no
+/// effect.
 pub(super) fn each<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,

@@ -63,7 +63,7 @@ pub enum CollisionShape {
         /// Factors of the mesh's coordinates along x, y and z.
         scale: [f64; 3],
     },
-    /// What could not be read.
+    /// A shape that could not be read.
     Unread {
         /// Why, in a sentence.
         why: String,
@@ -79,15 +79,14 @@ pub struct ContactSphere {
     pub radius: f64,
 }
 
-/// So many points stand on each rim of a cylinder, the first of them in the direction of its x
-/// axis.
+/// Number of points on each rim of a cylinder, the first of them in the direction of its x axis.
 pub const RIM_POINTS: usize = 8;
 
 impl Collision {
     /// The spheres that touch a plane for the shape, in the link's frame: of a sphere itself, of a
     /// box its 8 corners, of a capsule the two balls at its ends, of a cylinder [`RIM_POINTS`]
-    /// points on each rim, the lower one first. Corners that fall together, as those of a plate,
-    /// are one. None of a mesh, or of what could not be read.
+    /// points on each rim, the lower one first. Coincident corners, as those of a plate, are one.
+    /// None for a mesh or an unread shape.
     pub fn contact_spheres(&self) -> Vec<ContactSphere> {
         let (radius, points) = match &self.shape {
             CollisionShape::Sphere { radius } => (*radius, [[0.0; 3]].into()),

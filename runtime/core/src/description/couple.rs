@@ -31,8 +31,8 @@ impl Description {
         Editor::of(self).couple(coupling)
     }
 
-    /// The same robot with each follower of several joints as followers of one joint, one behind
-    /// the other on an axis: R(Σ qᵢ) = Π R(qᵢ), and so for slides and screws.
+    /// The same robot with each follower of several joints as followers of one joint, one after the
+    /// other on an axis: R(Σ qᵢ) = Π R(qᵢ), and so for slides and screws.
     pub(crate) fn in_sequence(&self) -> Self {
         let mut robot = self.clone();
         for (j, joint) in self.joints.with_ids().filter(|(_, joint)| joint.locked.is_none()) {

@@ -19,15 +19,15 @@ use crate::suggest::Suggester;
 pub struct Payload {
     /// The link or frame that carries it.
     pub link: String,
-    /// Name of the link that stands for it, and of the fixed joint between; `None`:
-    /// `<link>_payload`, with a number if that is taken.
+    /// Name of its link, and of the fixed joint between; `None`: `<link>_payload`, with a number if
+    /// that is taken.
     pub name: Option<String>,
     /// kg, not negative.
     pub mass: f64,
-    /// Centre of mass in the frame of what carries it, m.
+    /// Centre of mass in the frame of the link or frame that carries it, m.
     pub center_of_mass: [f64; 3],
-    /// Rotational inertia about the centre of mass in axes of what carries it: xx, xy, xz, yy, yz,
-    /// zz, kg·m². Zeros: a point mass.
+    /// Rotational inertia about the centre of mass in axes of that frame: xx, xy, xz, yy, yz, zz,
+    /// kg·m². Zeros: a point mass.
     pub inertia: [f64; 6],
 }
 
@@ -68,12 +68,12 @@ impl<'a> Editor<'a> {
         Self { names: Names::of(robot), robot, suggester: Suggester::default() }
     }
 
-    /// Locks the joint called `joint` at these coordinates, as many as its kind has (rad or m; a
-    /// quaternion as x, y, z, w). Joints that follow it stop where it puts them. A locked joint has
-    /// no place in q and v, and its links belong to the body that they are locked to.
+    /// Locks the joint called `joint` at these coordinates, in the number of its kind (rad or m; a
+    /// quaternion as x, y, z, w). Joints that follow it are locked where it puts them. A locked
+    /// joint has no place in q and v, and its links belong to the body that they are locked to.
     ///
-    /// Refused: what does not exist, does not move or moves already no more; a follower (lock what
-    /// it follows); the base (say that it is fixed); a wrong number of coordinates; a quaternion
+    /// Refused: a joint that does not exist, does not move or is locked already; a follower (lock
+    /// its leader); the base (request a fixed base); a wrong number of coordinates; a quaternion
     /// whose norm is not one within [`NORM_TOLERANCE`](crate::spatial::NORM_TOLERANCE).
     pub fn lock(&mut self, joint: &str, at: &[f64]) -> Result<(), EditError> {
         let Some(index) = self.names.joint(joint) else {
@@ -105,12 +105,12 @@ impl<'a> Editor<'a> {
     }
 
     /// Attaches a payload to a link or frame: a link of its own, whose frame has its origin at the
-    /// payload's centre of mass and the axes of what carries it, behind a fixed joint of the same
+    /// payload's centre of mass and the axes of the carrying frame, after a fixed joint of the same
     /// name. Returns the name.
     ///
-    /// Refused: a link or frame that does not exist, a name that does, a mass or a principal moment
-    /// below zero, numbers that are not finite, an inertia without mass. One whose principal
-    /// moments [miss the triangle inequality](PrincipalMoments::miss_triangle) is used as it is
+    /// Refused: a link or frame that does not exist, a name that is taken, a mass or a principal
+    /// moment below zero, numbers that are not finite, an inertia without mass. An inertia whose
+    /// principal moments [miss the triangle inequality](PrincipalMoments::miss_triangle) is used as
     /// given, as that of a link is.
     pub fn attach(&mut self, payload: &Payload) -> Result<String, EditError> {
         let (parent, place) = self.place(&payload.link)?;
@@ -168,7 +168,7 @@ impl<'a> Editor<'a> {
         Ok(())
     }
 
-    /// Adds a link, and gives its index.
+    /// Adds a link, and returns its index.
     pub(super) fn add_link(&mut self, link: Link) -> LinkId {
         self.names.add_link(&link.name, self.robot.links.next_id());
         self.robot.links.push(link)
@@ -227,8 +227,7 @@ fn check_mass(payload: &Payload) -> Result<(), EditError> {
     Ok(())
 }
 
-/// Whether a load of this mass may have this inertia. That of no moment is none; without mass there
-/// is no other.
+/// Whether a load of this mass may have this inertia. Without mass, all moments must be zero.
 fn can_be(inertia: [f64; 6], mass: f64) -> bool {
     let massless = mass == 0.0 && inertia != [0.0; 6];
     inertia.iter().all(|x| x.is_finite()) && !massless && !PrincipalMoments::of(inertia).are_negative()

@@ -55,7 +55,7 @@ pub enum EditError {
         joint: String,
         /// Its kind.
         kind: JointKind,
-        /// What was given.
+        /// The given coordinates.
         found: Vec<f64>,
     },
     /// A quaternion that is not of norm one.
@@ -99,16 +99,16 @@ pub enum EditError {
         joint: String,
         /// Which number.
         field: &'static str,
-        /// What was given.
+        /// The given number.
         found: f64,
-        /// What would be right.
+        /// The expected number, in words.
         expected: &'static str,
     },
     /// A joint cannot follow others as requested.
     Coupling {
         /// The joint that was to follow.
         joint: String,
-        /// What was found, and what would be right.
+        /// The found and the expected, in words.
         what: String,
     },
     /// The robot to be appended has no root.
@@ -164,7 +164,7 @@ impl fmt::Display for EditError {
 
 impl core::error::Error for EditError {}
 
-/// A number before a noun; nothing for one.
+/// A number before a noun; empty for one.
 struct Count(usize);
 
 impl fmt::Display for Count {

@@ -117,14 +117,14 @@ pub struct Frame {
 /// list.
 macro_rules! joint_kinds {
     ($($(#[$attribute:meta])+ $kind:ident $name:literal,)+) => {
-        /// What a joint of the file lets move.
+        /// Kind of a joint of the file, by the motion that it allows.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         pub enum JointKind {
             $($(#[$attribute])+ $kind,)+
         }
 
         impl JointKind {
-            /// All of them, in the order in which they are listed to people.
+            /// All kinds, in the order of printed lists.
             pub const ALL: &'static [Self] = &[$(Self::$kind),+];
 
             /// Its name in a URDF.
@@ -165,20 +165,20 @@ joint_kinds! {
     Universal "universal",
 }
 
-/// What a coordinate or a rate of a joint counts.
+/// Quantity of a coordinate or a rate of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// A turn, rad.
     Angle,
     /// A way, m.
     Length,
-    /// One of the four numbers of a unit quaternion (x, y, z, w), which stand together. No rate is
+    /// One of the four numbers of a unit quaternion (x, y, z, w), which are neighbours. No rate is
     /// of this kind.
     Quaternion,
 }
 
 impl JointKind {
-    /// What its coordinates are, in order.
+    /// The quantities of its coordinates, in order.
     pub fn coordinates(self) -> &'static [Quantity] {
         use Quantity::{Angle, Length, Quaternion};
         match self {
@@ -192,8 +192,8 @@ impl JointKind {
         }
     }
 
-    /// What its rates are of, in order: those of a joint without a quaternion are the rates of its
-    /// coordinates.
+    /// The quantities of its rates, in order: those of a joint without a quaternion are the rates
+    /// of its coordinates.
     pub fn rates(self) -> &'static [Quantity] {
         use Quantity::{Angle, Length};
         match self {
@@ -210,13 +210,13 @@ impl JointKind {
         (self.coordinates().len(), self.rates().len())
     }
 
-    /// Which of its coordinates is the first of a unit quaternion (x, y, z, w); `None`: its
-    /// coordinates are plain numbers, one for each degree of freedom.
+    /// Index of the first coordinate of its unit quaternion (x, y, z, w); `None`: its coordinates
+    /// are plain numbers, one for each degree of freedom.
     pub fn quaternion(self) -> Option<usize> {
         self.coordinates().iter().position(|of| *of == Quantity::Quaternion)
     }
 
-    /// Whether it lets nothing move.
+    /// Whether it allows no motion.
     pub fn is_fixed(self) -> bool {
         self.rates().is_empty()
     }
@@ -252,7 +252,7 @@ impl JointKind {
 pub struct Joint {
     /// The joint's name, unique among joints.
     pub name: String,
-    /// What it lets move.
+    /// The motion that it allows.
     pub kind: JointKind,
     /// Index of the parent link.
     pub parent: LinkId,
@@ -268,12 +268,11 @@ pub struct Joint {
     pub second_axis: [f64; 3],
     /// How far a helical joint slides in one turn, m; not used otherwise.
     pub pitch: f64,
-    /// Coordinates at which the joint is locked, as many as its kind has; `None`: it moves.
+    /// Coordinates at which the joint is locked, in the number of its kind; `None`: it moves.
     pub locked: Option<Vec<f64>>,
     /// The joint that this one follows.
     pub mimic: Option<Mimic>,
-    /// Further joints that it follows: q is the sum of what each of them gives. Empty without
-    /// `mimic`.
+    /// Further joints that it follows: q is the sum of their contributions. Empty without `mimic`.
     pub also: Vec<Mimic>,
     /// Limits, where the file gives them.
     pub limit: Option<Limit>,
@@ -313,7 +312,7 @@ pub struct Limit {
 }
 
 impl Limit {
-    /// None at all.
+    /// No limits.
     pub const NONE: Self = Self {
         lower: f64::NEG_INFINITY,
         upper: f64::INFINITY,
@@ -415,7 +414,7 @@ mod tests {
         assert_eq!(robot(|k| k).root(), Some(LinkId(count)));
         assert_eq!(robot(|k| k + 1).root(), Some(LinkId(0)));
         assert_eq!(robot(|k| k.max(1)).root(), Some(LinkId(0)));
-        // A child that is no link is nobody's.
+        // A child index without a link is ignored.
         assert_eq!(Description { joints: [Joint { child: LinkId(7), ..Joint::default() }].into(), ..Description::default() }.root(), None);
     }
 }

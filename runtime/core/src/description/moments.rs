@@ -1,4 +1,4 @@
-//! Whether a rotational inertia can be.
+//! Whether a rotational inertia is possible.
 //!
 //! Judged by the principal moments relative to the largest of them, so that the units do not
 //! matter: a robot with lengths in nanometres has inertias of 1e-20, and a sound one passes.
@@ -21,7 +21,7 @@ const TRIANGLE: f64 = 1e-6;
 pub struct PrincipalMoments([f64; 3]);
 
 impl PrincipalMoments {
-    /// What is expected of those that [`miss_triangle`](Self::miss_triangle).
+    /// The condition that is broken by those that [`miss_triangle`](Self::miss_triangle).
     pub const TRIANGLE: &str = "none greater than the other two together (triangle inequality)";
 
     /// Of xx, xy, xz, yy, yz, zz, which are finite.
@@ -36,8 +36,8 @@ impl PrincipalMoments {
     }
 
     /// Whether the greatest is greater than the other two together, by more than written digits,
-    /// though none is negative: no body has it, and the equations of motion have a solution all the
-    /// same.
+    /// though none is negative: no body has such moments, but the equations of motion have a
+    /// solution.
     pub fn miss_triangle(&self) -> bool {
         let [a, b, c] = self.0;
         !self.are_negative() && c - a - b > TRIANGLE * self.size()
@@ -106,8 +106,8 @@ mod tests {
 
     #[test]
     fn what_lies_between_the_axes_counts() {
-        // With x' = 0.6 between all axes no two of them give it away, nor does one alone where
-        // there is no extent along the third.
+        // With 0.6 between all axes no two of them show the error, nor does one alone if there is
+        // no extent along the third.
         assert_eq!([judged([2.0, -0.6, -0.6, 2.0, -0.6, 2.0]), judged([2.0, 0.6, 0.6, 2.0, 0.6, 2.0])], [SOUND, TOO_GREAT]);
         for flat in [[2.0, 0.0, 0.0, 1.0, 1.1, 1.0], [1.0, 0.0, 1.1, 2.0, 0.0, 1.0], [1.0, 1.1, 0.0, 1.0, 0.0, 2.0]] {
             assert_ne!(judged(flat), SOUND, "{flat:?}");

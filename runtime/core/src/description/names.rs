@@ -12,8 +12,8 @@ pub(super) struct Names {
     links: BTreeMap<String, LinkId>,
     frames: BTreeMap<String, usize>,
     joints: BTreeMap<String, JointId>,
-    /// For names that were asked for and taken, the first number that may be free. Names are added
-    /// only, so those below stay taken.
+    /// For names that were requested and taken, the first number that may be free. Names are only
+    /// added, so lower numbers stay taken.
     numbers: BTreeMap<String, usize>,
 }
 
@@ -95,7 +95,7 @@ mod tests {
         names.add_joint("tip_3", JointId(0));
         names.add_link("tip_5", LinkId(0));
         assert_eq!([0; 3].map(|_| taken(&mut names)), ["tip_4", "tip_6", "tip_7"]);
-        // What was not taken stays free.
+        // A name that was not taken stays free.
         assert_eq!([0; 2].map(|_| names.free("tip")), ["tip_8", "tip_8"]);
     }
 }

@@ -1,4 +1,4 @@
-//! Where a frame is, as a file gives it.
+//! The placement of a frame in a file.
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -85,8 +85,8 @@ impl Origin {
         Self { xyz, rotation: Rotation::IDENTITY }
     }
 
-    /// A frame that `next` places in this one, seen from where this one is placed. A rotation keeps
-    /// the form of the file where the other one is the identity.
+    /// The placement of the frame that `next` places in this one, in the frame in which this one is
+    /// placed. A rotation keeps the form of the file if the other is the identity.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         let (first, second) = (self.rotation, next.rotation);

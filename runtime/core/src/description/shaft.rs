@@ -22,10 +22,9 @@ pub struct Shaft {
     pub damping: f64,
     /// Mass, kg, above zero; `None`: that of the link before the joint, which is taken from there.
     pub mass: Option<f64>,
-    /// Where it begins in the frame of the link before the joint, m; `None`: at that frame's
-    /// origin.
+    /// Its start in the frame of the link before the joint, m; `None`: at that frame's origin.
     pub start: Option<[f64; 3]>,
-    /// Where it ends, there too, m; `None`: at the joint's frame. What is left to the joint is
+    /// Its end, in the same frame, m; `None`: at the joint's frame. The rest up to the joint is
     /// rigid.
     pub end: Option<[f64; 3]>,
 }
@@ -50,12 +49,12 @@ impl Shaft {
 
 impl Editor<'_> {
     /// Lets the offset of a fixed joint bend. n pieces of length ℓ bend in their middles, in
-    /// universal joints called `<joint>_1` … `<joint>_n`, and are rigid beside that: rods
+    /// universal joints called `<joint>_1` … `<joint>_n`, and are otherwise rigid: rods
     /// `<joint>_rod_0` … `<joint>_rod_n` of lengths ½ℓ, ℓ, …, ℓ, ½ℓ, the first fixed to the link
-    /// before the joint, the last to that behind it. Gives the springs, of stiffness E·I/ℓ, and the
-    /// dampings of these joints. Deflections are those of a beam but for a part ¼/n² at a load on
-    /// its end. Wittbrodt, Adamiec-Wójcik & Wojciech, Dynamics of Flexible Multibody Systems: Rigid
-    /// Finite Element Method, 2006.
+    /// before the joint, the last to that after it. Returns the springs, of stiffness E·I/ℓ, and
+    /// the dampings of these joints. Deflections are those of a beam except for a part ¼/n² at a
+    /// load on its end. Wittbrodt, Adamiec-Wójcik & Wojciech, Dynamics of Flexible Multibody
+    /// Systems: Rigid Finite Element Method, 2006.
     ///
     /// Refused: a joint that does not exist or is not fixed, names that are taken, no pieces, a
     /// shaft without length or mass, numbers that are not finite.

@@ -13,7 +13,7 @@ macro_rules! codes {
         }
 
         impl Code {
-            /// All of them.
+            /// All codes.
             pub const ALL: &'static [Self] = &[$(Self::$code),+];
 
             /// Its name in JSON.
@@ -118,7 +118,7 @@ codes! {
     Unknown "unknown",
     /// A link or a joint that is not directly inside the robot.
     Misplaced "misplaced",
-    /// A load on what a fixed base holds.
+    /// A load on a link that a fixed base holds.
     UnusedInertia "unused_inertia",
     /// An angle was replaced by a multiple of π/2, as requested.
     Snapped "snapped",
@@ -148,9 +148,9 @@ codes! {
     TwoRotations "two_rotations",
     /// Dynamics that the file states where they are not read: closed loops, springs.
     LostDynamics "lost_dynamics",
-    /// Contact with collision geometry that makes none: a mesh, or nothing.
+    /// Contact with collision geometry that cannot make any: a mesh, or no geometry.
     NoContact "no_contact",
-    /// Contact with collision geometry of which a part makes none: a mesh beside other shapes.
+    /// Contact with collision geometry of which a part cannot make any: a mesh beside other shapes.
     PartOfContact "part_of_contact",
     /// An effect whose numbers are to come from the robot's file, which has them for no joint.
     NoNumbers "no_numbers",

@@ -19,7 +19,7 @@ const MOST_UNUSED: usize = 100_000;
 pub struct Diagnostics {
     /// Why the input is refused.
     pub errors: Vec<Diagnostic>,
-    /// What looks wrong and is used as it is.
+    /// Suspicious input that is used as it is.
     pub warnings: Vec<Diagnostic>,
     /// Numbers that were replaced, as requested.
     pub notes: Vec<Diagnostic>,
@@ -35,13 +35,13 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// None yet, of this file.
+    /// Empty findings of this file.
     #[must_use]
     pub fn new(file: &str) -> Self {
         Self { file: file.to_string(), ..Self::default() }
     }
 
-    /// None yet, of the same file.
+    /// Empty findings of the same file.
     #[must_use]
     pub fn apart(&self) -> Self {
         Self { included: self.included.clone(), ..Self::new(&self.file) }
@@ -165,8 +165,8 @@ impl Diagnostics {
         self.more_unused += other.more_unused;
     }
 
-    /// Takes the findings about a part of the file. Its errors become warnings, with `rest` behind
-    /// what they expect.
+    /// Takes the findings about a part of the file. Its errors become warnings, with `rest`
+    /// appended to their `expected`.
     pub fn take_as_warnings(&mut self, mut part: Self, rest: &str) {
         let errors = core::mem::take(&mut part.errors).into_iter().map(|mut error| {
             error.expected.push_str(rest);
@@ -195,7 +195,7 @@ impl Diagnostics {
         self.errors.get(before..).unwrap_or_default().iter().any(|e| e.code == Code::UnknownKey)
     }
 
-    /// Those of the keys of a table that no error is about, by the errors from number `before` on.
+    /// The keys of a table without errors, among the errors from number `before` on.
     pub fn right<'k>(&self, table: &str, keys: impl IntoIterator<Item = &'k str>, before: usize) -> Vec<&'k str> {
         let errors = self.errors.get(before..).unwrap_or_default();
         let is_of = |found: &str, key: &str| {
@@ -206,7 +206,7 @@ impl Diagnostics {
     }
 
     /// Sorts errors: first those of the file, in its order, then those of other files. Errors of
-    /// one line stay as they are.
+    /// one line keep their order.
     pub fn sort(&mut self) {
         let (file, errors) = (&self.file, &mut self.errors);
         errors.sort_by_key(|e| (e.span.file != *file, e.line(), if let At::Word(word) = e.span.at { Some(word) } else { None }));

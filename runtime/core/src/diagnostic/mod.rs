@@ -1,8 +1,8 @@
 //! Findings about files, requests and robots: one type, one collector.
 //!
-//! A check takes `&mut Diagnostics`, reports what it finds, and continues: all findings of one
-//! input come from one pass over it. The roads (macro, build script, command) differ in how they
-//! show a [`Diagnostic`], not in what they find.
+//! A check takes `&mut Diagnostics`, reports its findings, and continues: all findings of one input
+//! come from one pass over it. The entry points (macro, build script, command) differ in how they
+//! show a [`Diagnostic`], not in their findings.
 
 mod code;
 mod collector;
@@ -33,11 +33,11 @@ pub struct Diagnostic {
     pub subject: Subject,
     /// The tag, attribute or key; empty for the file as a whole.
     pub field: String,
-    /// What the input contains; a sentence of its own where nothing is `expected`.
+    /// The content of the input; a full sentence if `expected` is empty.
     pub found: String,
-    /// What is expected there; empty if `found` is a sentence.
+    /// The expected content; empty if `found` is a sentence.
     pub expected: String,
-    /// What helps: the name that was meant, the option that allows it.
+    /// A hint: the intended name, or the option that allows it.
     pub hint: Option<String>,
 }
 
@@ -88,7 +88,7 @@ pub enum At {
     Word(u32),
 }
 
-/// What a [`Diagnostic`] is about.
+/// The subject of a [`Diagnostic`].
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Subject {
     /// The document as a whole.
@@ -202,7 +202,7 @@ impl Diagnostic {
         }
     }
 
-    /// An error of which a sentence says all.
+    /// An error that one sentence describes.
     #[must_use]
     pub fn refusal<'a>(file: &str, place: impl Into<Place<'a>>, code: Code, sentence: impl Into<String>) -> Self {
         Self::error(file, place, code, sentence, "")
@@ -226,7 +226,7 @@ impl Diagnostic {
         Self { hint: hint.or(self.hint), ..self }
     }
 
-    /// The same finding with the name that was meant, if there is one.
+    /// The same finding with the intended name, if there is one.
     #[must_use]
     pub fn meant(self, nearest: Option<impl AsRef<str>>) -> Self {
         self.with_hint(nearest.map(|name| format!("did you mean {:?}?", name.as_ref())))

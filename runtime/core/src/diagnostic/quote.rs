@@ -15,7 +15,7 @@ pub fn quote(text: &str) -> String {
     quoted(text, 80)
 }
 
-/// As [`quote`], of what should be a number: cut after as many characters as a double may need.
+/// As [`quote`], for an intended number: cut after as many characters as a double may need.
 #[must_use]
 pub fn quote_number(text: &str) -> String {
     quoted(text, 24)

@@ -9,8 +9,8 @@ use core::fmt::Display;
 use super::{Diagnostic, Subject, Unused};
 use crate::listed;
 
-/// A line for each sort of finding: the first of the sort as it is, then how many more there are
-/// and where. Two are of one sort if they have one file, one code and one field.
+/// A line for each sort of finding: the first of the sort unchanged, then the number and the places
+/// of the others. Two are of one sort if they have one file, one code and one field.
 ///
 /// ```
 /// use articulated_core::diagnostic::{At, Code, Diagnostic, Place, Subject, summary};
@@ -32,7 +32,7 @@ pub fn summary_of_unused<'a>(unused: impl IntoIterator<Item = &'a Unused>) -> Ve
     lines(unused, |u| (u.tag.clone(), u.why.clone()), |u| (&u.subject, u.line))
 }
 
-/// So many places of the others are named.
+/// Largest number of the other places that are named.
 const NAMED: usize = 3;
 
 fn lines<'a, T: Display + 'a, K: Ord>(

@@ -16,7 +16,7 @@ pub(super) const FIELDS: &[Field] = &[
         .rule(is_positive_semidefinite, "with angular and linear a 6×6 matrix that is positive semidefinite"),
 ];
 
-/// Whether no motion has less than no energy, but for rounding of written numbers.
+/// Whether no motion has negative energy, up to rounding of written numbers.
 fn is_positive_semidefinite(p: &[f64]) -> bool {
     let inertia = inertia(p);
     let mut matrix = Matrix6::zeros();

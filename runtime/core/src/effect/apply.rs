@@ -12,7 +12,7 @@ use crate::index::{BodyId, FrameId};
 use crate::model::Model;
 use crate::spatial::Placement;
 
-/// Why an effect cannot be had: one thing that is wrong with it, of which there may be several.
+/// One error of an effect; there may be several.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectError {
     /// Its place in the list.
@@ -21,16 +21,16 @@ pub struct EffectError {
     pub effect: EffectId,
     /// The joint or link.
     pub on: String,
-    /// What is wrong.
+    /// Its error.
     pub fault: Fault,
 }
 
-/// What is wrong with an effect.
+/// Errors of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fault {
     /// No moving joint, or no link, of this name.
     Unknown {
-        /// What it acts on.
+        /// Its target.
         on: On,
         /// The name most like it.
         nearest: Option<String>,
@@ -41,7 +41,7 @@ pub enum Fault {
     Follows,
     /// A rotor on a joint that follows several others: its inertia would be between those.
     FollowsSeveral,
-    /// The link is fixed to the base: nothing feels it.
+    /// The link is fixed to the base: the effect would change nothing.
     Still,
     /// A floating base has no joint to be damped, sprung or driven.
     Base,
@@ -60,7 +60,7 @@ pub enum Fault {
         field: &'static str,
         /// The number, or all of the field.
         found: Vec<f64>,
-        /// What it must be.
+        /// The expected value, in words.
         expected: String,
     },
 }
@@ -132,8 +132,8 @@ impl core::error::Error for EffectErrors {}
 
 impl Model<f64> {
     /// The same robot with these effects besides those that it has. Several on one link add up; one
-    /// that does nothing ([`Effect::is_nothing`]) is left out. All that is wrong is told at once.
-    /// The model must still have all its frames.
+    /// that does nothing ([`Effect::is_nothing`]) is left out. All errors are reported at once. The
+    /// model must still have all its frames.
     pub fn with_effects(mut self, applied: &[Applied]) -> Result<Self, EffectErrors> {
         if applied.is_empty() {
             return Ok(self);
@@ -151,7 +151,7 @@ impl Model<f64> {
     }
 
     fn put(&mut self, one: &Applied, places: &mut Places) -> Result<(), Fault> {
-        // One of nothing is left out, where there is what it would be on.
+        // An effect that does nothing is left out, if its target exists.
         let is_nothing = one.effect.row().is_nothing(&one.parameters);
         match one.effect.row().on {
             On::Joint => {
@@ -261,7 +261,7 @@ fn check(one: &Applied, fields: &[Field]) -> Vec<Fault> {
     let rpy = one.at.rotation.rpy();
     let unbounded = one.at.xyz.iter().chain(&rpy).find(|x| !x.is_finite());
     faults.extend(unbounded.map(|x| wrong("xyz or rpy", &[*x], "finite numbers".into())));
-    // What numbers must be together is asked of numbers that may be.
+    // Rules on several numbers are checked only if each number is valid.
     let broken = row.broken(p).filter(|_| faults.is_empty()).and_then(|(field, own)| Some((field.name, own, field.rule?.expected)));
     faults.extend(broken.map(|(field, own, expected)| wrong(field, own, expected.into())));
     faults
@@ -368,7 +368,7 @@ mod tests {
             effects[0].parameters[5..8].to_vec()
         };
         assert_eq!([normal([0.0, 3.0, 4.0]), normal([0.0, 3e-200, -4e-200])], [[0.0, 0.6, 0.8], [0.0, 0.6, -0.8]]);
-        // Of which no number says the length.
+        // Vectors whose length exceeds the range of numbers.
         assert_eq!(normal([0.0, -f64::MAX, f64::MAX]), normal([0.0, -5e-324, 5e-324]));
         assert_eq!(normal([0.0, -f64::MAX, f64::MAX]), normal([0.0, -1.0, 1.0]));
     }

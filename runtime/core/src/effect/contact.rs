@@ -1,4 +1,4 @@
-//! A sphere on a plane that gives way.
+//! A sphere on a compliant plane.
 
 use super::{Field, FrameForce, Station, ramp};
 use crate::Scalar;
@@ -34,7 +34,7 @@ fn normal<S: Scalar>(p: &[S]) -> Vector3<S> {
     Vector3::new(p[5], p[6], p[7])
 }
 
-/// T ẋ/√(x² + T²ẋ²): what the damping of a contact at rest adds to the force, in parts of it.
+/// T ẋ/√(x² + T²ẋ²): relative increase of the force by the damping of a contact at rest.
 ///
 /// Where |T ẋ| is small beside the depth, k x times this is k T ẋ: the damper of a contact under
 /// load. It never exceeds the force of the spring, so that it does not pull, and both vanish at the

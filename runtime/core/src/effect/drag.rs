@@ -7,7 +7,7 @@ use crate::spatial::{Vector3, Wrench};
 pub(super) const FIELDS: &[Field] =
     &[Field::number("coefficient", "N·s²/m²", "½ ρ C A: density, drag coefficient and area").at_least_zero().factor()];
 
-/// Square of a speed that is as good as none, m²/s²: the root has a slope there.
+/// Square of a negligible speed, m²/s²: the root has a slope there.
 const STILL: f64 = 1e-24;
 
 pub(super) struct Law;

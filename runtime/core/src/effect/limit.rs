@@ -71,7 +71,7 @@ mod tests {
         };
         assert_eq!(torque([0.0; 3], [1.0, 2.0, 3.0]), [0.0; 3]);
         assert_eq!(torque([0.3, 0.4, 0.0], [9.0, 9.0, 9.0]), [0.0; 3]);
-        // A rate across the axis counts nothing.
+        // A rate across the axis has no effect.
         assert_eq!(torque([0.0, 0.75, 0.0], [5.0, 0.0, 7.0]), [0.0, -25.0, 0.0]);
         assert_eq!(torque([0.0, 0.75, 0.0], [0.0, 3.0, 0.0]), [0.0, -100.0, 0.0]);
         assert_eq!(torque([0.0, 0.75, 0.0], [0.0, -3.0, 0.0]), [0.0; 3]);

@@ -1,11 +1,11 @@
-//! Effects beyond rigid bodies in a gravity field: what joints, links and the world around them do.
+//! Effects beyond rigid bodies in a gravity field: of joints, links and their surroundings.
 //!
 //! One effect, one file: its law, generic over the scalar, with its source; and one row in the
-//! table below. What a robot is subject to is kept with its bodies ([`Effects`]);
-//! [`crate::model::Model::with_effects`] puts it there. An effect that is not there costs nothing.
+//! table below. The effects on a robot are stored with its bodies ([`Effects`]) by
+//! [`crate::model::Model::with_effects`]. An absent effect costs nothing.
 //!
-//! Forces are those on the robot: −d v for damping. Inverse dynamics gives what the actuators do
-//! against them.
+//! Forces are those on the robot: −d v for damping. Inverse dynamics includes the forces of the
+//! actuators against them.
 
 mod added_mass;
 mod apply;
@@ -40,7 +40,7 @@ use crate::joint::Joint;
 use crate::spatial::screw::Quaternion;
 use crate::spatial::{ArticulatedInertia, Placement, Vector3, Wrench};
 
-/// What an effect acts on.
+/// Target of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum On {
     /// Each degree of freedom of a joint.
@@ -68,7 +68,7 @@ pub enum Enters {
 }
 
 impl Enters {
-    /// What such an effect acts on.
+    /// The target of such an effect.
     const fn on(self) -> On {
         match self {
             Self::Inertia | Self::ForceOfRate | Self::ForceOfCoordinate | Self::Drive => On::Joint,
@@ -86,36 +86,36 @@ pub struct Field {
     pub len: usize,
     /// Its unit.
     pub unit: &'static str,
-    /// What it is where a scene does not say, as many numbers as it has; `None`: a scene must say.
+    /// Its numbers if a scene does not have them; `None`: a scene must have them.
     pub default: Option<&'static [f64]>,
-    /// The field that makes it optional: where a scene gives that one, this one is 0.
+    /// The field that makes it optional: if a scene has that one, this one is 0.
     pub unless: Option<&'static str>,
-    /// Where each of its numbers has to be.
+    /// The range of each of its numbers.
     pub range: Range,
-    /// What else has to hold.
+    /// A further condition.
     pub rule: Option<Rule>,
-    /// What zeros in it make of the effect.
+    /// Whether the effect vanishes if this field is zero.
     pub zeros: Zeros,
     /// Whether it is a vector of any length, of which only the direction counts.
     pub is_direction: bool,
-    /// What it means.
+    /// Its meaning.
     pub what: &'static str,
 }
 
-/// What becomes of an effect where all numbers of a field are 0.
+/// Role of a field in an effect when all its numbers are 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Zeros {
-    /// It is there all the same.
+    /// The effect does not vanish.
     Count,
-    /// It is nothing: all that it does is multiplied by this.
+    /// The effect vanishes: all of it is multiplied by this.
     Nothing,
-    /// It is nothing if all such fields are 0: what it does is a sum of parts, each multiplied by
-    /// one of them.
+    /// The effect vanishes if all such fields are 0: it is a sum of parts, each multiplied by one
+    /// of them.
     NothingTogether,
 }
 
 impl Field {
-    /// Any number, to be given.
+    /// Any number; required.
     const fn number(name: &'static str, unit: &'static str, what: &'static str) -> Self {
         Self {
             name,
@@ -149,7 +149,7 @@ impl Field {
         Self { range: Range { at_most, ..self.range }, ..self }
     }
 
-    /// What has to hold of all numbers of the effect, and how to say that of this field.
+    /// A rule on all numbers of the effect, and its text for this field.
     const fn rule(self, holds: fn(&[f64]) -> bool, expected: &'static str) -> Self {
         Self { rule: Some(Rule { holds, expected }), ..self }
     }
@@ -166,7 +166,7 @@ impl Field {
         Self { default: Some(default), ..self }
     }
 
-    /// To be given unless another field is.
+    /// Required unless another field is given.
     const fn unless(self, other: &'static str) -> Self {
         Self { unless: Some(other), ..self }
     }
@@ -187,11 +187,11 @@ pub struct Effect {
     pub id: EffectId,
     /// Its name in scenes.
     pub name: &'static str,
-    /// What it acts on.
+    /// Its target.
     pub on: On,
     /// How it does.
     pub enters: Enters,
-    /// Whether no energy is lost or won.
+    /// Whether no energy is lost or gained.
     pub conservative: bool,
     /// The law.
     pub what: &'static str,
@@ -199,8 +199,8 @@ pub struct Effect {
     pub source: &'static str,
     /// Its parameters, in order.
     pub fields: &'static [Field],
-    /// Those on a ball joint, in order, if the law on it is another one; each has the name of one
-    /// of `fields`.
+    /// The fields on a ball joint, in order, if its law is another one; each has the name of one of
+    /// `fields`.
     pub ball_fields: Option<&'static [Field]>,
 }
 
@@ -226,14 +226,14 @@ impl Effect {
         self.ball_fields.is_some() && joint.is_rotation_about_point()
     }
 
-    /// The fields of parameters that are so many numbers: a ball joint has another number of them
-    /// than other joints. Those of other joints, where there are no such fields.
+    /// The fields of `count` parameters: a ball joint has another number of them than other joints.
+    /// Without such fields, those of other joints.
     pub fn fields_of(&self, count: usize) -> &'static [Field] {
         self.ball_fields.filter(|fields| sum(fields) == count).unwrap_or(self.fields)
     }
 
-    /// The first field whose rule these numbers do not keep, with its part of them; `None` too
-    /// where they are not as many as the effect has.
+    /// The first field whose rule these numbers break, with its part of them; `None` also if their
+    /// number is wrong.
     pub fn broken<'a>(&self, parameters: &'a [f64]) -> Option<(&'static Field, &'a [f64])> {
         let fields = self.fields_of(parameters.len());
         if parameters.len() != sum(fields) {
@@ -265,14 +265,14 @@ impl Effect {
         !parts.is_empty() && parts.into_iter().all(|zero| zero)
     }
 
-    /// Whether a joint of this kind has what the law is about: a coordinate for each degree of
+    /// Whether a joint of this kind has the quantity of the law: a coordinate for each degree of
     /// freedom, or a rotation about a point.
     pub fn acts_on(&self, joint: Joint) -> bool {
         self.enters != Enters::ForceOfCoordinate || joint.quaternion().is_none() || self.is_of_rotation(joint)
     }
 }
 
-/// An effect as a scene asks for it.
+/// An effect as requested by a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Applied {
     /// Which.
@@ -286,7 +286,7 @@ pub struct Applied {
 }
 
 /// A law on a degree of freedom: the force at the coordinate q, rad|m, and the rate v. One of the
-/// rate alone is a function, and stores nothing.
+/// rate alone is a function, and stores no energy.
 trait Force {
     fn force<S: Scalar>(p: &[S], q: S, v: S) -> S;
 
@@ -466,7 +466,7 @@ pub fn wrench(effect: EffectId, parameters: &[f64], at: &Station<f64>) -> Option
     }
 }
 
-/// All effects, in the order in which they are listed to people.
+/// All effects, in the order of printed lists.
 pub fn effects() -> &'static [Effect] {
     ROWS
 }
@@ -478,7 +478,7 @@ pub(crate) const fn most_parameters() -> usize {
         let len = sum(ROWS[i].fields);
         most = if len > most { len } else { most };
         if let Some(fields) = ROWS[i].ball_fields {
-            // Fields are known by the number of parameters.
+            // Fields are identified by the number of parameters.
             assert!(sum(fields) != len);
             most = if sum(fields) > most { sum(fields) } else { most };
         }
@@ -518,7 +518,7 @@ impl EffectId {
     }
 }
 
-/// What acts on a body and on its joint.
+/// The effects on a body and on its joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Effects<S> {
     /// On the joint.
@@ -553,7 +553,7 @@ pub struct BodyEffect<S> {
 }
 
 impl<S: Scalar> Effects<S> {
-    /// None.
+    /// No effects.
     pub fn none() -> Self {
         Self { joint: Vec::new(), body: Vec::new() }
     }
@@ -569,7 +569,7 @@ impl<S: Scalar> Effects<S> {
         Effects { joint: self.joint.iter().map(joint).collect(), body: self.body.iter().map(body).collect() }
     }
 
-    /// Which effects there are and where they act, numbers apart.
+    /// The effects and the places where they act, without their numbers.
     pub fn kinds(&self) -> Vec<(EffectId, usize)> {
         let joint = self.joint.iter().map(|e| (e.effect, e.freedom));
         joint.chain(self.body.iter().map(|e| (e.effect, 0))).collect()
@@ -582,7 +582,7 @@ fn smooth_sign<S: Scalar>(v: S, s: S) -> S {
     v / (v * v + s * s).sqrt()
 }
 
-/// max(0, x), and 0 of what is no number, which is not known to be above.
+/// max(0, x), and 0 for NaN, which is not known to be above.
 #[inline(always)]
 fn ramp<S: Scalar>(x: S) -> S {
     S::select(x.positive(), x, S::zero())

@@ -11,13 +11,13 @@ pub(super) const FIELDS: &[Field] = &[
     Field::number("smooth", "rad/s|m/s", "rate of the joint below which the loss is smooth").smooth().or(&[1e-3]),
 ];
 
-/// The torque at the joint, where `tau` is asked for at the rate `v`: within ±T(1 ∓ v/v₀) and ±T,
+/// The torque at the joint for the requested `tau` at the rate `v`: within ±T(1 ∓ v/v₀) and ±T,
 /// with T = torque·gear and v₀ = speed/gear, less the loss (1 − η) |τ| v/√(v² + s²).
 #[inline(always)]
 pub(super) fn torque<S: Scalar>(p: &[S], tau: S, v: S) -> S {
     let (most, part) = (p[0] * p[2], v * p[2] / p[1]);
     let one = S::one();
-    // Braking does not give more than standing still.
+    // The braking torque does not exceed the torque at standstill.
     let upper = most * clamp(one - part, S::zero(), one);
     let lower = -(most * clamp(one + part, S::zero(), one));
     let given = clamp(tau, lower, upper);

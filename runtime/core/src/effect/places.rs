@@ -1,4 +1,4 @@
-//! Where a model has what effects are to be on.
+//! The places in a model where effects act.
 
 use alloc::collections::BTreeMap;
 use alloc::string::String;

@@ -5,7 +5,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt;
 
-/// Where a number has to be; whatever the bounds, it has to be finite.
+/// The range of a number; whatever the bounds, it must be finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// It may not be less.
@@ -34,7 +34,7 @@ impl Range {
         x.is_finite() && x <= self.at_most && (x > self.at_least || (x == self.at_least && !self.strictly))
     }
 
-    /// `above 0, at most 1`; nothing where there are no bounds.
+    /// `above 0, at most 1`; empty without bounds.
     pub fn bounds(&self) -> String {
         let least = match self.strictly {
             true => format!("above {}", number(self.at_least)),
@@ -58,17 +58,17 @@ impl fmt::Display for Range {
     }
 }
 
-/// As short as it goes.
+/// The shortest text of a number.
 fn number(x: f64) -> String {
     if x != 0.0 && x.abs() < 1e-3 { format!("{x:e}") } else { format!("{x}") }
 }
 
-/// What has to hold of several numbers.
+/// A rule on several numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Rule {
     /// Of all numbers of the effect.
     pub holds: fn(&[f64]) -> bool,
-    /// What it asks for, of the field that it stands at.
+    /// The rule in words, for the field that has it.
     pub expected: &'static str,
 }
 

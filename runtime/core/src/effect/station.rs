@@ -6,7 +6,7 @@ use crate::Scalar;
 use crate::dual::Dual;
 use crate::spatial::{Placement, Twist, rotate};
 
-/// What the law of an effect on a frame may ask.
+/// Inputs of the law of an effect on a frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Station<S> {
     /// The frame in the world frame.

@@ -1,15 +1,15 @@
 //! Directions that are given by vectors of any length, and quaternions of any norm.
 
-/// The vector made of length one; none for a vector of zeros, or with a number that is not finite.
+/// The normalised vector; none for a vector of zeros, or with a number that is not finite.
 ///
-/// First by the largest of its numbers: squares, and the length itself, may be more or less than a
-/// number can say.
+/// It is first divided by its largest number: squares, and the length itself, may be beyond the
+/// range of numbers.
 pub fn unit(mut vector: [f64; 3]) -> Option<[f64; 3]> {
     normalise(&mut vector).then_some(vector)
 }
 
-/// As [`unit`], in place and of as many numbers as there are; false where it has no direction, and
-/// is left as it is.
+/// As [`unit`], in place and for any count of numbers; false if it has no direction, and is then
+/// unchanged.
 pub(super) fn normalise(vector: &mut [f64]) -> bool {
     let largest = vector.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     if largest == 0.0 || !vector.iter().all(|x| x.is_finite()) {

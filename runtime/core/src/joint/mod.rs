@@ -223,7 +223,7 @@ impl<S: Scalar> Angle<S> {
         Self { sin: S::zero(), cos: S::one() }
     }
 
-    /// Whether it is none.
+    /// Whether it is zero.
     pub fn is_zero(&self) -> bool {
         *self == Self::zero()
     }
@@ -275,8 +275,8 @@ impl<S: Scalar> Coordinates<S> {
         self.mimic.as_ref().map(|f| f.multiplier)
     }
 
-    /// What the joint's own torque, N·m or N, is for the coordinate it moves with: power is the
-    /// same, so τ_leader = multiplier · τ.
+    /// The joint's own torque, N·m or N, in terms of the coordinate that it moves with: power is
+    /// the same, so τ_leader = multiplier · τ.
     #[inline(always)]
     pub fn to_leader(&self, torque: S) -> S {
         self.rate_of_one().map_or(torque, |multiplier| torque * multiplier)
@@ -290,15 +290,15 @@ impl<S: Scalar> Coordinates<S> {
     }
 }
 
-/// What an algorithm asks of a joint, at one pose. "Joint frame" is the frame fixed in the parent,
-/// "child" the one that moves.
+/// The interface of a joint for algorithms, at one pose. "Joint frame" is the frame fixed in the
+/// parent, "child" the one that moves.
 pub trait JointLaw<S: Scalar>: Copy {
     /// Number of coordinates.
     const NQ: usize;
     /// Number of degrees of freedom.
     const NV: usize;
-    /// Which of the coordinates is the first of a unit quaternion (x, y, z, w), if there is one;
-    /// otherwise each degree of freedom has a coordinate.
+    /// Index of the first coordinate of a unit quaternion (x, y, z, w), if there is one; otherwise
+    /// each degree of freedom has a coordinate.
     const QUATERNION: Option<usize>;
     /// The directions in which the child rotates.
     const ROTATION: Freedom;
@@ -337,8 +337,8 @@ pub trait JointLaw<S: Scalar>: Copy {
     /// point.
     fn articulated_to_joint(&self, inertia: &ArticulatedInertia<S>) -> ArticulatedInertia<S>;
 
-    /// Which of the six numbers of a twist [ω; v] of the child about its origin the joint's degree
-    /// of freedom k is; `None` if it is no single one.
+    /// Index of the joint's degree of freedom k in the twist [ω; v] of the child about its origin;
+    /// `None` if it is not a single number of it.
     fn freedom(k: usize) -> Option<usize>;
 
     /// I·S_k: the wrench, in the child's frame, that gives a body of this inertia at rest the unit

@@ -14,7 +14,7 @@ pub(crate) struct Mount<'a, S, P> {
     pose: P,
     /// The joint's frame in the parent.
     frame: &'a Placement<S>,
-    /// From axes of the child to axes of the parent; of no use where zeros cost nothing.
+    /// From axes of the child to axes of the parent; not used where zeros cost nothing.
     turn: Matrix3<S>,
     /// The child's origin in the parent, m.
     pub(crate) origin: Vector3<S>,

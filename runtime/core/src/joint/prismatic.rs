@@ -13,12 +13,12 @@ pub struct Prismatic<S> {
 }
 
 impl<S: Scalar> Prismatic<S> {
-    /// Slid by so many metres.
+    /// A slide by `shift` metres.
     pub(super) fn by(shift: S) -> Self {
         Self { shift }
     }
 
-    /// What a slide at `rate` and its derivative add to the motion of the point that carries it.
+    /// The motion of the carrying point, with a slide at `rate` and its derivative added.
     #[inline(always)]
     pub(super) fn slide(carried: Motion<S>, rate: S, derivative: S) -> Motion<S> {
         let (mut acceleration, twice) = (carried.acceleration, rate + rate);

@@ -1,5 +1,5 @@
-//! Arithmetic and sines of several numbers at once: the source of it, for generated code, one
-//! module an instruction set, element and width.
+//! Source text for arithmetic and sines of several numbers at once, for generated code, one module
+//! per instruction set, element and width.
 //!
 //! A module needs nothing but `std`. It has, all `pub(super)` and all for the processors of its set
 //! (see [`Set::features`]):
@@ -22,10 +22,9 @@
 //! `every_third(&[f64; 12]) -> [V; 3]` reads them. `reduce_add_of_four(a, b, c, d)` has the sums of the
 //! lanes of each in its lanes, `reduce_add_of_two(a, b)` those of two, twice.
 //!
-//! What [`tiles`] adds turns states that stand one after the other, `[[Real; N]; LANES]`, into
-//! vectors with one state per lane: `TILE` numbers of each at a time,
-//! `columns(&states, at) -> [V; TILE]` and `rows([V; TILE], &mut states, at)`, with `at` + `TILE` ≤
-//! N, or 0 where N is less.
+//! [`tiles`] adds functions that turn consecutive states, `[[Real; N]; LANES]`, into vectors with
+//! one state per lane: `TILE` numbers of each at a time, `columns(&states, at) -> [V; TILE]` and
+//! `rows([V; TILE], &mut states, at)`, with `at` + `TILE` ≤ N, or 0 where N is less.
 //!
 //! These are free functions of raw registers since methods and operators that are inlined into
 //! functions of other features take the compiler eight times as long.
@@ -36,9 +35,9 @@
 //!
 //! [`COLUMNS`] is built on these with four f64.
 //!
-//! The texts: `registers` and `portable`, what a vector is and its arithmetic; `common`, what
-//! follows from that; `sines`; `results`, four lanes at places of their own; `tiles`; `loops`, the
-//! solution for many right-hand sides.
+//! The texts: `registers` and `portable`, the vector types and their arithmetic; `common`,
+//! functions built on these; `sines`; `results`, four lanes at places of their own; `tiles`;
+//! `loops`, the solution for many right-hand sides.
 
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -51,13 +50,13 @@ mod tests;
 pub enum Set {
     /// Arrays, and no `unsafe`. Fused multiply-add if that is compiled for.
     Portable,
-    /// What every x86-64 has; no fused multiply-add.
+    /// The set of every x86-64; no fused multiply-add.
     Sse2,
     /// AVX2 and FMA.
     Avx2,
     /// AVX-512F and DQ, AVX2 and FMA.
     Avx512,
-    /// What every 64-bit Arm has.
+    /// The set of every 64-bit Arm.
     Neon,
 }
 
@@ -71,13 +70,13 @@ pub enum Real {
 }
 
 impl Set {
-    /// What stands in `#[target_feature(enable = "…")]` of the functions; empty for
-    /// [`Set::Portable`], whose functions do without.
+    /// The value of `#[target_feature(enable = "…")]` of the functions; empty for
+    /// [`Set::Portable`], whose functions have none.
     pub fn features(self) -> &'static str {
         match self {
             Self::Portable => "",
-            // The second says nothing, every x86-64 has it, but sets these functions apart from
-            // arithmetic in registers.
+            // The second is in every x86-64, and only distinguishes these functions from arithmetic
+            // in registers.
             Self::Sse2 => "sse2,fxsr",
             Self::Avx2 => "avx2,fma",
             Self::Avx512 => "avx512f,avx512dq,avx2,fma",
@@ -119,14 +118,14 @@ pub fn source(set: Set, real: Real, lanes: usize) -> Option<String> {
     Some(format!("{TRAITS}{}", module.3).replace(HALF, &format!("{HALF}{TRAITS}")))
 }
 
-/// What the texts need of the prelude, for crates without it.
+/// Parts of the prelude that the texts need, for crates without it.
 const TRAITS: &str = "#[allow(unused_imports)]\nuse ::core::{convert::From, iter::Iterator};\n\n";
 
 /// Where a module in a module begins.
 const HALF: &str = "\nmod half {\n";
 
-/// What to add to such a module for states one after the other; `None` if the set has no such
-/// width, or that is not what batches use.
+/// The addition to such a module for consecutive states; `None` if the set has no such width, or
+/// batches do not use it.
 pub fn tiles(set: Set, real: Real, lanes: usize) -> Option<String> {
     let module = MODULES.iter().find(|module| (module.0, module.1, module.2) == (set, real, lanes))?;
     (!module.4.is_empty()).then(|| module.4.to_string())
@@ -135,8 +134,8 @@ pub fn tiles(set: Set, real: Real, lanes: usize) -> Option<String> {
 /// M X = B for all columns of three `[NV][NV]` matrices B, the third the unit matrix, by M = Lᵀ D
 /// L: Featherstone 2008, §6.5.
 ///
-/// The text of a module that stands beside `portable_f64x4`, `avx2_f64x4`, `avx512_f64x8` and
-/// `neon_f64x4`. Before it stand
+/// The text of a module beside `portable_f64x4`, `avx2_f64x4`, `avx512_f64x8` and `neon_f64x4`.
+/// Before it must come
 /// * `NV`, and `TOGETHER`, how many matrices are solved for at once (3 or 1) in vectors of four
 ///   columns and in vectors of eight;
 /// * `BEFORE` and `BEYOND`: `[&[(u16, u16)]; NV]`, for each row of L (each column) the column (the

@@ -56,16 +56,16 @@ pub enum ModelError {
     /// Masses and lengths, or multipliers of joints that follow each other, whose products are
     /// beyond the range of doubles.
     TooLarge {
-        /// Names of the joints behind which they are, and of the links that are too far away.
+        /// Names of the joints after which they are, and of the links that are too far away.
         names: Vec<String>,
     },
     /// Parts that do not fit together ([`Model::from_parts`]).
     Structure {
         /// The body, joint or frame.
         part: String,
-        /// What it has.
+        /// Its content.
         found: String,
-        /// What it should have.
+        /// Its expected content.
         expected: &'static str,
     },
 }
@@ -160,14 +160,15 @@ struct Builder<'a> {
     seats: ById<LinkId, Option<Seat>>,
     /// The body of each moving joint.
     body_of: ById<JointId, Option<BodyId>>,
-    /// For each joint that follows another, what it moves by.
+    /// For each joint that follows another, its final leader.
     leads: Leads,
-    /// The bodies of joints that follow several: the joint, and what each body moves by.
+    /// The bodies of joints that follow several: the joint, and the final leader of each body.
     followers: Vec<(BodyId, JointId, Mimic)>,
     model: Model<f64>,
 }
 
-/// What has overflowed: joints by what they move, links by where they are.
+/// The overflowed parts: joints by the masses and multipliers that they move with, links by their
+/// places.
 fn too_large(model: &Model<f64>) -> Vec<String> {
     let is_finite = |x: &Placement<f64>| x.position.iter().all(|x| x.is_finite());
     let follows = |body: &Body<f64>| body.coordinates.mimic.is_none_or(|f| f.multiplier.is_finite() && f.offset.is_finite());
@@ -221,7 +222,7 @@ impl<'a> Builder<'a> {
         self.seat(root, body, Placement::identity());
     }
 
-    /// Depth-first, with a stack of its own: a chain may be as long as it likes.
+    /// Depth-first, with a stack of its own: a chain may be of any length.
     fn add_tree(&mut self, root: LinkId) -> Result<(), ModelError> {
         let mut stack: Vec<JointId> = self.children[root].iter().rev().copied().collect();
         while let Some(index) = stack.pop() {
@@ -278,7 +279,7 @@ impl<'a> Builder<'a> {
         let terms: Option<Vec<Mimic>> = core::iter::once(self.leads[index]).chain(others(joints, &self.leads, joint)).collect();
         let terms = terms.ok_or_else(|| ModelError::BadMimic { joint: joint.name.clone() })?;
         let (mut parent, mut x) = seat;
-        // What locked leaders add to the coordinate.
+        // The contribution of locked leaders to the coordinate.
         let mut still = 0.0;
         for lead in &terms {
             let leader = &joints[lead.joint];
@@ -342,8 +343,8 @@ impl<'a> Builder<'a> {
         self.model.bodies.push(Body { name, parent, placement, joint, coordinates, inertia, link: None, effects: Effects::none() })
     }
 
-    /// Seats a link in a body and adds its mass to it. The first link of a moving body is the one
-    /// that gives the body its axes and origin in results for each link.
+    /// Seats a link in a body and adds its mass to it. The first link of a moving body defines the
+    /// axes and origin of the body in results for each link.
     fn seat(&mut self, link: LinkId, body: BodyId, placement: Placement<f64>) {
         self.seats[link] = Some((body, placement));
         let (of_file, to) = (&self.description.links[link], &mut self.model.bodies[body]);
@@ -394,15 +395,15 @@ impl<'a> Builder<'a> {
         of_links.chain(others).collect()
     }
 
-    /// Takes the rounding of the products that they are out of the rotations.
+    /// Removes the rounding of the products from the rotations that they gave.
     fn sharpen(&mut self) {
         let Model { bodies, frames, .. } = &mut self.model;
         let placements = bodies.iter_mut().map(|b| &mut b.placement).chain(frames.iter_mut().map(|f| &mut f.placement));
         placements.for_each(|x| x.rotation = nearest_rotation(&x.rotation));
     }
 
-    /// The coordinate that a follower moves by. The joint that it follows has to move, and so, as
-    /// each follower is asked, do all down to the last.
+    /// The coordinate that moves a follower. Its leader must move; since each follower is checked,
+    /// so must all leaders down to the last.
     fn follow(&self, follower: JointId, mimic: &Mimic, lead: Mimic) -> Option<Coordinates<f64>> {
         let joints = &self.description.joints;
         self.body_of[mimic.joint]?;
@@ -463,7 +464,7 @@ fn per_radian(joint: &description::Joint) -> f64 {
     if joint.kind.has_pitch() { joint.pitch / core::f64::consts::TAU } else { 0.0 }
 }
 
-/// The largest angle of a ball joint. A bound of 0 is that of a `<limit>` that says nothing of it.
+/// The largest angle of a ball joint. A bound of 0 comes from a `<limit>` without one.
 fn cone(joint: &description::Joint) -> Option<f64> {
     let upper = joint.limit.filter(|_| joint.kind == JointKind::Spherical)?.upper;
     Some(upper).filter(|upper| *upper > 0.0 && *upper < core::f64::consts::PI)

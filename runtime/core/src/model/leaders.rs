@@ -1,18 +1,18 @@
-//! What joints that follow others move by in the end.
+//! The final leaders of joints that follow others.
 
 use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::description::{ById, Joint, JointId, Mimic};
 
-/// What each joint moves by.
+/// The final leader of each joint.
 pub(super) type Leads = ById<JointId, Option<Mimic>>;
 
-/// So many leaders are walked through one by one, in whose order multipliers are multiplied; what
-/// is behind them is taken as it was found.
+/// Number of leaders that are visited one by one, with multipliers multiplied in their order;
+/// beyond them, the known result is used.
 const WALKED: usize = 16;
 
-/// For each joint that follows another, what it moves by: the joint at the end of its chain, which
+/// For each joint that follows another, its final leader: the joint at the end of its chain, which
 /// follows none or is locked. `None` where a chain has no end, and for joints that follow none.
 /// Work grows as the number of joints does, however long the chains are.
 pub(super) fn leads(joints: &ById<JointId, Joint>) -> Leads {
@@ -32,13 +32,13 @@ pub(super) fn leads(joints: &ById<JointId, Joint>) -> Leads {
     leads
 }
 
-/// What each further term of a joint that follows several moves by: `None` as in [`leads`].
+/// The final leader of each further term of a joint that follows several: `None` as in [`leads`].
 pub(super) fn others(joints: &ById<JointId, Joint>, leads: &Leads, joint: &Joint) -> Vec<Option<Mimic>> {
     joint.also.iter().map(|term| lead(joints, leads, *term)).collect()
 }
 
-/// What is moved by at the end of the chain that begins with `first`; of its joints beyond the
-/// first few, `known` says it already.
+/// The final leader of the chain that begins with `first`; beyond its first few joints, `known` has
+/// it already.
 fn lead(joints: &ById<JointId, Joint>, known: &Leads, first: Mimic) -> Option<Mimic> {
     let (mut lead, mut walked) = (first, 0);
     while let Some(own) = followed(joints.get(lead.joint)?) {
@@ -55,7 +55,7 @@ fn lead(joints: &ById<JointId, Joint>, known: &Leads, first: Mimic) -> Option<Mi
     Some(lead)
 }
 
-/// How a joint follows another; a locked one stands by itself.
+/// How a joint follows another; a locked one follows none.
 fn followed(joint: &Joint) -> Option<Mimic> {
     joint.mimic.filter(|_| joint.locked.is_none())
 }

@@ -12,8 +12,8 @@ use crate::index::{BodyId, ById};
 use crate::monitor::pivot_cancellation;
 use crate::spatial::SpatialInertia;
 
-/// So often joints are looked at anew with those found before held: a robot has few of them, and
-/// what none is gets an end.
+/// Largest number of passes over the joints, with those found before held: a robot has few of them,
+/// and the search must end.
 const LOOKS: usize = 64;
 
 impl Model<f64> {
@@ -47,10 +47,9 @@ impl Model<f64> {
         at.v..at.v + joint.nv()
     }
 
-    /// For each degree of freedom, whether nothing is left of its pivot at two configurations that
-    /// have nothing special: what is singular there is singular everywhere. `idle` move nothing.
-    /// Whatever is lost gets a rotor before the next look, so that no 0/0 of its reaches the joints
-    /// that carry it.
+    /// For each degree of freedom, whether its pivot is lost at two generic configurations: a robot
+    /// that is singular there is singular everywhere. `idle` move nothing. Each lost one gets a
+    /// rotor before the next pass, so that its 0/0 does not reach the joints that carry it.
     fn repeated(&self, idle: Vec<bool>) -> Vec<bool> {
         let (mut model, mut ws) = (self.clone(), Workspace::new(self));
         let (mut lost, mut fresh) = (idle.clone(), idle);
@@ -75,14 +74,13 @@ impl Model<f64> {
         }
     }
 
-    /// The degrees of freedom of whose pivots nothing is left, of each branch the farthest out:
-    /// what is left of others says little then.
+    /// The degrees of freedom with a lost pivot, of each branch the farthest out: the pivots of
+    /// others then mean little.
     fn without_pivot(&self, ws: &mut Workspace<f64>) -> Vec<bool> {
         let mut left = vec![1.0; self.nv];
         let mut gone = |seed: f64| {
             pivot_cancellation(self, ws, &self.configuration(seed), &mut left);
-            // A pivot below zero, of an inertia that no body has and somebody accepted, is not
-            // nothing.
+            // A pivot below zero, of an impossible inertia that was accepted, is not a lost one.
             left.iter().map(|x| x.is_nan() || crate::Scalar::abs(*x) < least_pivot()).collect::<Vec<bool>>()
         };
         let (first, second) = (gone(0.137), gone(0.731));
@@ -116,18 +114,18 @@ impl Model<f64> {
     /// For each moving body, whether its own mass or a rotor is sure to be felt by all of its
     /// joint, and whether its joint alone moves mass.
     fn moves_mass(&self) -> Vec<(BodyId, bool, bool)> {
-        // Whether anything beyond a body's joint has mass: first of what hangs on the body, then
-        // with the body itself.
+        // Whether anything beyond a body's joint has mass: first among its children, then with the
+        // body itself.
         let mut beyond: ById<BodyId, bool> = vec![false; self.bodies.len()].into();
         let mut moves = Vec::with_capacity(self.bodies.len());
         for i in self.inward() {
             let (body, outside) = (&self.bodies[i], beyond[i]);
             let own = &body.inertia;
             let felt = body.joint.has_inertia(own) || turns_rotors(body);
-            // Added mass need not be felt along every axis: numbers tell.
+            // Added mass need not be felt along every axis: the pivots decide.
             let added = has_added_mass(body);
             // Of several degrees of freedom some may be felt and others not: a point mass turns
-            // freely. What follows another may undo what that does.
+            // freely. A follower may cancel the effect of its leader.
             let sure = felt && body.joint.nv() == 1 && body.coordinates.mimic.is_none();
             moves.push((i, sure, felt || added || outside));
             beyond[body.parent] |= outside || added || *own != SpatialInertia::zero();

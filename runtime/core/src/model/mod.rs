@@ -67,7 +67,7 @@ pub struct Body<S> {
     /// The link of the file that the body is. `None` for the base, and for a body without mass
     /// between two joints in sequence or inside a planar or universal joint.
     pub link: Option<BodyLink<S>>,
-    /// What acts on it and on its joint besides.
+    /// The effects on it and on its joint.
     pub effects: Effects<S>,
 }
 
@@ -94,7 +94,7 @@ pub struct Frame<S> {
     pub placement: Placement<S>,
 }
 
-/// What a coordinate's joint is called and may do.
+/// Name, kind and limits of a joint with coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointInfo {
     /// Name of the joint; [`FLOATING_BASE`] for that of a floating base.
@@ -108,7 +108,7 @@ pub struct JointInfo {
     /// Limits, where the file gives them; none for a continuous joint.
     pub limit: Option<Limit>,
     /// The largest angle of a ball joint's rotation from the identity, rad, above 0 and below π.
-    /// `None`: it has no such bound, or the joint is none.
+    /// `None`: it has no such bound, or is not a ball joint.
     pub cone: Option<f64>,
 }
 
@@ -153,7 +153,7 @@ impl<S: Scalar> Model<S> {
         self.gravity
     }
 
-    /// What the wrenches that functions take refer to.
+    /// The reference of the wrench arguments of functions.
     #[inline(always)]
     pub fn wrench_reference(&self) -> Reference {
         self.wrench_reference
@@ -247,8 +247,8 @@ impl<S: Scalar> Model<S> {
         })
     }
 
-    /// The configuration of zeros, with quaternions that turn nothing, `[nq]` rad|m|quaternion:
-    /// what a generated module has as `NEUTRAL`.
+    /// The configuration of zeros, with identity quaternions, `[nq]` rad|m|quaternion: `NEUTRAL` of
+    /// a generated module.
     pub fn neutral(&self) -> Vec<S> {
         let mut q = vec![S::zero(); self.nq];
         crate::algorithm::neutral(self, &mut q);
@@ -260,7 +260,7 @@ impl<S: Scalar> Model<S> {
         self.outward().fold(S::zero(), |sum, i| sum + self.bodies[i].inertia.mass)
     }
 
-    /// Mass that each body's joint carries, kg, the body's own among it: `[bodies]`. Of the model
+    /// Mass that each body's joint carries, kg, including the body's own: `[bodies]`. Of the model
     /// as it was read.
     pub fn carried(&self) -> ById<BodyId, S> {
         let mut carried: ById<BodyId, S> = self.bodies.iter().map(|body| body.inertia.mass).collect();

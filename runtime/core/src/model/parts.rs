@@ -12,7 +12,7 @@ use crate::effect::Field;
 use crate::index::{BodyId, ById, FrameId};
 use crate::spatial::Reference;
 
-/// What a model consists of. [`Model::into_parts`] gives it, [`Model::from_parts`] takes it.
+/// The parts of a model. [`Model::into_parts`] returns them, [`Model::from_parts`] takes them.
 #[derive(Clone, Debug)]
 pub struct ModelParts<S = f64> {
     /// As [`Model::name`].

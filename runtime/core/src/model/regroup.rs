@@ -1,4 +1,4 @@
-//! Regrouping of inertial parameters: what a joint cannot distinguish from its parent's.
+//! Regrouping of inertial parameters that a joint cannot distinguish from its parent's.
 
 use crate::Scalar;
 use crate::index::BodyId;
@@ -9,7 +9,7 @@ use crate::spatial::SpatialInertia;
 /// to the parent, from the tips inward.
 ///
 /// Mass on the axis of a revolute joint moves with the parent whatever the angle: m, h_z and Σ_zz
-/// go there, and what is left has Σ_zz = 0 and no mass. A prismatic joint does not turn its body: Σ
+/// go there, and the rest has Σ_zz = 0 and no mass. A prismatic joint does not turn its body: Σ
 /// goes to the parent. A spherical joint's centre moves with the parent: m goes there. Exact for
 /// all joint torques and for the mass matrix (Khalil & Dombre, *Modeling, Identification and
 /// Control of Robots*, 2002, §9.4); placements do not change.

@@ -29,7 +29,7 @@ pub fn quaternion_norms<'a, S: Scalar>(model: &'a Model<S>, q: &'a [S]) -> impl 
     all.filter_map(move |at| Some((at, q.get(at..at + 4)?.iter().fold(-S::one(), |sum, x| sum + *x * *x))))
 }
 
-/// A condition number of Ad that may be worth a look at the units: of frames a kilometre apart in
+/// Condition number of Ad from which the units deserve a check: that of frames a kilometre apart in
 /// metres.
 pub const ADJOINT_LIMIT: f64 = 1e6;
 
@@ -38,8 +38,8 @@ pub const ADJOINT_LIMIT: f64 = 1e6;
 ///
 /// It depends on the units of length alone: two frames 1 m apart have 2.6, and a million where the
 /// metre is the unit and 1000 lie between, or the same metre is written in millimetres. No digits
-/// are lost with it, since moments and forces are never added up. [`ADJOINT_LIMIT`] is where
-/// `stress` remarks upon it.
+/// are lost with it, since moments and forces are never added up. `stress` reports it from
+/// [`ADJOINT_LIMIT`] on.
 pub fn adjoint_condition<S: Scalar>(distance: S) -> S {
     // σ_max/σ_min of [1 0; [p]× 1]: σ² + 1/σ² = d² + 2
     let d = distance.abs();

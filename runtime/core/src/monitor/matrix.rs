@@ -5,8 +5,8 @@ use crate::algorithm::checked::{Factor, articulated_body_pivots};
 use crate::algorithm::{Workspace, articulated_body, mass_matrix};
 use crate::model::Model;
 
-/// What elimination leaves of each joint's inertia, D/(Σ|terms|) in (0, 1], where others give way;
-/// a few units of roundoff where M is singular.
+/// Remaining part of each joint's inertia after elimination, D/(Σ|terms|) in (0, 1], with the other
+/// joints free; a few units of roundoff where M is singular.
 ///
 /// q: `[nq]`; out: `[nv]`. By ABA at rest, or LᵀDL of M where joints follow others. Allocates.
 ///

@@ -1,14 +1,14 @@
 //! Monitors of an evaluation, for teaching and debugging. No function of the table calls them, so
 //! they cost nothing unless used.
 //!
-//! | what | says | does not say |
+//! | function | reports | does not report |
 //! |---|---|---|
 //! | [`orthonormality`], [`placement_orthonormality`] | how far RᵀR is from 1: grows as the number of turns that were composed | that a placement is right |
 //! | [`quaternion_norms`] | how far the quaternions of q are from norm one, which functions take for granted | |
-//! | [`wrench_growth`] | how much larger the wrench of a joint is than that of any one body beyond: what an error of a torque is measured against | |
+//! | [`wrench_growth`] | how much larger the wrench of a joint is than that of any one body beyond: the reference for errors of a torque | |
 //! | [`adjoint_condition`] | the condition number of Ad, which depends on the units of length alone | anything about a configuration |
 //! | [`scaled_condition`] | how far accelerations move for a small change of the robot | how large their own error is |
-//! | [`pivot_cancellation`] | what elimination left of each joint's inertia: what flags a configuration | |
+//! | [`pivot_cancellation`] | the remaining part of each joint's inertia after elimination: it flags a configuration | |
 
 mod chain;
 mod matrix;

@@ -12,9 +12,9 @@ use crate::spatial::Vector3;
 /// How wrenches grow on their way inward: for each moving body the moment and the force that its
 /// joint passes to it, over the largest that any one body from there on needs for itself.
 ///
-/// q: `[nq]`; v, a: `[nv]`; gives `[moving bodies]` of (moment's, force's); zero where nothing is
-/// needed. N alike bodies in a straight row at rest give N of forces and N² of moments: rounding
-/// errors of a torque are measured against the largest wrench that was handed on, and not against
+/// q: `[nq]`; v, a: `[nv]`; returns `[moving bodies]` of (moment's, force's); zero where no wrench
+/// is needed. N equal bodies in a straight row at rest give N for forces and N² for moments:
+/// rounding errors of a torque are relative to the largest wrench that was passed on, and not to
 /// the torque. Allocates.
 ///
 /// # Panics

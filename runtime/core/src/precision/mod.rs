@@ -269,7 +269,7 @@ pub fn with_sines(lanes: &str, level: Precision) -> String {
         return text;
     }
     let (fused, split) = (include_str!("../lanes/text/sines/f64_fused.rs"), include_str!("../lanes/text/sines/f64_split.rs"));
-    // One of them is replaced, the other goes.
+    // One of them is replaced, the other is removed.
     let one = text.contains(fused) && text.contains(split);
     text.replace(fused, fast).replace(split, if one { "" } else { fast })
 }

@@ -1,4 +1,4 @@
-//! The texts, compiled as they stand in generated code.
+//! The texts, compiled as in generated code.
 
 use super::*;
 
@@ -128,7 +128,7 @@ fn angles_of_two_doubles_undo_sines() {
     }
 }
 
-/// What the pair without normalisation loses is of second order: it is that of the other.
+/// The loss of the pair without normalisation is of second order: it agrees with the other.
 #[test]
 fn pairs_carry_what_was_lost_to_first_order() {
     for [a, b] in pairs() {
@@ -141,8 +141,8 @@ fn pairs_carry_what_was_lost_to_first_order() {
         near(pair::div::<false>(a, b), double_double::div::<false>(a, b));
         let positive = if a.0 < 0.0 { (-a.0, -a.1) } else { a };
         near(pair::sqrt::<true>(positive), double_double::sqrt::<true>(positive));
-        // The angle itself is the standard library's; what is lost turns it: here so much that it
-        // is seen.
+        // The angle itself is the standard library's; the lost part rotates it, here enough to be
+        // visible.
         let (y, x) = ((a.0, 1e-9), (b.0, -2e-9));
         let (angle, lost) = pair::atan2::<true>(y, x);
         let size = (a.0 * a.0 + b.0 * b.0).sqrt();

@@ -18,7 +18,7 @@ pub struct ArticulatedInertia<S> {
 }
 
 impl<S: Scalar> ArticulatedInertia<S> {
-    /// Nothing.
+    /// Zero.
     pub fn zero() -> Self {
         Self { angular: Matrix3::zeros(), coupling: Matrix3::zeros(), linear: Matrix3::zeros() }
     }
@@ -33,7 +33,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
         }
     }
 
-    /// The wrench that goes with an acceleration.
+    /// The wrench of an acceleration.
     #[inline(always)]
     pub fn apply(&self, a: &Twist<S>) -> Wrench<S> {
         Wrench {
@@ -55,7 +55,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
         }
     }
 
-    /// The same where degree of freedom `k` of the six has given way: nothing is left along it.
+    /// The same with degree of freedom `k` of the six free: zero along it.
     #[inline(always)]
     #[must_use]
     pub fn without(mut self, k: usize) -> Self {
@@ -84,7 +84,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
         Self { angular: turned(&self.angular), coupling: turned(&self.coupling), linear: turned(&self.linear) }
     }
 
-    /// The same seen from the frame a, where `x_ab` places the frame b that it is given in.
+    /// The same seen from the frame a, where `x_ab` places the frame b of this one.
     ///
     /// Turned, then `C' = C, B' = B + [p]× C, A' = A + [p]× Bᵀ − B'[p]×`.
     #[inline(always)]

@@ -1,4 +1,4 @@
-//! What a moving body adds to the Coriolis matrix.
+//! Contribution of a moving body to the Coriolis matrix.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -10,8 +10,8 @@ use crate::Scalar;
 /// u_r the velocity of the point at r.
 ///
 /// It is ½[(V×*)G − G(V×) + (G V)×̄*] of Echeandia & Wensing (*J. Comput. Nonlinear Dyn.* 16,
-/// 2021), which maps a 6-vector (ω; v) and turns out to depend on ω alone: K = ∫ u_r rᵀ dm and p =
-/// ∫ u_r dm are all there is to it. These add up over bodies like moments of mass.
+/// 2021), which maps a 6-vector (ω; v) but depends on ω alone: it consists of K = ∫ u_r rᵀ dm and p
+/// = ∫ u_r dm. These add up over bodies like moments of mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoriolisInertia<S> {
     /// p, the linear momentum, kg·m/s.
@@ -21,7 +21,7 @@ pub struct CoriolisInertia<S> {
 }
 
 impl<S: Scalar> CoriolisInertia<S> {
-    /// Nothing.
+    /// Zero.
     pub fn zero() -> Self {
         Self { momentum: Vector3::zeros(), second: Matrix3::zeros() }
     }
@@ -48,7 +48,7 @@ impl<S: Scalar> CoriolisInertia<S> {
         Wrench { moment: rotate(&complement(&self.second), omega), force: omega.cross(&self.momentum) }
     }
 
-    /// Bᵀ V: what the wrench B ω does to the twist V is ω·(Bᵀ V).
+    /// Bᵀ V: the power of the wrench B ω on the twist V is ω·(Bᵀ V).
     #[inline(always)]
     pub fn transposed(&self, twist: &Twist<S>) -> Vector3<S> {
         rotate_back(&complement(&self.second), twist.angular) + self.momentum.cross(&twist.linear)

@@ -21,7 +21,7 @@ pub struct SpatialInertia<S> {
 }
 
 impl<S: Scalar> SpatialInertia<S> {
-    /// Nothing.
+    /// Zero.
     pub fn zero() -> Self {
         Self { mass: S::zero(), first: Vector3::zeros(), second: Matrix3::zeros() }
     }
@@ -53,8 +53,8 @@ impl<S: Scalar> SpatialInertia<S> {
     #[inline(always)]
     pub fn wrench(&self, acceleration: Vector3<S>, u: &Matrix3<S>) -> Wrench<S> {
         let (s, h) = (&self.second, self.first);
-        // ∫ r × (U r) dm has the components (UΣ)_zy − (UΣ)_yz and so on round, with what Σ's
-        // off-diagonals multiply taken together.
+        // ∫ r × (U r) dm has the components (UΣ)_zy − (UΣ)_yz and so on cyclically, with the
+        // factors of Σ's off-diagonals collected.
         let spin = Vector3::new(
             sum([(u.m31, s.m12), (-u.m21, s.m13), (u.m33 - u.m22, s.m23), (u.m32, s.m22), (-u.m23, s.m33)]),
             sum([(u.m12, s.m23), (-u.m32, s.m12), (u.m11 - u.m33, s.m13), (u.m13, s.m33), (-u.m31, s.m11)]),

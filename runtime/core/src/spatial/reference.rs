@@ -1,4 +1,4 @@
-//! What the six numbers of a frame's twist or wrench refer to.
+//! Reference of the six numbers of a frame's twist or wrench.
 
 /// A choice of axes and of the point that linear velocities and moments are taken at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -26,8 +26,8 @@ fn dot<S: Scalar>([x, y, z]: [S; 3], v: Vector3<S>) -> S {
 
 /// R M Rᵀ with R = Rz of the angle of this sine and cosine: 20 operations instead of 90.
 ///
-/// With w = s (M_xx − M_yy) + c (M_xy + M_yx) the diagonal changes by s·w. As good as the largest
-/// number of M, no better.
+/// With w = s (M_xx − M_yy) + c (M_xy + M_yx) the diagonal changes by s·w. As accurate as the
+/// largest number of M, no better.
 #[inline(always)]
 pub fn turned_about_z<S: Scalar>(m: &Matrix3<S>, sin: S, cos: S) -> Matrix3<S> {
     let (s, c) = (sin, cos);
@@ -68,12 +68,12 @@ pub fn from_quaternion<S: Scalar>(q: [S; 4]) -> Matrix3<S> {
     )
 }
 
-/// The rotation that is nearest to a matrix that is one but for rounding: R − R (RᵀR − 1)/2, a step
-/// of Newton's for the orthogonal factor of R.
+/// The rotation nearest to a matrix that is one up to rounding: R − R (RᵀR − 1)/2, a Newton step
+/// for the orthogonal factor of R.
 ///
 /// Products of rotations drift: columns of a few turns are some units of roundoff too long or too
-/// short, all the same way, and so is every lever that they turn. A step leaves what rounding of
-/// nine numbers makes of it. Numbers that are 0, 1 or −1 stay so.
+/// short, all the same way, and so is every lever that they turn. A step leaves only the rounding
+/// of nine numbers. Numbers that are 0, 1 or −1 stay so.
 pub fn nearest_rotation<S: Scalar>(r: &Matrix3<S>) -> Matrix3<S> {
     let (zero, one) = (S::zero(), S::one());
     let too_long = r.transpose() * r - Matrix3::identity();
@@ -114,9 +114,9 @@ pub fn from_rpy<S: Scalar>(rpy: [f64; 3]) -> Matrix3<S> {
     )
 }
 
-/// A rotation whose third column is the direction of `axis` (not zero), as sparse as can be: for a
-/// coordinate axis a signed permutation, otherwise with one zero. The axis is normalised without
-/// overflow or underflow; it counts as a coordinate axis where the others have no more than the
+/// A rotation whose third column is the direction of `axis` (not zero), as sparse as possible: for
+/// a coordinate axis a signed permutation, otherwise with one zero. The axis is normalised without
+/// overflow or underflow. It counts as a coordinate axis if the other components are within the
 /// rounding of that one.
 pub fn to_z_axis(axis: [f64; 3]) -> Matrix3<f64> {
     let z = unit(axis);

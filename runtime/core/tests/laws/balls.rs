@@ -130,7 +130,7 @@ fn a_cone_is_a_stop_of_the_angle_of_the_rotation() {
         assert_near(&torque, &[-15.0 * factor, 0.0, 20.0 * factor], 1e-13);
         assert_near(&[energy], &[3.125], 1e-13);
     }
-    // What is not stored is lost.
+    // Power that is not stored is dissipated.
     let (q, v) = (turned_by(phi), [1.0, 5.0, 0.0, 0.0, 0.0, 0.0]);
     assert_near(&call(&model, "dissipation", &[&q, &v]), &[-15.0 * 0.24], 1e-13);
     let slower = [-6.0, 0.0, 0.0, 0.0, 0.0, 0.0];

@@ -1,5 +1,5 @@
-//! Base parameters: as many as the regressor of torques has ranks, and values that give the robot's
-//! torques.
+//! Base parameters: as many as the rank of the regressor of torques, and values that give the
+//! robot's torques.
 
 use articulated_core::algorithm::{Identifiability, Workspace, base_parameters, identifiable_parameters, torque_regressor};
 use articulated_core::description::Base;
@@ -27,7 +27,7 @@ fn rank(case: &Case, random: &mut Random) -> usize {
         c.normalize_mut();
     });
     let square = stacked.transpose() * stacked;
-    // Singular values squared: what depends on others leaves 10⁻¹⁵, what does not more than 10⁻⁹.
+    // Singular values squared: dependent ones leave 10⁻¹⁵, others more than 10⁻⁹.
     square.symmetric_eigenvalues().iter().filter(|x| **x > 1e-12).count()
 }
 

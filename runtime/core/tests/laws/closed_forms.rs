@@ -1,4 +1,4 @@
-//! Robots whose equations can be written on one line; the parameters stand in the headers of their
+//! Robots whose equations can be written on one line; the parameters are in the headers of their
 //! URDF files.
 
 use articulated_test_support::case::{Case, State};

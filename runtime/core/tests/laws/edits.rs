@@ -1,5 +1,5 @@
-//! What locking a joint, attaching a payload and appending a robot do to the dynamics; and what is
-//! refused.
+//! Effects of locking a joint, attaching a payload and appending a robot on the dynamics; and
+//! refused edits.
 
 use articulated_core::description::{Base, Description, EditError, Inertial, JointId, JointKind, Link, LinkId, Origin, Payload};
 use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
@@ -265,7 +265,7 @@ fn robots_that_clash_are_refused_with_every_name() {
     arm.append("fore", &tool, "", MOUNT).unwrap();
 }
 
-/// The state of a locked robot is told apart from that of the whole one by its length alone.
+/// The state of a locked robot differs from that of the whole one by its length alone.
 #[test]
 fn a_locked_spherical_joint_takes_four_coordinates_and_three_rates_away() {
     let mut robot = read(ARM);

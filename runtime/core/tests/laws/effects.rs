@@ -1,4 +1,4 @@
-//! Laws that hold whatever a robot is subject to: on random trees with random effects.
+//! Laws that hold for all effects on a robot: on random trees with random effects.
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{self as dynamics, Workspace};
@@ -16,7 +16,8 @@ use nalgebra::Vector3;
 
 use crate::trees::{for_each_tree, share};
 
-/// No followers: they have laws of their own, and the articulated-body algorithm does without.
+/// No followers: they have laws of their own, and the articulated-body algorithm does not support
+/// them.
 const FREE: Flavour = Flavour { mimic: false, ..Flavour::REGULAR };
 
 fn subject(case: &Case, random: &mut Random, wanted: impl Fn(EffectId) -> bool) -> (Model<f64>, State) {
@@ -69,7 +70,7 @@ fn inverse_dynamics_is_m_a_and_bias_forces_and_followers_too() {
     });
 }
 
-/// d(T + U)/dt along the motion, by duals, is the power of torques and of what dissipates.
+/// d(T + U)/dt along the motion, by duals, is the power of torques and of dissipative effects.
 #[test]
 fn what_torques_give_and_effects_take_is_the_change_of_energy() {
     for_each_tree(60, Flavour::ANY, |case, random| {
@@ -201,8 +202,8 @@ fn nothing_of_nothing_is_nothing() {
     });
 }
 
-/// An effect is left out where its numbers make nothing of it, and nowhere else: put on a body by
-/// hand, it changes accelerations then and only then.
+/// An effect is left out if its numbers make it vanish, and only then: put on a body by hand, it
+/// changes accelerations then and only then.
 #[test]
 fn what_is_left_out_does_nothing_and_what_stays_does_something() {
     let arm = Case::bundled(articulated_models::robot("ur5_like").expect("a bundled robot")).model;
@@ -217,7 +218,7 @@ fn what_is_left_out_does_nothing_and_what_stays_does_something() {
             let mut some = full.clone();
             some[start..start + field.len].fill(0.0);
             start += field.len;
-            // What may not be zero is no question, nor is where a stop or a plane is.
+            // Fields that must not be zero are not tried, nor is the place of a stop or a plane.
             let place = ["lower", "upper", "normal", "height"].contains(&field.name);
             if field.range.strictly || place { full.clone() } else { some }
         });
@@ -233,7 +234,7 @@ fn what_is_left_out_does_nothing_and_what_stays_does_something() {
                 }
             });
             let with = accelerations(&model);
-            // A law divided by what is zero, friction at the speed 0, is none to ask.
+            // A law divided by zero, friction at the speed 0, is not tested.
             let same = with == plain || with.iter().any(|x| x.is_nan());
             assert_eq!(row.is_nothing(&parameters), same, "{} of {parameters:?}: {with:?}, without {plain:?}", row.name);
         }
@@ -253,7 +254,7 @@ fn numbers(id: EffectId, field: &effect::Field) -> Vec<f64> {
     }
 }
 
-/// All that is wrong is told, each with what would be right.
+/// All errors are reported, each with the expected value.
 #[test]
 fn effects_that_cannot_be_had_are_refused() {
     let arm = Case::bundled(articulated_models::robot("ur5_like").expect("a bundled robot")).model;
@@ -293,7 +294,7 @@ fn effects_that_cannot_be_had_are_refused() {
     assert!(arm.with_effects(&twice).expect_err("given twice")[0].to_string().contains("twice"));
 }
 
-/// What would give energy for nothing, or divide by it, or has no place to be.
+/// Effects that would create energy, or divide by it, or have no place to act.
 #[test]
 fn effects_that_are_half_right_are_refused_too() {
     let arm = Case::bundled(articulated_models::robot("ur5_like").expect("a bundled robot")).model;
@@ -306,8 +307,8 @@ fn effects_that_are_half_right_are_refused_too() {
         Err(errors) => errors[0].to_string(),
         Ok(_) => panic!("{one:?}"),
     };
-    // Zero where a number has to be greater.
-    // Nor may a law be smooth below what has no square.
+    // Zero where a number must be greater. Nor may a law be smooth below a number whose square
+    // underflows.
     for speed in [0.0, 1e-200] {
         let text = told(on(EffectId::friction, &[1.0, speed]));
         assert!(text.contains("speed: found ") && text.contains("expected a finite number, at least 1e-15"), "{text}");
@@ -336,7 +337,7 @@ fn effects_that_are_half_right_are_refused_too() {
     let mut far = on(EffectId::drag, &[1.0]);
     far.at.xyz[1] = f64::INFINITY;
     assert!(told(far).contains("xyz or rpy: found inf"));
-    // Nothing at all still has to be on something that is there, and then is nothing.
+    // An effect that does nothing must also act on an existing target, and is then left out.
     let nothing = on(EffectId::damping, &[0.0]);
     assert!(told(Applied { on: "elbo_joint".into(), ..nothing.clone() }).contains("no joint of this name"));
     let count = |applied: &[Applied]| {

@@ -1,4 +1,4 @@
-//! Each effect against its formula on a body of which all is known.
+//! Each effect against its formula, on a completely known body.
 
 use articulated_core::algorithm::{Workspace, function};
 use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, LinkId, Origin};
@@ -103,7 +103,7 @@ fn a_stop_pushes_beyond_its_bound_and_never_pulls() {
 
 #[test]
 fn a_motor_gives_what_its_line_allows_less_its_loss() {
-    // 2 N behind a gear of 10, 50 m/s: 20 N at a standstill, none at 5 m/s.
+    // 2 N after a gear of 10, 50 m/s: 20 N at a standstill, none at 5 m/s.
     let motor = |v: f64, tau: f64, efficiency: f64| slides(EffectId::motor, &[2.0, 50.0, 10.0, efficiency, 1e-9], 0.0, v, tau) * MASS;
     assert_near(motor(0.0, 7.0, 1.0), 7.0);
     assert_near(motor(0.0, 70.0, 1.0), 20.0);
@@ -224,7 +224,7 @@ fn a_ball_on_the_ground_rests_where_its_weight_is_held() {
     assert_all_near(&in_the_air, &[0.0, 0.0, 0.0, 0.0, 0.0, -G]);
     // Falling: k x (1 + c ẋ).
     assert_all_near(&moves(&[ground(0.6)], rest, [0.0, 0.0, 0.0, 0.0, 0.0, -2.0]), &[0.0, 0.0, 0.0, 0.0, 0.0, G * 1.8 - G]);
-    // Leaving faster than it springs back: nothing holds it.
+    // Leaving faster than it springs back: no force holds it.
     assert_all_near(&moves(&[ground(0.6)], rest, [0.0, 0.0, 0.0, 0.0, 0.0, 3.0]), &[0.0, 0.0, 0.0, 0.0, 0.0, -G]);
     // Sliding while it falls: μ of the whole force, damping included.
     let both = moves(&[ground(0.6)], rest, [0.0, 0.0, 0.0, 1.0, 0.0, -2.0]);
@@ -260,7 +260,7 @@ fn damping_of_a_ball_at_rest_is_that_of_a_damper_and_never_pulls() {
         let found = push(x, rate) / (stiffness * x);
         assert!(found > -1e-12 && found < 2.0 + 1e-12 && (found - most).abs() < 1e-8, "{rate}: {found}");
     }
-    // No jump where it touches, however fast, and nothing beyond.
+    // No jump at the contact, at any speed, and no force beyond.
     assert!(push(1e-12, 3.0) <= 2.0 * stiffness * 1e-12 + 1e-11);
     assert_all_near(&[push(0.0, 3.0), push(-0.1, 3.0), push(-0.1, 0.0)], &[0.0; 3]);
     // Friction is that of the whole force.
@@ -275,7 +275,7 @@ fn a_rotor_has_energy() {
     assert_near(call(&model, "kinetic_energy", &[&[0.0], &[3.0]])[0], 0.5 * (MASS + 4.0) * 9.0);
 }
 
-/// What hangs on a rotor may have no mass: the joint moves the rotor.
+/// A body on a rotor may have no mass: the joint moves the rotor.
 #[test]
 fn a_rotor_makes_a_massless_joint_move_something() {
     let mut bare = slide();

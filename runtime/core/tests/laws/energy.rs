@@ -1,4 +1,4 @@
-//! Energy: what torques do is what motion and height gain.
+//! Energy: the work of torques is the gain of kinetic and potential energy.
 
 use articulated_test_support::case::{Case, State, for_each_bundled, inverse_dynamics, mass_matrix};
 use articulated_test_support::measure::{U, torque_scale};

@@ -311,8 +311,8 @@ fn beside(tree: &Description, random: &mut Random) -> Description {
     out
 }
 
-/// What is given for each link is about the origin of the link and in its axes wherever its joint
-/// is, and no link is left out.
+/// Results for each link are about the origin of the link and in its axes wherever its joint is,
+/// and no link is left out.
 #[test]
 fn a_joint_may_lie_beside_the_origin_of_its_link() {
     let links = std::cell::Cell::new(0);

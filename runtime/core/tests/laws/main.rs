@@ -1,4 +1,4 @@
-//! Laws of dynamics, held against the generic library on random trees. Each file is one family of
+//! Laws of dynamics, checked for the generic library on random trees. Each file is one family of
 //! laws.
 //!
 //! `cargo test -p articulated-core` runs them, and compiles neither the generator nor the command

@@ -51,8 +51,7 @@ fn largest(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(difference).fold(0.0, f64::max)
 }
 
-/// What errors of translations grow with: 1 m and the longest way from one configuration to the
-/// other.
+/// Scale of errors of translations: 1 m and the longest way from one configuration to the other.
 fn reach(model: &Model<f64>, q: &[f64], target: &[f64]) -> f64 {
     let floating = model.joints().iter().filter(|j| j.kind == JointKind::Floating).map(|j| j.q.0);
     1.0 + floating.map(|at| (at..at + 3).map(|k| (target[k] - q[k]).powi(2)).sum::<f64>().sqrt()).fold(0.0, f64::max)
@@ -63,7 +62,7 @@ fn for_each(law: impl Fn(&Case, &mut Random)) {
     for_each_bundled(law);
 }
 
-/// The target with its rotations at so many radians from those of q.
+/// The target with its rotations `angle` radians from those of q.
 fn turned_away(case: &Case, random: &mut Random, q: &[f64], target: &[f64], angle: f64) -> Vec<f64> {
     let mut target = target.to_vec();
     for (at, _) in quaternions(&case.model) {
@@ -205,7 +204,7 @@ fn limit_rail(case: &mut Case, limit: Limit) -> usize {
     case.model.joints()[rail].q.0
 }
 
-/// A turn or two metres from the bound that there is.
+/// A turn or two metres from the existing bound.
 #[test]
 fn a_limit_that_is_open_on_one_side_is_kept_on_the_other() {
     let mut case = Case::bundled(articulated_models::robot("cart_pole").unwrap());
@@ -259,8 +258,8 @@ fn limits_as_wide_as_numbers_are_kept() {
     }
 }
 
-/// URDF gives bounds of a continuous joint no meaning: it turns all the way round, whatever is
-/// written there.
+/// In URDF, bounds of a continuous joint have no meaning: it turns all the way round, whatever they
+/// are.
 #[test]
 fn a_continuous_joint_has_no_limits() {
     let text = r#"<robot name="r"><link name="base"/>

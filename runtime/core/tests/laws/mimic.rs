@@ -149,7 +149,7 @@ impl<'a> Coupled<'a> {
     }
 }
 
-/// q = Σ cᵢ qᵢ + o: each leader has its part of the torque, and nothing else moves otherwise.
+/// q = Σ cᵢ qᵢ + o: each leader has its part of the torque, and no other motion changes.
 #[test]
 fn torque_on_each_of_several_leaders_is_that_of_equal_power() {
     let mut met = std::cell::Cell::new(0);

@@ -1,4 +1,4 @@
-//! What is left of a pivot, D/(Σ|terms|), against closed forms: two robots whose terms can be
+//! The remaining part of a pivot, D/(Σ|terms|), against closed forms: two robots whose terms can be
 //! counted by hand.
 
 use articulated_core::algorithm::Workspace;

@@ -1,4 +1,4 @@
-//! The algorithms against two others that they share no formula with.
+//! The algorithms against two others with which they share no formula.
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::textbook::Textbook;
@@ -65,7 +65,7 @@ fn rounding_moves_no_result_by_more_than_a_few_units() {
     for_each_bundled(law);
 }
 
-/// Measured against what a backward error of one unit brings about.
+/// Relative to the effect of a backward error of one unit.
 #[test]
 fn nor_what_is_solved_with_the_mass_matrix() {
     for_each_tree(20, Flavour::REGULAR, |case, random| rounding_is_small(case, random, |needs| needs == Needs::MassMatrix));
@@ -110,7 +110,7 @@ fn torques_are_those_of_virtual_power() {
     for_each_bundled(virtual_power_holds);
 }
 
-/// Two derivations with nothing in common, to 60 digits: no tolerance is left to hide in.
+/// Two derivations without common parts, to 60 digits: no tolerance can hide an error.
 #[test]
 fn textbook_and_virtual_power_agree_to_sixty_digits() {
     for_each_tree(12, Flavour { links: 6, ..Flavour::ANY }, |case, random| {
@@ -129,8 +129,8 @@ fn textbook_and_virtual_power_agree_to_sixty_digits() {
     });
 }
 
-/// A double's quaternion has a norm of one to 16 digits only, and the two forms differ in what they
-/// make of the rest.
+/// A double's quaternion has a norm of one to 16 digits only, and the two forms use the rest
+/// differently.
 fn normalise(case: &Case, q: &mut [Big]) {
     for joint in case.model.joints().iter().filter(|j| matches!(j.q.1, 4 | 7)) {
         let end = joint.q.0 + joint.q.1;
@@ -151,7 +151,7 @@ fn bias_forces_and_gravity_torque_are_inverse_dynamics_at_rest() {
     });
 }
 
-/// A workspace carries nothing from one call to the next.
+/// A workspace keeps nothing from one call to the next.
 #[test]
 fn a_result_does_not_depend_on_the_calls_before() {
     for_each_tree(10, Flavour::REGULAR, |case, random| {

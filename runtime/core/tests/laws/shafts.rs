@@ -63,13 +63,13 @@ fn a_straight_shaft_leaves_everything_where_it_was() {
     }
 }
 
-/// A force f across the end turns each joint by f·(its distance to the end)/k; the end gives way by
+/// A force f across the end turns each joint by f·(its distance to the end)/k; the end deflects by
 /// f L³/(3 E I), less a part ¼/n².
 #[test]
 fn the_end_gives_way_as_that_of_a_beam_but_for_a_quarter_of_n_squared() {
     for n in [1, 2, 3, 8, 20] {
         let (model, k) = bending([0.0, 0.0, -LENGTH], 0.2, &shaft(n, 0.06));
-        // d(end)/dq, by a step that loses no more than its square.
+        // d(end)/dq, by a step whose error is only its square.
         let step = 1e-6;
         let slope = |i: usize| {
             let at = |x: f64| {
@@ -106,7 +106,7 @@ fn the_lowest_frequency_becomes_that_of_a_beam() {
     assert!(fine.abs() < 2e-3 && (coarse / fine - 4.0).abs() < 0.2, "{coarse} {fine}");
 }
 
-/// Whatever its direction, a rod has m ℓ²/12 about its middle across it, and nothing about itself.
+/// Whatever its direction, a rod has m ℓ²/12 about its middle across it, and zero about itself.
 #[test]
 fn rods_are_thin() {
     let mut description = rod([0.3, -0.5, 0.7], 0.2);

@@ -1,4 +1,4 @@
-//! What every equation of motion M(q)·a + h(q, v) = τ is made of.
+//! Parts of every equation of motion M(q)·a + h(q, v) = τ.
 
 use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, LinkId, Origin};
 use articulated_core::index::BodyId;
@@ -110,8 +110,8 @@ fn joints_that_move_no_mass_are_found() {
     for_each_tree(150, Flavour::ANY, |case, random| {
         let found = case.model.massless_joints();
         let m = mass_matrix(&case.model, &case.state(random).q);
-        // A zero row, or one that others make up for: either way M is singular, and where none is
-        // found it is not.
+        // A zero row, or one that depends on others: either way M is singular. If no such joint is
+        // found, M is regular.
         let left = smallest_scaled_eigenvalue(&m);
         assert!(found.is_empty() || left <= 1e-12, "joints {found:?} do move mass: {left:e}");
         assert!(!found.is_empty() || left > 1e-12, "M is singular, {left:e}, and no joint is found");
@@ -126,7 +126,7 @@ fn joints_that_move_no_mass_are_found() {
 }
 
 /// Two joints without mass of their own carry one that moves none, or one that only repeats
-/// another: those alone are named, not what carries them.
+/// another: only those are named, not the joints that carry them.
 #[test]
 fn joints_that_carry_a_massless_one_are_not_blamed() {
     let body = |at: &str| {
@@ -149,15 +149,15 @@ fn joints_that_carry_a_massless_one_are_not_blamed() {
     assert!(model("").massless_joints().is_empty());
     let camera = joint("pan", "tip", "camera", "0 0 0.1", "0 1 0") + "<link name='camera'/>";
     assert_eq!(model(&camera).massless_joints(), [BodyId(4)]);
-    // About one axis with the one before, with nothing between: of the two the inner is named.
+    // About one axis with the one before, without mass between: the inner of the two is named.
     let twice = joint("roll", "tip", "gap", "0 0 0.1", "0 1 0") + &joint("again", "gap", "tool", "0 0.1 0", "0 1 0");
     let twice = twice + &format!("<link name='gap'/><link name='tool'>{}</link>", body("0 0 0.3"));
     assert_eq!(model(&twice).massless_joints(), [BodyId(4)]);
     assert_eq!(model(&(camera.replace("'camera'", "'lens'") + &twice)).massless_joints(), [BodyId(4), BodyId(5)]);
 }
 
-/// A joint that follows another backwards leaves its body where it was: what mass that has nothing
-/// moves.
+/// A joint that follows another backwards leaves its body where it was: no joint moves that body's
+/// mass.
 #[test]
 fn a_follower_that_undoes_its_leader_moves_no_mass() {
     for (kind, multiplier) in [("prismatic", -1.0), ("revolute", -1.0), ("prismatic", -0.5), ("revolute", 1.0)] {
@@ -198,7 +198,7 @@ fn a_rod_in_a_ball_joint_can_turn_about_itself() {
         assert_eq!(mass_matrix(&model, &[0.1, 0.7, -0.1, 0.7]).row(axis).amax(), 0.0);
         assert_eq!(model.massless_joints(), [BodyId(1)]);
         assert!(ball([1.0, 0.0, 0.0, 1.0, 0.0, 1.0]).massless_joints().is_empty());
-        // No body has this, but what it resists is not nothing.
+        // No body has this inertia, but its resistance is not zero.
         assert!(ball([-1e-3, 0.0, 0.0, 1.0, 0.0, 1.0]).massless_joints().is_empty());
     }
 }
@@ -221,7 +221,7 @@ fn joints_are_ordered_depth_first_as_the_file_lists_them() {
     });
 }
 
-/// Nothing but places depends on where a robot is, and no digit is lost where it is far away.
+/// Only places depend on the position of a robot, and no digit is lost far away.
 #[test]
 fn a_robot_far_from_the_origin_is_none_the_worse() {
     const FAR: [[f64; 3]; 2] = [[1e6, -3e5, 0.1], [3e11, 1e12, -2e12]];

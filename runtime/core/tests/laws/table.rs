@@ -1,5 +1,6 @@
-//! Every function of the table, in each of its ways, is what the textbook says. What the textbook's
-//! functions are to each other, and with that those of the library, is held in [`super::textbook`].
+//! Every function of the table, in each of its ways, agrees with the textbook. Relations between
+//! the textbook's functions, and so between those of the library, are checked in
+//! [`super::textbook`].
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, Function, FunctionId, Workspace, functions};
@@ -44,7 +45,7 @@ fn every_function_in_every_way_is_the_textbooks() {
             });
         });
     }
-    // None was left out, but for what no such tree has.
+    // All were tested, except those that such trees do not have.
     let all = functions::<Big>().iter().flat_map(|row| (0..row.ways.len()).map(|k| (row.name, k)));
     let missing: Vec<_> = all.filter(|f| !seen.borrow().contains(f)).collect();
     assert!(missing.iter().all(|(name, _)| *name == FunctionId::operational_space_inertia.name()), "not seen: {missing:?}");

@@ -1,6 +1,6 @@
 //! Four mistakes that are common in pseudo-code of the recursion, each made on purpose in a small
-//! matrix form of it: the laws of this crate must tell them from the right one. A law that nobody
-//! has seen fail proves little.
+//! matrix form of it: the laws of this crate must distinguish them from the correct one. A law that
+//! has never failed proves little.
 
 use articulated_core::description::{Base, Description};
 use articulated_test_support::case::{Case, State, read};
@@ -164,7 +164,7 @@ fn ad(v: &Vector6<f64>) -> Matrix6<f64> {
     blocks(w, Matrix3::zeros(), cross(Vector3::new(v[3], v[4], v[5])), w)
 }
 
-/// The bundled six-axis arm without what is fixed to it: six turning joints in a row.
+/// The bundled six-axis arm without its fixed links: six turning joints in a row.
 fn arm() -> (Case, Chain) {
     let mut tree = read(articulated_models::robot("ur5_like").unwrap().urdf);
     let fixed = tree.joints.position(|j| j.kind.is_fixed()).unwrap();

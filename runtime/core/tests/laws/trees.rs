@@ -7,10 +7,10 @@ use articulated_test_support::random_tree::Flavour;
 /// Its value `all` runs every law on all of its trees.
 const VARIABLE: &str = "ARTICULATED_TREES";
 
-/// Of so many trees one is run unless all are requested.
+/// One of this many trees is run unless all are requested.
 const SHARE: u64 = 4;
 
-/// Laws with so few trees run on all of them.
+/// Laws with at most this many trees run on all of them.
 const FEW: u64 = 4;
 
 /// Of `count` trees, those that are run: a quarter, at least four, or all if [`VARIABLE`] says so.

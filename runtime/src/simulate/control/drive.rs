@@ -1,4 +1,4 @@
-//! Control that is given as data.
+//! Controllers defined by data.
 
 use std::borrow::Cow;
 
@@ -177,7 +177,7 @@ fn wrong_actuators(actuators: &Actuators, nq: usize, nv: usize) -> Vec<StateErro
         Signal::Moving(series) => StateError::of_table("control.rows", series, laws.len()).collect(),
     };
     let mut range = |event: &str, [lower, upper]: [f64; 2]| {
-        // Also where one of them is no number.
+        // Also if one of them is NaN.
         if lower.partial_cmp(&upper).is_none_or(|order| order == std::cmp::Ordering::Greater) {
             wrong.push(StateError::Bounds { event: event.to_owned(), lower, upper });
         }

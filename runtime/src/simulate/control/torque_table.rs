@@ -5,7 +5,7 @@ use articulated_core::control::Series;
 use super::{Control, Dependence};
 use crate::simulate::{SimulateError, StateError};
 
-/// Torques given at times, on straight lines between, held before the first and after the last.
+/// Torques at given times, linear between them, held before the first and after the last.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TorqueTable {
     series: Series,
@@ -13,8 +13,8 @@ pub struct TorqueTable {
 }
 
 impl TorqueTable {
-    /// times: `[n]`, s, each later than the one before; rows: `[n][nv]`, N·m|N. Everything that is
-    /// wrong.
+    /// times: `[n]`, s, each later than the one before; rows: `[n][nv]`, N·m|N. Errors: all
+    /// mistakes.
     pub fn new(times: Vec<f64>, rows: &[f64], nv: usize) -> Result<Self, SimulateError> {
         let rows = rows.chunks(nv.max(1)).map(<[f64]>::to_vec).collect();
         let series = Series { times, rows, hold: false };

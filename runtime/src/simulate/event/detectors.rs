@@ -82,13 +82,13 @@ impl Detectors {
         Ok(())
     }
 
-    /// Those of one event, between the places at which its function is known.
+    /// The zeros of one event, between the places at which its function is known.
     fn zeros_of<R: Dynamics<f64>>(&mut self, e: usize, search: &mut Search<R>, last: bool) -> Result<(), SimulateError> {
         let count = search.events.len();
         let (mut side, mut from) = (self.side[e], 0);
         for place in 0..PLACES.len() {
             let g = |place: usize| self.values[place * count + e];
-            // Where the step begins, it is known on which side: rounding may say otherwise.
+            // The side at the start of the step is known: rounding may contradict it.
             let now = if place == 0 && side != 0.0 { side } else { sign(g(place)) };
             if now != 0.0 && side != 0.0 && now != side {
                 let theta = search.zero(e, (PLACES[from], side), (PLACES[place], now))?;
@@ -107,7 +107,7 @@ impl Detectors {
                 (side, from) = (now, place);
             }
         }
-        // What was at zero before does not come to it.
+        // A function that was at zero before does not reach it.
         let [before, end] = [2, 1].map(|back| self.values[(PLACES.len() - back) * count + e]);
         if last && side != 0.0 && end == 0.0 && before != 0.0 {
             push(&mut self.zeros, search.events, e, 1.0, -side);

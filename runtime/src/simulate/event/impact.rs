@@ -35,7 +35,7 @@ pub struct Impact<'r, R: Dynamics<f64>> {
 pub struct Struck {
     /// The ball's speed along the normal after it, m/s.
     pub ball_speed: f64,
-    /// Momentum handed over, N·s; zero if point and ball were not approaching.
+    /// Transferred momentum, N·s; zero if point and ball were not approaching.
     pub impulse: f64,
     /// m_h, kg: the effective mass of the robot at the point.
     pub effective_mass: f64,
@@ -44,7 +44,7 @@ pub struct Struck {
 }
 
 impl<'r, R: Dynamics<f64>> Impact<'r, R> {
-    /// At a point whose normal leads to the ball; the ball's mass, kg; the coefficient of
+    /// At a point whose normal points to the ball; the ball's mass, kg; the coefficient of
     /// restitution, from 0 to 1. Errors: all invalid numbers, at once.
     pub fn new(robot: &'r R, at: ContactPoint, mass: f64, restitution: f64) -> Result<Self, SimulateError> {
         let ContactPoint { frame, point, normal } = at;

@@ -33,14 +33,14 @@ pub enum Direction {
 /// A function of time and state, g(t, q, v).
 type Function<'a> = dyn FnMut(f64, &[f64], &[f64]) -> f64 + 'a;
 
-/// A map of the state at time t: q `[nq]` and v `[nv]` may be changed; it may give a number to be
-/// recorded.
+/// A map of the state at time t: it may change q `[nq]` and v `[nv]`, and may return a number to
+/// record.
 pub type Map<'a> = dyn FnMut(f64, &mut [f64], &mut [f64]) -> Result<Option<f64>, SimulateError> + 'a;
 
 /// The action at an event; the event is recorded in any case.
 #[derive(Default)]
 pub enum Action<'a> {
-    /// Nothing more.
+    /// Only a record.
     #[default]
     Record,
     /// The motion ends.
@@ -62,11 +62,10 @@ pub struct ContactPoint {
 
 /// An event at the zeros of g(t, q, v).
 ///
-/// g is looked at eleven times a step on the integrator's curve: at its ends, and between so
-/// closely that a zero between two of them is found where g changes its sign, and a pair of zeros
-/// where |g| has a least value among them. What is missed is a pair that comes and goes between two
-/// neighbours without |g| falling towards them: less than an eighth of a step, which `max_step` can
-/// bound.
+/// g is evaluated eleven times a step on the integrator's curve, at its ends and between. A zero
+/// between two of these points is found if g changes its sign, and a pair of zeros if |g| has a
+/// least value among them. A pair is missed only if it comes and goes between two neighbours
+/// without |g| falling towards them: less than an eighth of a step, which `max_step` can bound.
 pub struct Event<'a> {
     pub(crate) name: Arc<str>,
     /// The entry of q or v that it depends on, if it is one.
@@ -110,8 +109,8 @@ impl<'a> Event<'a> {
     }
 
     /// A guard that is exactly zero at the start counts as a crossing in this direction if it
-    /// continues so: it is taken to come from the other side. Without this, such a zero is no event
-    /// in either direction, so a motion may start on a section to which it returns.
+    /// continues so: it is assumed to come from the other side. Without this, such a zero is no
+    /// event in either direction, so a motion may start on a section to which it returns.
     /// [`Event::limit`], [`Event::cone`] and [`Event::contact`] arrive falling.
     #[must_use]
     pub fn arriving(mut self, direction: Direction) -> Self {
@@ -144,13 +143,13 @@ impl<'a> Event<'a> {
         let g = move |_: f64, q: &[f64], _: &[f64]| {
             let x = sum(q, &terms) + offset;
             match (lower.is_finite(), upper.is_finite()) {
-                // Halves: what lies between the two may be more than a number can say.
+                // Halves: the distance of the two may be beyond the range of numbers.
                 (true, true) => (x - lower) * (((upper - x) / 2.0) / (upper / 2.0 - lower / 2.0)),
                 (true, false) => x - lower,
                 _ => upper - x,
             }
         };
-        // Not a number is no bound.
+        // NaN is no bound.
         let inverted = if lower < upper { None } else { Some((lower, upper)) };
         Self { about: last.map(About::Coordinate), inverted, ..Self::new(name, g).falling() }
     }
@@ -261,7 +260,7 @@ struct Points<'r, R: Dynamics<f64>> {
 }
 
 impl<'r, R: Dynamics<f64>> Points<'r, R> {
-    /// Of a frame that there is ([`wrong_place`]).
+    /// For an existing frame ([`wrong_place`]).
     fn new(robot: &'r R, frame: usize) -> Result<Self, SimulateError> {
         let shape = robot.shape();
         let mut points = Self { robot, ws: robot.workspace(), placements: vec![0.0; 12 * shape.frames], frame };

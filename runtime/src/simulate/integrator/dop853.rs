@@ -43,7 +43,7 @@ fn stability() -> [f64; LAST + 1] {
     c
 }
 
-/// Weights less those of order 3.
+/// Weights minus those of order 3.
 fn of_order_three(j: usize) -> f64 {
     A[LAST - 1][j] - E3.iter().find(|(i, _)| *i == j).map_or(0.0, |(_, x)| *x)
 }

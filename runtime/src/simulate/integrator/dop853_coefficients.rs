@@ -150,8 +150,8 @@ pub(super) const E5: [f64; 12] = [
     -0.022355307863886294,
 ];
 
-/// What the weights of order 3 are less than the weights, of stages 1, 9 and 12: the error of order
-/// 3 is the weights without these.
+/// The weights minus those of order 3, of stages 1, 9 and 12: the error of order 3 is the weights
+/// without these.
 pub(super) const E3: [(usize, f64); 3] = [(0, 0.2440944881889764), (8, 0.7338466882816118), (11, 0.022058823529411766)];
 
 /// Four combinations of slopes for the curve.

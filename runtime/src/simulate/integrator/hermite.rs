@@ -1,4 +1,4 @@
-//! The curve of third degree through both ends of a step, for methods that have none of their own.
+//! The curve of third degree through both ends of a step, for methods without a curve of their own.
 
 use articulated_core::dynamics::Dynamics;
 
@@ -62,7 +62,7 @@ impl Hermite {
     }
 }
 
-/// What a [`super::Method`] with the field `curve` of this kind hands on to it.
+/// The methods that a [`super::Method`] with the field `curve` of this kind delegates to it.
 macro_rules! hand_on_to_hermite {
     () => {
         fn last_rate(&self) -> Option<&[f64]> {

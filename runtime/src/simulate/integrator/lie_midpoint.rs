@@ -8,13 +8,12 @@
 //! where cay turns by 2 atan(½h|ω|) about ω where exp would turn by h|ω| (on SE(3) the same in dual
 //! numbers), and plain coordinates add h v̄.
 //!
-//! **What it keeps.** For one body that moves or turns freely and feels no force, I V̇ = −V ×* I V
-//! = ad(V)ᵀ I V is quadratic in V, and the rule keeps quadratic invariants: with P = I V, P_1 − P_0
-//! = ad(hV̄)ᵀ ½(P_0 + P_1) is P_1 = Ad(cay(hV̄))ᵀ P_0, so that momentum in fixed axes, R P, and
-//! with it energy, are kept exactly: what is left is rounding. For any other robot it is symmetric,
-//! so reversible, with an error of energy that does not grow over long motions that are regular;
-//! momentum that belongs to a cyclic coordinate (a plain one on which nothing depends) is kept, any
-//! other to the order of the method.
+//! **Invariants.** For one body that moves or turns freely and feels no force, I V̇ = −V ×* I V =
+//! ad(V)ᵀ I V is quadratic in V, and the rule keeps quadratic invariants: with P = I V, P_1 − P_0 =
+//! ad(hV̄)ᵀ ½(P_0 + P_1) is P_1 = Ad(cay(hV̄))ᵀ P_0. So momentum in fixed axes, R P, and with it
+//! energy, are kept up to rounding. For any other robot it is symmetric, so reversible, with an
+//! error of energy that does not grow over long motions that are regular. Momentum of a cyclic
+//! coordinate (a plain one on which nothing depends) is kept, any other to the order of the method.
 //!
 //! Simo & Wong, Int. J. Numer. Methods Eng. 31, 1991 (energy and momentum with the midpoint);
 //! Hairer, Lubich & Wanner 2006, §IV.2 (quadratic invariants), §IV.8 (Cayley's map).
@@ -29,7 +28,7 @@ use crate::simulate::step_control::{Error, Norm};
 use crate::simulate::system::System;
 use crate::simulate::{Control, SimulateError};
 
-/// Rounds after which a step is given up.
+/// Largest number of rounds of a step.
 const MOST_ROUNDS: usize = 200;
 
 pub(crate) struct LieMidpoint {
@@ -69,8 +68,8 @@ impl LieMidpoint {
             let change = h * largest(found.iter().zip(&self.acceleration).map(|(a, b)| a - b));
             let size = largest(v.iter().copied()).max(h * largest(found.iter().copied()));
             self.acceleration.copy_from_slice(found);
-            // Down to rounding, or as near as it goes; of what has died away below the least normal
-            // number rounding is no small part.
+            // Down to rounding, or as near as possible; for numbers below the least normal number,
+            // rounding is no small part.
             if change <= (f64::EPSILON * size).max(f64::MIN_POSITIVE) || (change >= before && change <= 64.0 * f64::EPSILON * size) {
                 self.place_middle(system, v, h);
                 return Ok(());
@@ -108,7 +107,7 @@ impl<R: Dynamics<f64>> Method<R> for LieMidpoint {
         self.curve.forget();
         let nv = system.nv();
         let v = &start.y[nv..2 * nv];
-        // Cayley's map turns by less than π, whatever it is given.
+        // Cayley's map turns by less than π, for every argument.
         if let Some(error) = system.turns_too_far((start.t, h), v, PI) {
             return Err(error);
         }

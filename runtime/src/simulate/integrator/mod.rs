@@ -80,8 +80,8 @@ pub(crate) trait Method<R: Dynamics<f64>> {
         None
     }
 
-    /// The fastest motion that the last step of an explicit method saw, 1/s, roughly, and two
-    /// points where it may be; zero if it saw nothing that makes its step suspicious.
+    /// The fastest motion in the last step of an explicit method, 1/s, roughly, and two points
+    /// where it may be; zero without a sign that the step is suspicious.
     fn fastest(&self) -> Option<(f64, [&[f64]; 2])> {
         None
     }

@@ -4,15 +4,15 @@
 //! (1/(hγ) − J) k_i = f(t + α_i h, y + Σ a_ij k_j) + Σ c_ij k_j/h + h γ_i ∂f/∂t      y_1 = y + Σ a_6j k_j + k_6,  error k_6
 //! ```
 //!
-//! Its factor for a decay e^{−xt}, R(−hx), is between 0 and 1 for every hx > 0: a decay is never
-//! turned round. Hairer & Wanner, *Solving Ordinary Differential Equations II*, 1996, §IV.7
+//! Its factor for a decay e^{−xt}, R(−hx), is between 0 and 1 for every hx > 0: a decay never
+//! changes its sign. Hairer & Wanner, *Solving Ordinary Differential Equations II*, 1996, §IV.7
 //! (method, form without products by J), §VI.4 (RODAS: coefficients and curve of order 3).
 //!
 //! J is exact: derivatives of forward dynamics along ⊕, −½ ad(v) for joints that turn freely, and
 //! those of the controller by differences. The first half of the equations is eliminated by hand,
-//! so that what is factorised is `[nv][nv]`. Work and losses are integrated over the curve, by
-//! Gauss with three nodes; but over a layer, in which a velocity decays faster than the step, the
-//! curve has no shape, and they come from the change of energy.
+//! so that the factorised matrix is `[nv][nv]`. Work and losses are integrated over the curve, by
+//! Gauss with three nodes. Over a layer, in which a velocity decays faster than the step, the curve
+//! does not resolve the motion, and they come from the change of energy.
 
 use articulated_core::dynamics::Dynamics;
 use articulated_core::nalgebra::{Matrix6, Vector6};
@@ -152,8 +152,8 @@ impl Rodas4 {
             y[column] = start.y[column];
         }
         if depends.time {
-            // A small part of the step, as far as times so small are told apart; not across a jump,
-            // with which the step ends.
+            // A small part of the step, as far as such times are distinct; not across a jump, with
+            // which the step ends.
             let later = start.t + (small * start.h).max(8.0 * (start.t.abs().next_up() - start.t.abs()));
             if later < system.kink {
                 self.q.copy_from_slice(&system.origin);
@@ -276,9 +276,9 @@ impl Rodas4 {
         })
     }
 
-    /// Work and losses of a step over a layer, in J: by the change of energy, of which the work is
-    /// that of the mean torque on the way, which is exact where the torque is linear in the way.
-    /// `None` if the powers at the nodes say the same.
+    /// Work and losses of a step over a layer, in J: by the change of energy. The work is that of
+    /// the mean torque on the way, which is exact if the torque is linear in the way. `None` if the
+    /// powers at the nodes agree.
     fn over_layer<R: Dynamics<f64>>(
         &mut self,
         system: &mut System<R>,
@@ -325,7 +325,8 @@ fn apply(free: &[Free], inverses: &[Matrix6<f64>], g: f64, x: &mut [f64]) {
     x[next..].iter_mut().for_each(|x| *x /= g);
 }
 
-/// Part of the energy moved so far up to which two sums of it count as the same.
+/// Two sums of energy count as equal if they differ by at most this part of the energy moved so
+/// far.
 const SAME_ENERGY: f64 = 1e-9;
 
 /// Where the middle of the other two nodes of Gauss is, from ½.

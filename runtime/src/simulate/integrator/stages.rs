@@ -1,4 +1,4 @@
-//! Stages of explicit Runge–Kutta methods, and what is fast between them.
+//! Stages of explicit Runge–Kutta methods, and fast motion between them.
 
 use articulated_core::dynamics::Dynamics;
 
@@ -75,14 +75,13 @@ impl Stages {
         Ok(())
     }
 
-    /// out = y + h·Σ a_j k_j. Inlined, so that nothing is asked of coefficients that are known
-    /// where it is called.
+    /// out = y + h·Σ a_j k_j. Inlined, so that coefficients known at the call need no checks.
     #[inline(always)]
     pub(super) fn combine(&self, y: &[f64], h: f64, a: &[f64], out: &mut [f64]) {
         let n = self.n;
         let (y, out) = (&y[..n], &mut out[..n]);
         for block in 0..n.div_ceil(BLOCK) {
-            // The last block overlaps the one before it where blocks do not fill the whole.
+            // The last block overlaps the one before it if blocks do not divide the length.
             let i = (BLOCK * block).min(n.saturating_sub(BLOCK));
             match (y[i..].first_chunk::<BLOCK>(), out[i..].first_chunk_mut::<BLOCK>()) {
                 (Some(y), Some(out)) => {
@@ -110,14 +109,14 @@ impl Stages {
     }
 }
 
-/// So many times the rate that matters is stable with no explicit method: what stages see after
-/// that is what it made of the motion.
+/// No explicit method is stable at this many times the rate that matters: what later stages see is
+/// a result of the method.
 const WILD: f64 = 10.0;
 
 /// The fastest motion seen between points of a step: the λ with |Δa| = λ²|Δu| + λ|Δv|, which for
-/// springs and for damping by itself is at least 0.6 of the true one, and where it was seen: at
-/// that of the two points with the larger acceleration, and halfway between, where a force that
-/// changes its side is steepest. What is slower than matters is not looked at closely.
+/// springs and for damping by itself is at least 0.6 of the true one. Also its place: that of the
+/// two points with the larger acceleration, and halfway between, where a force that changes its
+/// side is steepest. Motion slower than the rate that matters is not examined closely.
 #[derive(Clone, Debug)]
 pub(super) struct Fastest {
     rate: f64,
@@ -136,14 +135,14 @@ impl Fastest {
         (self.rate, self.least) = (0.0, least);
     }
 
-    /// 1/s, and where; zero where nothing was as fast as matters.
+    /// 1/s, and the places; zero if no motion was as fast as matters.
     pub(super) fn seen(&self) -> (f64, [&[f64]; 2]) {
         (self.rate, self.at.each_ref().map(Vec::as_slice))
     }
 
     /// Two points of a chart and their slopes.
     pub(super) fn compare(&mut self, y: [&[f64]; 2], f: [&[f64]; 2]) {
-        // Where the motion was thrown is no place to look at.
+        // A point to which the motion was thrown is not examined.
         if self.rate > WILD * self.least {
             return;
         }

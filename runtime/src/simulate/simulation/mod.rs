@@ -23,7 +23,7 @@ use crate::simulate::step_control::{Controller, Error, Norm, first_step, roundin
 use crate::simulate::system::System;
 use crate::simulate::{Control, Counts, Ended, Event, Output, Recording, Settings, SimulateError, StateError, Stiffness};
 
-/// A robot and all the room that its simulation needs; a step allocates nothing.
+/// A robot and all the memory that its simulation needs; a step allocates nothing.
 pub struct Simulation<'r, R: Dynamics<f64>> {
     settings: Settings,
     shape: Shape,
@@ -55,18 +55,19 @@ pub struct Reached<'a> {
     pub q: &'a [f64],
     /// The velocity, `[nv]`.
     pub v: &'a [f64],
-    /// What was done since the start.
+    /// Counts since the start.
     pub counts: &'a Counts,
 }
 
-/// What a run is given: what drives the joints, what is looked for, and where records go.
+/// Inputs of a run: the controller of the joints, the events to find, and the destination of
+/// records.
 struct Run<'a, 'e> {
     control: &'a mut dyn Control,
     events: &'a mut [Event<'e>],
     recording: &'a mut Recording,
 }
 
-/// How far a motion has got, beside the state.
+/// Progress of a motion, besides the state.
 struct Progress {
     /// When to record; `None`: never.
     times: Option<Times>,
@@ -77,8 +78,8 @@ struct Progress {
     controller: Option<Controller>,
     /// The step to try next, s.
     h: f64,
-    /// Of a sampled control: whether the next step is the first after a sample, and the step to try
-    /// there, s, by the error of the last such step.
+    /// For a sampled control: whether the next step is the first after a sample, and the step to
+    /// try there, s, by the error of the last such step.
     after_sample: (bool, f64),
     /// Where the present stretch began, and its steps so far.
     stretch: (f64, u64),
@@ -119,10 +120,10 @@ impl Progress {
     }
 }
 
-/// What errors call the step vector of a step.
+/// Name of the step vector of a step in errors.
 const STEP: &str = "step of q";
 
-/// What a step has come to.
+/// Outcome of a step.
 enum Outcome {
     GoOn,
     Stopped(usize),
@@ -163,7 +164,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         Ok(simulation)
     }
 
-    /// Whether the robot has what the integrator needs.
+    /// Checks that the robot has the functions of the integrator.
     fn try_functions(&mut self) -> Result<(), SimulateError> {
         let System { robot, ws, .. } = &mut self.system;
         for function in self.settings.integrator.row().needs {
@@ -177,7 +178,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         &self.settings
     }
 
-    /// Other times for the motions from now on, s: for a loop of one's own, stretch by stretch.
+    /// Other times for the motions from now on, s: for the caller's own loop, stretch by stretch.
     pub fn set_span(&mut self, start: f64, end: f64) -> Result<(), SimulateError> {
         let before = (self.settings.start, self.settings.end);
         (self.settings.start, self.settings.end) = (start, end);
@@ -213,8 +214,8 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     }
 
     /// As [`Simulation::run`], into an existing recording, which also holds the motion up to an
-    /// error. `observer` receives the time and the counts after each step, and may say false to end
-    /// it.
+    /// error. `observer` receives the time and the counts after each step, and may return false to
+    /// end it.
     pub fn run_into(
         &mut self,
         q: &[f64],
@@ -251,7 +252,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         Ok(())
     }
 
-    /// What is wrong with a control for this robot and these settings.
+    /// Errors in a control for this robot and these settings.
     fn wrong_control(&self, control: &dyn Control) -> impl Iterator<Item = StateError> {
         let expected = self.shape.nv;
         let torques = control.count().filter(|n| *n != expected).map(|found| StateError::Length { vector: "tau", found, expected });
@@ -259,8 +260,8 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         torques.into_iter().chain(period)
     }
 
-    /// Where a torque was no number, that is why nothing else is; where there is no mass to move,
-    /// that is why there are no accelerations.
+    /// If a torque was not a number, it is the cause of all other such numbers; if a joint moves no
+    /// mass, that is the cause of missing accelerations.
     fn blamed(&mut self, error: SimulateError) -> SimulateError {
         let nv = self.shape.nv;
         match (&error, self.system.no_torque) {
@@ -333,10 +334,10 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             let state = Reached { t: self.t, q: &self.system.origin, v: &self.y[nv..2 * nv], counts: &self.system.counts };
             let goes_on = observer(&state);
             let ended = self.ended(&outcome, goes_on);
-            // The end that was asked for is recorded if it was asked for.
+            // The end time is recorded only if the output includes it.
             let early = ended.is_some_and(|ended| mapped || ended != Ended::AtEnd);
             if early || self.settings.output == Output::Steps {
-                // What a map made of a state stands beside what was there before.
+                // The state after a map is recorded beside the state before it.
                 if mapped { self.record_here(run) } else { self.record_end(run) }?;
             }
             if let Some(ended) = ended {
@@ -345,7 +346,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         }
     }
 
-    /// One step, up to its end or to the first event that cuts it short. What came of it, and
+    /// One step, up to its end or to the first event that cuts it short. Returns its outcome, and
     /// whether an event has mapped the state.
     fn one_step(&mut self, run: &mut Run) -> Result<(Outcome, bool), SimulateError> {
         self.check_count()?;
@@ -354,7 +355,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         }
         match self.progress.controller {
             Some(_) => self.norm.begin(&self.system, &self.y),
-            // The implicit ones know better themselves.
+            // Implicit methods control their step themselves.
             None if !self.settings.integrator.row().implicit => self.check_turn()?,
             None => {}
         }
@@ -399,14 +400,14 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         self.progress.after_sample.0 = true;
     }
 
-    /// Finds the next sample or kink, or the end. Where torques are held from sample to sample
-    /// there is no kink between; a kink that is not after t is none.
+    /// Finds the next sample or kink, or the end. Torques that are held from sample to sample have
+    /// no kink between; a kink that is not after t is ignored.
     fn find_stretch_end(&mut self, run: &Run) {
         let sample = self.progress.period.map(|period| self.settings.start + self.progress.samples as f64 * period);
         let kink = if sample.is_some() { f64::INFINITY } else { run.control.next_kink(self.t) };
         self.system.kink = if kink > self.t { kink } else { f64::INFINITY };
         let next = sample.unwrap_or(f64::INFINITY).min(self.system.kink).min(self.settings.end);
-        // A stretch shorter than rounding is none.
+        // A stretch shorter than rounding is skipped.
         let least = self.t + rounding(self.t);
         self.progress.until = if next <= least { next.max(least).min(self.settings.end) } else { next };
     }
@@ -431,7 +432,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         first_step(&mut self.system, run.control, &self.norm, (self.t, &self.y, &self.f), order, room)
     }
 
-    /// Makes a step that is accepted, to `end`; gives the time where it ends, s.
+    /// Makes a step that is accepted, to `end`; returns the time where it ends, s.
     fn make_step(&mut self, run: &mut Run) -> Result<f64, SimulateError> {
         let until = self.progress.until;
         let Some(mut controller) = self.progress.controller else { return self.fixed_step(run, until) };
@@ -517,7 +518,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         Ok(t)
     }
 
-    /// No step may turn a joint by as much as a whole turn, which charts cannot tell from none.
+    /// No step may turn a joint by a whole turn or more, which charts cannot distinguish from none.
     fn check_turn(&self) -> Result<(), SimulateError> {
         let (nv, h) = (self.shape.nv, self.settings.step.unwrap_or(self.progress.h).min(self.progress.until - self.t));
         self.system.turns_too_far((self.t, h), &self.y[nv..2 * nv], TAU).map_or(Ok(()), Err)
@@ -529,13 +530,13 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         counts.layers += u64::from(self.system.over_layer);
         counts.limited_by = self.progress.pace.limiting();
         counts.largest_step = counts.largest_step.max(h);
-        // What happens where a motion begins cuts its first step off at once.
+        // Events at the start of a motion cut its first step to zero length.
         if h > 0.0 {
             counts.smallest_step = counts.smallest_step.min(h);
         }
     }
 
-    /// The end of the step becomes the state. Whether a map has changed it then.
+    /// The end of the step becomes the state. Returns whether a map has then changed it.
     fn advance(&mut self, run: &mut Run, t: f64, whole: bool) -> Result<bool, SimulateError> {
         let nv = self.shape.nv;
         let until = self.progress.until;

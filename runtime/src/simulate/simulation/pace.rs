@@ -1,4 +1,4 @@
-//! How fast a motion advances, and which of its numbers limits the steps.
+//! Pace of a motion, and the number that limits its steps.
 
 use articulated_core::dynamics::Dynamics;
 
@@ -9,10 +9,10 @@ use crate::simulate::error::joint;
 /// Tries between two looks at the pace.
 const WINDOW: u64 = 4096;
 
-/// Looks in a row after which a pace is taken for the motion's.
+/// Number of checks in a row after which a pace counts as the motion's.
 const LOOKS: u32 = 3;
 
-/// So many times the steps that are allowed: a pace at which the end is never reached.
+/// Multiple of the allowed steps: at such a pace the end is never reached.
 const HOPELESS: f64 = 100.0;
 
 /// The pace of steps that tolerances choose.
@@ -70,7 +70,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         Err(SimulateError::NoProgress { t: self.t, step: way / WINDOW as f64, left, limiting })
     }
 
-    /// What number `index` of a step is: its vector, its index there, and the joint.
+    /// Number `index` of a step: its vector, its index there, and the joint.
     pub(super) fn number(&self, index: usize) -> (&'static str, usize, Option<String>) {
         let nv = self.shape.nv;
         let (what, index) = if index < nv { (STEP, index) } else { ("v", index - nv) };

@@ -23,8 +23,8 @@ macro_rules! curve {
 }
 
 impl<R: Dynamics<f64>> Simulation<'_, R> {
-    /// Outputs and events of the step to t, which is not yet the state; where it is cut short,
-    /// `end` is there. The time up to which it counts, and what is next.
+    /// Outputs and events of the step to t, which is not yet the state. If the step is cut short,
+    /// `end` is at the cut. Returns the time up to which the step counts, and its outcome.
     pub(super) fn look(&mut self, run: &mut Run, t: f64) -> Result<(f64, Outcome), SimulateError> {
         let (cut, outcome) = if run.events.is_empty() { (1.0, Outcome::GoOn) } else { self.events(run, t)? };
         let stop = if cut < 1.0 { self.t + cut * (t - self.t) } else { t };
@@ -36,8 +36,8 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         Ok((stop, outcome))
     }
 
-    /// Records the events of the step to t. The part of it after which one of them cuts it short,
-    /// and what is next.
+    /// Records the events of the step to t. Returns the part of it after which one of them cuts it
+    /// short, and its outcome.
     fn events(&mut self, run: &mut Run, t: f64) -> Result<(f64, Outcome), SimulateError> {
         let (start, h) = (self.t, t - self.t);
         let tolerance = self.settings.event_tolerance.max(rounding(t) / 4.0) / h;
@@ -46,8 +46,8 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         self.detectors.scan(run.events, &mut self.system, &mut curve, (tolerance, t >= self.settings.end))?;
         let (mut cut, mut outcome, first) = (1.0, Outcome::GoOn, run.recording.events.len());
         for &Zero { theta, event, direction } in &self.detectors.zeros {
-            // What happens at the same time as the first that cuts the step short happens too; the
-            // rest is found again, if it still comes.
+            // Events at the same time as the first that cuts the step short happen too; later ones
+            // are found again, if they still occur.
             if !matches!(outcome, Outcome::GoOn) && theta > cut + tolerance {
                 break;
             }
@@ -60,7 +60,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
             };
             if matches!(outcome, Outcome::GoOn) {
                 cut = theta;
-                // So does what was found a moment before it.
+                // So do events found a moment before it.
                 self.progress.cut = first + self.detectors.zeros.iter().take_while(|zero| zero.theta < cut - tolerance).count();
             }
             outcome = next;
@@ -131,9 +131,9 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         Ok(true)
     }
 
-    /// On which side of zero each event is from here on; of those that have just happened, where it
-    /// is a moment later, unless a map has taken it away from zero. What a map leaves at rest at
-    /// zero is where it came from: it happens again if it goes on.
+    /// The side of zero of each event from here on. For events that have just happened, the side a
+    /// moment later, unless a map has taken the function away from zero. A function that a map
+    /// leaves at rest at zero is on the side it came from: the event happens again if it goes on.
     pub(super) fn take_sides(&mut self, run: &mut Run) -> Result<(), SimulateError> {
         const MOMENT: f64 = 1e-9;
         let nv = self.shape.nv;
@@ -149,7 +149,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
                 let rates = self.y[nv..2 * nv].iter().zip(&self.f[nv..2 * nv]);
                 self.v.iter_mut().zip(rates).for_each(|(out, (v, a))| *out = v + MOMENT * a);
                 let change = (run.events[e].function)(self.t + MOMENT, &self.point.q, &self.v) - here;
-                // More than what the search left, and more than a moment does.
+                // More than the error of the search, and more than a moment changes.
                 let away = here.abs() > (2.0 * self.detectors.left(e)).max(change.abs());
                 value = if away { here } else { change };
             }

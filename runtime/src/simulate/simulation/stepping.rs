@@ -7,7 +7,7 @@ use crate::simulate::{Control, Counts, SimulateError, StateError};
 
 impl<R: Dynamics<f64>> Simulation<'_, R> {
     /// Puts the robot at q `[nq]` and v `[nv]` at the start time, for [`Simulation::step`]. Errors:
-    /// all that is wrong with the state.
+    /// all errors in the state.
     ///
     /// ```
     /// use articulated::simulate::{IntegratorId, NoTorque, Settings, Simulation};
@@ -36,7 +36,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
     }
 
     /// One step of the integrator from the present state. Returns `false` once the end time of the
-    /// settings is reached; then nothing moves any more.
+    /// settings is reached; then the state no longer changes.
     ///
     /// The step is that of a run: of length [`Settings::step`](super::super::Settings::step) or
     /// chosen by the tolerances, and cut where a sampled control is sampled. Nothing is recorded,
@@ -80,7 +80,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         &self.y[nv..2 * nv]
     }
 
-    /// What was done since the start.
+    /// Counts since the start.
     pub fn counts(&self) -> &Counts {
         &self.system.counts
     }

@@ -1,4 +1,4 @@
-//! Explicit integrators that meet a stiff motion.
+//! Stiff motions under explicit integrators.
 
 use articulated_core::dynamics::Dynamics;
 
@@ -19,12 +19,12 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         self.refuse(h, found)
     }
 
-    /// Whether a step that is not stable is still news, and not to be ignored.
+    /// Whether to look for unstable steps: they are not ignored, and none is recorded yet.
     pub(super) fn looks_for_stiffness(&self) -> bool {
         self.settings.stiffness != Stiffness::Ignore && self.system.counts.stiff_at.is_none()
     }
 
-    /// The same where the last step saw something fast, on its way.
+    /// The same if the last step saw fast motion on its way.
     pub(super) fn check_suspect(&mut self, run: &mut Run) -> Result<(), SimulateError> {
         let Some(h) = self.settings.step.map(|h| self.longest_step(h)) else { return Ok(()) };
         for place in 0..2 {
@@ -93,14 +93,14 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
     }
 }
 
-/// So many steps of an explicit integrator are made sooner than another is chosen.
+/// To make this many steps of an explicit integrator is faster than to choose another.
 const AFFORDABLE: f64 = 20_000.0;
 
 /// Steps that stability holds back.
 #[derive(Default)]
 pub(super) struct Held {
     steps: u32,
-    /// Steps since the last of them that it did not.
+    /// Steps since the last of them that stability did not hold back.
     free: u32,
     /// When the first began, s, and the tries before.
     since: (f64, u64),

@@ -1,4 +1,4 @@
-//! Pieces: what they define, and what they keep.
+//! Pieces: the values that they define and keep.
 
 use std::collections::HashMap;
 
@@ -23,7 +23,7 @@ fn graph() -> Graph {
     g
 }
 
-/// The statements of a graph that stores numbers as they are made, in pieces of so many.
+/// The statements of a graph that stores numbers as they are made, in pieces of this length.
 fn cut(graph: &Graph, length: usize) -> Body {
     let ty = if graph.lanes().width == 1 { Ty::F64 } else { Ty::Vector(graph.lanes().width) };
     let results = vec![Array { start: 0, lengths: vec![graph.outputs.len()] }];
@@ -33,7 +33,7 @@ fn cut(graph: &Graph, length: usize) -> Body {
     Body { ty, lanes: graph.lanes().clone(), results, pieces, kept, slots: None, barrier: false, is_partial: false }
 }
 
-/// Holds pieces to the rules of bodies and to the graph.
+/// Checks pieces against the rules of bodies and the graph.
 fn check(graph: &Graph, length: usize) {
     let body = cut(graph, length);
     assert_eq!(verify(&body), Ok(()), "pieces of {length}");

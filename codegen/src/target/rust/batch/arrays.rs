@@ -11,7 +11,7 @@ pub(super) struct Array {
     lengths: Vec<String>,
     /// How many numbers.
     pub(super) numbers: usize,
-    /// Whether one may do for all states.
+    /// Whether one may serve for all states.
     pub(super) is_parameters: bool,
 }
 
@@ -21,7 +21,7 @@ impl Array {
         Self { name: name.to_owned(), lengths, numbers: dims.iter().map(|d| d.len(sizes)).product(), is_parameters: false }
     }
 
-    /// Of which there are some, if any: they are told by name.
+    /// The parameters, if any; their number is a named constant.
     fn parameters(name: &str) -> Self {
         Self { name: name.to_owned(), lengths: vec!["PARAMETERS.len()".into()], numbers: 1, is_parameters: true }
     }
@@ -36,7 +36,7 @@ impl Array {
         self.lengths.iter().rev().fold(of.to_owned(), |inner, length| format!("[{inner}; {length}]"))
     }
 
-    /// States in which it stands are put into its block, where not one does for all.
+    /// Gathers the numbers of `states` into its block, unless one set serves for all.
     pub(super) fn gathered(&self, states: &str) -> String {
         let Self { name, is_parameters, .. } = self;
         let gather = format!("            gather({states}, &mut {name}_block);\n");
@@ -54,7 +54,7 @@ impl Array {
     }
 }
 
-/// What a function takes.
+/// The arguments of a function.
 pub(super) fn inputs(function: &Function) -> Vec<Array> {
     let array = |a: &crate::lir::function::Argument| {
         if a.is_parameters() { Array::parameters(a.name) } else { Array::new(a.name, &a.dims, function.shape) }
@@ -62,7 +62,7 @@ pub(super) fn inputs(function: &Function) -> Vec<Array> {
     function.arguments.iter().map(array).collect()
 }
 
-/// What it gives.
+/// The results of a function.
 pub(super) fn results(function: &Function) -> Vec<Array> {
     let parts = &function.spec.parts;
     let name = |f: &'static str| if parts.len() == 1 { "out" } else { f };

@@ -90,7 +90,8 @@ impl Way {
         let float = if no_std { "use super::super::super::Float;\n\n" } else { "" };
         let text = float.to_owned() + &tree_shake(&text, calls);
         let _ = writeln!(out, "#[doc(hidden)]\n#[cfg({})]\nmod {} {{\n    mod lanes {{\n{text}}}\n", self.cfg, self.module);
-        // Functions of the robot could bear names of the lanes': its constants alone are let in.
+        // Functions of the robot could have the names of the lanes' functions: only its constants
+        // are imported.
         let parameters = if functions.iter().any(|f| f.inputs().iter().any(|a| a.is_parameters)) { ", PARAMETERS" } else { "" };
         let _ = writeln!(
             out,
@@ -114,7 +115,7 @@ impl Way {
 }
 
 impl<'a> Batch<'a> {
-    /// None where there is no function of many states.
+    /// `None` if there is no function of many states.
     pub(crate) fn of(function: &'a Function<'a>, level: Precision) -> Option<Self> {
         Some(Self { function, states: function.states.as_ref()?, level })
     }
@@ -138,7 +139,7 @@ impl<'a> Batch<'a> {
         !self.results().is_empty()
     }
 
-    /// The body, and what calls it for blocks and for states one after the other.
+    /// The body, and its callers for blocks and for states one after the other.
     fn body(&self, out: &mut String) {
         if !self.is_any() {
             return;
@@ -175,8 +176,8 @@ impl<'a> Batch<'a> {
         *out += "        }\n    }\n    };\n}\n\n";
     }
 
-    /// What is computed for one block, in pieces where it is long; where it pays, for sixteen
-    /// registers too.
+    /// The computation of one block, in pieces if it is long; if it pays, also for sixteen
+    /// registers.
     fn blocks(&self, out: &mut String, declared: &str, names: &str) {
         let (name, States { body, few_registers }) = (self.name(), self.states);
         let mut write = |name: &str, body: &Body| {
@@ -238,8 +239,8 @@ mod tests {
     use super::*;
     use crate::{Request, generate};
 
-    /// The mass matrix of two arms side by side is half zeros; its block of results would take
-    /// longer to turn than to compute.
+    /// The mass matrix of two arms side by side is half zeros; transposing its block of results
+    /// would take longer than computing it.
     #[test]
     fn sparse_results_are_computed_state_by_state_in_doubles() {
         let arm = |name: &str| {

@@ -48,7 +48,7 @@ impl Batch<'_> {
         inputs + &results.join(", ")
     }
 
-    /// All slices have as many states as the first.
+    /// Checks that all slices have as many states as the first.
     fn lengths(&self, out: &mut String) {
         let mut arrays: Vec<Array> = inputs(self.function).into_iter().chain(results(self.function)).collect();
         arrays.sort_by_key(|array| array.is_parameters);
@@ -71,7 +71,7 @@ impl Batch<'_> {
         let _ = writeln!(out, "    for k in 0..{first}.len() {{\n        super::super::{name}_into({inputs}&mut {first}[k]);\n    }}");
     }
 
-    /// The call in the first instruction set that there is.
+    /// The call in the first available instruction set.
     fn calls(&self, out: &mut String, inner: &str, ways: &[Way]) {
         let inputs: String = self.inputs().iter().map(|a| a.flat(false) + ", ").collect();
         let results: Vec<String> = self.results().iter().map(|a| a.flat(true)).collect();

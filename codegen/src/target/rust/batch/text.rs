@@ -1,4 +1,4 @@
-//! What generated batches have besides bodies.
+//! Parts of generated batches besides bodies.
 
 /// Helpers of batch bodies.
 pub(super) const SUPPORT: &str = "\
@@ -110,7 +110,7 @@ macro_rules! batch_support {
 
 ";
 
-/// What the module shows besides the functions.
+/// Public items of the module besides the functions.
 pub(super) const PUBLIC: &str = "\
     /// One number of each state of a block.
     #[repr(align(64))]

@@ -12,8 +12,7 @@ pub(super) struct Way {
     pub(super) bytes: usize,
     /// Where it is compiled.
     pub(super) cfg: &'static str,
-    /// What is asked of the processor; for one that all processors have that it is compiled for,
-    /// nothing.
+    /// The condition on the processor; `true` if every processor that it is compiled for meets it.
     pub(super) asked: &'static str,
 }
 

@@ -9,9 +9,8 @@ use crate::target::rust::function::signature::Signature;
 use crate::target::rust::spills;
 use crate::target::rust::statements::{FIELDS, Place, Printer, ty};
 
-/// Has the compiler lay the function's frame at the start of a cache line. Vectors that it keeps
-/// there lie across two lines otherwise, wherever the stack happens to begin so: a function takes
-/// up to a seventh longer.
+/// Aligns the function's frame with a cache line. Otherwise vectors in the frame may cross lines,
+/// depending on where the stack begins: a function takes up to a seventh longer.
 const ALIGNED: &str = "    {
         // Vectors in this frame lie in one cache line each.
         #[repr(align(64))]
@@ -89,8 +88,8 @@ fn barrier_pointers(out: &mut String, numbers: usize, nests: usize) {
 }
 
 /// The pieces as functions `piece_0`, …, each for the features that the macro around it is given,
-/// and `whole`, which calls them. Arrays of arrays are one array to them: to check further indices
-/// takes a compiler long.
+/// and `whole`, which calls them. They see arrays of arrays as one array: compilers take long to
+/// check further indices.
 pub(crate) fn pieces(out: &mut String, body: &Body, signature: &Signature, level: Precision) {
     let is_flat = signature.nests().is_some();
     let gives = if is_flat { signature.gives_flat() } else { signature.gives_inside() };
@@ -117,7 +116,7 @@ pub(crate) fn pieces(out: &mut String, body: &Body, signature: &Signature, level
     *out += "    }\n";
 }
 
-/// What calls so many pieces, and the result if it is a value.
+/// The calls of all pieces, and the result if it is a value.
 fn calls(out: &mut String, signature: &Signature, pieces: usize) {
     let filled = signature.function.ending == Ending::Filled;
     if !filled {
@@ -143,7 +142,7 @@ fn structs(slots: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..slots.div_ceil(FIELDS)).map(move |k| (k, FIELDS.min(slots - k * FIELDS)))
 }
 
-/// The type of what pieces hand on.
+/// The type of the values passed between pieces.
 pub(crate) fn kept_types(out: &mut String, name: &str, body: &Body) {
     let ty = ty(body.ty).0;
     let mut declare = |name: &str, fields: Vec<String>| {

@@ -18,7 +18,7 @@ use crate::target::rust::several;
 use crate::target::rust::spills;
 use precision::real;
 
-/// What the printer must know besides the functions.
+/// Context of the printer besides the functions.
 #[derive(Clone, Copy)]
 pub(crate) struct Context {
     pub(crate) parameters: bool,
@@ -27,13 +27,13 @@ pub(crate) struct Context {
 }
 
 impl Context {
-    /// Whether instructions are chosen when it runs.
+    /// Whether instructions are chosen at run time.
     fn chooses(self) -> bool {
         !self.forbid_unsafe && self.level.fused
     }
 }
 
-/// The text of a module: what users see, and the private module behind it.
+/// The text of a module: its public part, and the private module behind it.
 #[derive(Default)]
 pub(crate) struct Text {
     pub(crate) public: String,
@@ -44,7 +44,7 @@ pub(crate) struct Text {
 /// none of these takes a name from the user.
 pub(crate) const IMPLEMENTATION: &str = "implementation";
 
-/// The function's source, with its documentation and, where it gives several results, the type that
+/// The function's source, with its documentation and, if it has several results, the type that
 /// holds them.
 pub(crate) fn function(text: &mut Text, function: &Function, context: Context) {
     let signature = Signature::of(function, real(context.level));
@@ -170,8 +170,8 @@ fn calls(out: &mut String, body: &Body, signature: &Signature, context: Context)
     }
 }
 
-/// Plain arithmetic, with fused multiply-add where the processor has it: compiled for it, or found
-/// to be so.
+/// Plain arithmetic, with fused multiply-add if the processor has it: known when compiled, or
+/// detected at run time.
 fn chosen(out: &mut String, body: &Body, signature: &Signature, level: Precision) {
     let (takes, names, returns) = (signature.takes(), signature.handed(), signature.returns());
     let (generic, own, fused) =
@@ -228,7 +228,7 @@ fn long_calls(out: &mut String, signature: &Signature, context: Context) {
     let _ = writeln!(out, "    whole!();\n    whole({names})");
 }
 
-/// The call of the body for the best instruction set there is.
+/// The call of the body for the best available instruction set.
 fn lanes_calls(out: &mut String, signature: &Signature) {
     let (names, body) = (signature.handed(), &signature.function.body);
     let (width, several) = (body.ty.lanes(), several::is_used(body));
@@ -287,12 +287,12 @@ fn document(out: &mut String, signature: &Signature, context: Context) {
     );
 }
 
-/// So many things, of which one and several are called so.
+/// A number with its noun in singular or plural.
 fn counted(n: u64, [one, several]: [&str; 2]) -> String {
     format!("{n} {}", if n == 1 { one } else { several })
 }
 
-/// What there is to say of a function's form.
+/// Description of a function's form.
 fn form(function: &Function) -> String {
     let entry = function.entry;
     let lanes = if entry.lanes > 1 { format!("; isomorphic limbs in {} lanes", entry.lanes) } else { String::new() };

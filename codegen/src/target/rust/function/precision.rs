@@ -17,7 +17,7 @@ pub(crate) fn computed(level: Precision) -> &'static str {
     if level.arithmetic == Arithmetic::Single { "f32" } else { "f64" }
 }
 
-/// What the statements call by name.
+/// Imports of functions that the statements call by name.
 pub(crate) fn imports(out: &mut String, level: Precision) {
     if level.of_two() {
         *out += "    #[allow(unused_imports)]\n    use self::level::*;\n";
@@ -54,7 +54,7 @@ pub(crate) fn sines(out: &mut String, text: &str, level: Precision, no_std: bool
     }
 }
 
-/// The module of the arithmetic, where there is one.
+/// The module of the arithmetic, if it has one.
 pub(crate) fn module(out: &mut String, level: Precision, no_std: bool) {
     let import = bare::import(no_std);
     if let Some(text) = source(level) {

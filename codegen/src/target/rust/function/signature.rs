@@ -1,4 +1,4 @@
-//! What a generated function takes and gives, as text.
+//! Arguments and results of a generated function, as text.
 
 use std::fmt::Write;
 
@@ -10,7 +10,7 @@ use crate::target::rust::function::results::{index, is_sparse, nested, zeros};
 use crate::target::rust::literal::bare;
 use crate::target::rust::statements::Place;
 
-/// A list and what comes last: a function whose arguments are all constants has no other.
+/// A list and its last item; the list is empty if all arguments are constants.
 fn joined(list: &str, last: &str) -> String {
     if list.is_empty() { last.to_owned() } else { format!("{list}, {last}") }
 }
@@ -71,7 +71,7 @@ impl<'a> Signature<'a> {
         joined(&self.names(), last)
     }
 
-    /// What a body takes: the arguments, and where the result goes if it goes there.
+    /// Parameters of a body: the arguments, and the destination of the result if it has one.
     pub(crate) fn takes(&self) -> String {
         let gives = self.gives_inside();
         match self.function.ending {
@@ -81,24 +81,23 @@ impl<'a> Signature<'a> {
         }
     }
 
-    /// What a body is handed.
+    /// Arguments in the call of a body.
     pub(crate) fn handed(&self) -> String {
         if self.function.ending == Ending::Value { self.names() } else { self.names_and("out") }
     }
 
-    /// What a body returns.
+    /// Return type of a body.
     pub(crate) fn returns(&self) -> String {
         if self.function.ending == Ending::Value { format!(" -> {}", self.gives_inside()) } else { String::new() }
     }
 
-    /// Whether there is a form that writes into what the caller has: wherever the result is more
-    /// than a number.
+    /// Whether there is a form that writes into the caller's memory: if the result is more than a
+    /// number.
     pub(crate) fn has_into(&self) -> bool {
         self.group.is_some() || !self.function.spec.parts[0].function.gives.is_empty()
     }
 
-    /// How many times the elements of the result are arrays themselves, where it is one array of
-    /// arrays.
+    /// Number of further dimensions of the result, if it is one array of arrays.
     pub(crate) fn nests(&self) -> Option<usize> {
         let nests = self.function.spec.parts[0].function.gives.len().checked_sub(1)?;
         (nests > 0 && self.group.is_none()).then_some(nests)
@@ -181,8 +180,8 @@ impl<'a> Signature<'a> {
         let _ = if is_written { writeln!(out, "    out.write({value});") } else { writeln!(out, "    {value}") };
     }
 
-    /// The array in which each part of a result is that is written where nothing is yet: a name, a
-    /// pointer to it, how many numbers.
+    /// The array of each part of a result in uninitialised memory: its name, a pointer to it, its
+    /// length.
     pub(crate) fn rooms(&self) -> Vec<(String, String, usize)> {
         let parts = self.function.spec.parts.iter().zip(self.function.results.iter());
         let room = |(part, array): (&crate::FunctionTerm, &crate::lir::Array)| {
@@ -241,7 +240,7 @@ fn sparse(out: &mut String, name: &str, values: &[Option<String>], lengths: &[us
     name.to_owned()
 }
 
-/// Puts what is not zero into an array of zeros.
+/// Writes the non-zero values into an array of zeros.
 fn put(out: &mut String, name: &str, values: &[Option<String>], lengths: &[usize]) {
     for (k, value) in values.iter().enumerate().filter_map(|(k, value)| Some((k, value.as_ref()?))) {
         let _ = writeln!(out, "    {name}{} = {};", index(k, lengths), bare(value));
@@ -277,7 +276,7 @@ mod tests {
         work(&Signature::of(&function, "f64"))
     }
 
-    /// The end of a body that gives these values.
+    /// The end of a body with these values.
     fn end(text: &str, ending: Ending, values: &[Option<String>]) -> String {
         with(text, SHAPE, ending, |signature| {
             let mut out = String::new();
@@ -286,7 +285,7 @@ mod tests {
         })
     }
 
-    /// Zeros but for one in so many.
+    /// Zeros except for one in `every`.
     fn sparse(n: usize, every: usize) -> Vec<Option<String>> {
         (0..n).map(|k| (k % every == 1).then(|| format!("x{k}"))).collect()
     }
@@ -309,7 +308,7 @@ mod tests {
         let negative = [&[Some("(-2.0)".to_owned())], &vec![None; 80][..]].concat();
         let into = end("mass_matrix", Ending::Written, &negative);
         assert_eq!(into, format!("    let out = out.write({zeros});\n    out[0][0] = -2.0;\n"));
-        // Nothing is put where all is zero.
+        // Nothing is written if all is zero.
         let none = end("mass_matrix", Ending::Written, &vec![None; 81]);
         assert_eq!(none, format!("    let mass_matrix = {zeros};\n    out.write(mass_matrix);\n"));
     }

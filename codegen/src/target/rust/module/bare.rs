@@ -1,5 +1,5 @@
-//! Code for crates without `std`: what `core` lacks of floating-point numbers, by the crate `libm`,
-//! under the names that `std` gives it.
+//! Code for crates without `std`: floating-point functions that `core` lacks, by the crate `libm`,
+//! under their names in `std`.
 
 const FLOAT: &str = "
 /// What `core` lacks of floating-point numbers, by the crate `libm`.
@@ -38,7 +38,7 @@ pub(crate) fn float() -> String {
     FLOAT.to_owned() + &[("f64", ""), ("f32", "f")].map(of).concat()
 }
 
-/// What a module of the private one imports where it may need them.
+/// Import of a submodule of the private module that may need it.
 pub(crate) fn import(no_std: bool) -> &'static str {
     if no_std { "#[allow(unused_imports)]\nuse super::Float;\n\n" } else { "" }
 }

@@ -1,4 +1,4 @@
-//! What a generated file says of itself.
+//! The head of a generated file.
 
 use std::fmt::Write;
 
@@ -64,7 +64,7 @@ fn first_of(line: &mut impl FnMut(&str), heading: &str, all: &[String], rest: &s
     }
 }
 
-/// How the robot differs from its file; nothing for one that does not.
+/// The edits of the robot relative to its file, if any.
 fn edits(module: &Module<'_>) -> Vec<String> {
     let o = &module.request.options;
     let mut lines = Vec::new();
@@ -106,7 +106,7 @@ fn pieces(n: usize) -> String {
 fn numbers(applied: &Applied) -> String {
     let mut rest = applied.parameters.as_slice();
     let fields = applied.effect.row().fields_of(applied.parameters.len());
-    // What stands in for another field and is 0 is off.
+    // A field that replaces another and is 0 is off.
     let stands_in = |f: &Field| fields.iter().any(|other| other.unless == Some(f.name));
     let field = |f: &Field| {
         let (own, others) = rest.split_at(f.len.min(rest.len()));
@@ -123,7 +123,7 @@ fn numbers(applied: &Applied) -> String {
 /// How much of the unused content a header lists.
 const LISTED: usize = 40;
 
-/// FNV-1a, 64 bits: names the input, nothing more.
+/// FNV-1a, 64 bits: it only identifies the input.
 fn fnv(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3))
 }

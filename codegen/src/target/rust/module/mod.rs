@@ -68,7 +68,7 @@ pub(crate) fn module(module: &Module, rust: &RustOptions) -> String {
     out
 }
 
-/// Stands before constants with numbers of the file, which are what they are: also 3.14, and
+/// Attribute of constants with numbers of the file, which are kept as they are: also 3.14, and
 /// 6.283185307179586.
 const NUMBERS: &str = "#[allow(clippy::all, clippy::pedantic)]";
 
@@ -94,7 +94,7 @@ fn constants(out: &mut String, model: &Model<f64>) {
     ] {
         constant(out, doc, &format!("pub const {name}: [&str; {length}] = {names:?};"));
     }
-    // As many as the joint has of each, in q or in v.
+    // One for each coordinate of the joint, in q or in v.
     let each = |count: fn(&JointInfo) -> usize, of: fn(&Limit) -> f64, none: f64| -> Vec<f64> {
         model.joints().iter().flat_map(|j| vec![j.limit.as_ref().map_or(none, of); count(j)]).collect()
     };
@@ -237,8 +237,8 @@ fn names_by_number(out: &mut String, path: &str, model: &Model<f64>) {
     let _ = writeln!(out, "        {option}::Some({path}::JointRow {{ name: JOINT_NAMES[index], kind, q, v, limit }})\n    }}");
 }
 
-/// How one function is called through slices. Of a robot without degrees of freedom there may be no
-/// numbers to give, and no rows of none.
+/// The call of one function through slices. For a robot without degrees of freedom, numbers and
+/// rows may be empty.
 fn arm(
     out: &mut String,
     (path, real): (&str, &str),

@@ -22,19 +22,18 @@ pub fn identifier(name: &str) -> String {
     if !ident.starts_with(|c: char| c.is_alphabetic()) {
         ident.insert(0, '_');
     }
-    // An underscore alone is no name, and neither is what the compiler does not take for one.
+    // An underscore alone is not a name, nor is a text that the compiler rejects.
     if ident.chars().all(|c| c == '_') || !is_identifier(&ident) || !passes_lints(&ident) { ascii(name) } else { ident }
 }
 
-/// Whether the compiler has no warning for an identifier that is alone in a crate: neither
-/// `uncommon_codepoints` nor `mixed_script_confusables`, and none of `confusable_idents` beside any
-/// in ASCII.
+/// Whether an identifier alone in a crate causes no warning: neither `uncommon_codepoints` nor
+/// `mixed_script_confusables`, nor `confusable_idents` beside any in ASCII.
 fn passes_lints(ident: &str) -> bool {
     let beyond = || ident.chars().filter(|c| !c.is_ascii());
     let looks_ascii = skeleton(ident).all(|c| c.is_ascii());
     let distinct: Vec<AugmentedScriptSet> =
         beyond().filter(|c| !is_potential_mixed_script_confusable_char(*c)).chain(['A']).map(AugmentedScriptSet::for_char).collect();
-    // A script is safe where one of its letters looks like none of another script. Latin is.
+    // A script is safe if one of its letters looks like none of another script. Latin is safe.
     let is_safe = |c: char| {
         let own = AugmentedScriptSet::for_char(c);
         let shared = |other: &AugmentedScriptSet| {
@@ -66,13 +65,13 @@ fn ascii(name: &str) -> String {
     })
 }
 
-/// Whether Rust takes `ident` for one plain identifier.
+/// Whether Rust parses `ident` as one plain identifier.
 fn is_identifier(ident: &str) -> bool {
     let tokens = ident.parse::<proc_macro2::TokenStream>().map(|t| t.into_iter().collect::<Vec<_>>());
     matches!(tokens.as_deref(), Ok([proc_macro2::TokenTree::Ident(i)]) if i == ident)
 }
 
-/// Whether a constant can be called so.
+/// Whether a constant can have this name.
 pub(crate) fn is_name(ident: &str) -> bool {
     is_identifier(ident) && !is_keyword(ident) && !matches!(ident, "_" | "Self")
 }
@@ -112,8 +111,8 @@ impl Names {
     }
 }
 
-/// The Rust names of all, those that look like others written by code points; those that another
-/// has already are among the clashes.
+/// The Rust names of all; look-alikes are written by code points. A name that another has already
+/// is a clash.
 fn idents<'a>(
     kind: &'static str,
     names: impl Iterator<Item = &'a str>,
@@ -139,7 +138,7 @@ fn idents<'a>(
     names.map(&mut ident).collect()
 }
 
-/// Names in Rust of all, those that look like others written by code points.
+/// Names in Rust of all; look-alikes are written by code points.
 pub(crate) fn identifiers<'a>(names: impl Iterator<Item = &'a str> + Clone) -> Vec<String> {
     let plain: Vec<String> = names.clone().map(identifier).collect();
     let alike = look_alikes(plain.iter());
@@ -152,7 +151,7 @@ fn distinct(name: &str, alike: &BTreeSet<String>) -> String {
     if alike.contains(&ident) { ascii(name) } else { ident }
 }
 
-/// Two names that become one: at the place where one of them is renamed, if a file does.
+/// The error of two names that become one, at the place where a file renames one of them, if any.
 fn clash(kind: &str, [first, second]: [&String; 2], ident: &str, request: &Request) -> Diagnostic {
     let renamed = |name: &&String| request.options.rename.iter().rfind(|names| names.0 == **name && names.span.is_some());
     let entry = [second, first].into_iter().find_map(|name| renamed(&name));

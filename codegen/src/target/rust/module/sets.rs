@@ -1,4 +1,4 @@
-//! Instruction sets in generated code: which modules of lanes it needs, and how it asks for the
+//! Instruction sets in generated code: the modules of lanes that it needs, and its detection of the
 //! processor.
 
 use std::fmt::Write;
@@ -18,7 +18,7 @@ use crate::target::rust::requirements::Requirements;
 use crate::target::rust::several;
 use crate::target::rust::tree_shake::tree_shake;
 
-/// What the functions call: multiply-adds, sines, lanes.
+/// Support that the functions call: multiply-adds, sines, lanes.
 pub(crate) fn support(out: &mut String, functions: &[Function], (forbid_unsafe, no_std): (bool, bool), level: Precision) {
     let mut calls = Requirements::default();
     functions.iter().for_each(|f| {
@@ -40,7 +40,7 @@ pub(crate) fn support(out: &mut String, functions: &[Function], (forbid_unsafe, 
     precision::module(out, level, no_std);
     let mut when = When { portable: OTHERS, eight: COMPILED_FOR_AVX512_BESIDE_AVX2 };
     let mut widths: Vec<usize> = functions.iter().map(|f| f.body.ty.lanes()).filter(|w| *w > 1).collect();
-    // Vectors of which there is more than one, in those of the widest registers.
+    // Several vectors at once, in vectors of the widest registers.
     for width in [2, 4] {
         if functions.iter().any(|f| f.body.ty.lanes() == width && several::is_used(&f.body)) {
             several::module(out, width);
@@ -73,7 +73,7 @@ struct When {
     eight: &'static str,
 }
 
-/// The modules of lanes in these widths: what is called in `out` of them.
+/// The modules of lanes in these widths, with the functions that `out` calls.
 fn lanes(out: &mut String, widths: &[usize], when: &When, (forbid_unsafe, no_std): (bool, bool), level: Precision, calls: &Requirements) {
     let sets: &[(Set, &str, &str)] = if forbid_unsafe { &SETS[..1] } else { &SETS };
     let lint = if forbid_unsafe { "" } else { "unsafe_code, " };
@@ -99,8 +99,8 @@ fn lanes(out: &mut String, widths: &[usize], when: &When, (forbid_unsafe, no_std
     }
 }
 
-/// The instruction sets of limbs and sines, and what stands before the module of each; [`When`] has
-/// it of those that have none here.
+/// The instruction sets of limbs and sines, with the attribute of each module; [`When`] has it for
+/// those without one here.
 const SETS: [(Set, &str, &str); 5] = [
     (Set::Portable, "portable", ""),
     (Set::Sse2, "sse2", NOT_COMPILED_FOR_AVX2),
@@ -121,7 +121,7 @@ const FUSED: bool = false;
 
 ";
 
-/// A trait, so that compilers know late what `F::fma` is: where they know early, they inline each
+/// A trait, so that compilers resolve `F::fma` late: if they resolve it early, they inline each
 /// call before they optimise, and take longer.
 const FMA: &str = "\
 /// How a·b + c is computed.

@@ -1,6 +1,6 @@
-//! Names that the compiler would warn of: they are the user's.
+//! Names of the user that would cause compiler warnings.
 
-/// What stands before a constant of this name.
+/// Attribute of a constant of this name.
 pub(crate) fn of_constant(name: &str) -> &'static str {
     if name.contains(char::is_lowercase) { "#[allow(non_upper_case_globals)]\n    " } else { "" }
 }

@@ -2,7 +2,7 @@
 
 use articulated_core::diagnostic::{Diagnostic, summary};
 
-/// The constant that lists what looks wrong in the robot's file, a line for each sort of warning.
+/// The constant that lists the warnings about the robot's file, one line for each sort.
 pub(crate) fn warnings(warnings: &[Diagnostic]) -> String {
     let lines = summary(warnings);
     format!(

@@ -18,12 +18,11 @@ impl<S: Scalar<Mask = bool>> Factor<S> {
         self.norm = (0..n).fold(S::zero(), |most, i| larger(row(i), most));
     }
 
-    /// An estimate of κ₁ of the matrix that was factored, scaled to a diagonal of ones: M_ik/√(M_ii
-    /// M_kk), which has no units and is within n of the least that any scaling of the joints' units
-    /// gives (van der Sluis, *Numer. Math.* 14, 1969). Never more than κ₁, rarely less than a
-    /// third: Hager's estimate from two starts, with Higham's vector besides (Higham, *Accuracy and
-    /// Stability of Numerical Algorithms*, 2002, alg. 15.1). Of no meaning where factoring was an
-    /// error.
+    /// An estimate of κ₁ of the factored matrix, scaled to a diagonal of ones: M_ik/√(M_ii M_kk).
+    /// It has no units and is within n of the least over all scalings of the joints' units (van der
+    /// Sluis, *Numer. Math.* 14, 1969). Never more than κ₁, rarely less than a third: Hager's
+    /// estimate from two starts, and Higham's vector (Higham, *Accuracy and Stability of Numerical
+    /// Algorithms*, 2002, alg. 15.1). Meaningless after an error of factoring.
     pub fn condition(&mut self) -> S {
         let mut room = core::mem::take(&mut self.room);
         let inverse = self.inverse_norm(&mut room);

@@ -11,11 +11,11 @@ use crate::scalar::two_to;
 /// How often [`Factor::refine`] corrects at most, as LAPACK's `xPORFS` does.
 const STEPS: usize = 5;
 
-/// M = Lᵀ D L of a symmetric matrix, with what is left of each pivot. Room for matrices of one
-/// size: made once, nothing is allocated after.
+/// M = Lᵀ D L of a symmetric matrix, with the remaining part of each pivot. Memory for matrices of
+/// one size, allocated once.
 ///
-/// Of the matrix alone: that a diagonal element is itself what rounding left of its terms can only
-/// be seen where it was made ([`super::checked_forward_dynamics`] sees it).
+/// It sees the matrix only. A diagonal element that is itself only rounding error of its terms is
+/// detectable only where it is computed ([`super::checked_forward_dynamics`] does so).
 #[derive(Clone, Debug)]
 pub struct Factor<S = f64> {
     pub(super) n: usize,
@@ -40,8 +40,8 @@ impl<S: Scalar<Mask = bool>> Factor<S> {
     /// Factors; from the last row up, so that zeros between branches stay, as Featherstone 2008,
     /// §6.5.
     ///
-    /// matrix: `[n · n]`, symmetric. An error is (the row whose pivot is lost, what of it is left),
-    /// the last one of them.
+    /// matrix: `[n · n]`, symmetric. Errors: (row of the lost pivot, its remaining part), of the
+    /// last such row.
     ///
     /// # Panics
     /// If the matrix has another size.
@@ -76,15 +76,15 @@ impl<S: Scalar<Mask = bool>> Factor<S> {
         row[..k].iter_mut().for_each(|x| *x = *x / pivot);
     }
 
-    /// Refines x = M⁻¹ b in place; `[n]` each. matrix: that which was factored. What is returned is
-    /// the backward error max_i |b − M x|_i / (|M||x| + |b|)_i that is left.
+    /// Refines x = M⁻¹ b in place; `[n]` each. matrix: the factored one. Returns the remaining
+    /// backward error max_i |b − M x|_i / (|M||x| + |b|)_i.
     ///
     /// r = b − M x, x += M⁻¹ r, as long as that halves the error, and five times at most.
-    /// Elimination leaves an r of roundings of √(M_ii M_jj)|x_j|, which is more than of (|M||x|)_i
-    /// where two coordinates hardly move each other and masses are far apart; refined it is of
-    /// roundings of |M||x| + |b|, row by row, unless M is next to singular (Skeel, *Iterative
-    /// refinement implies numerical stability for Gaussian elimination*, Math. Comp. 35, 1980;
-    /// Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, 12.2).
+    /// Elimination leaves an r like roundings of √(M_ii M_jj)|x_j|. These exceed roundings of
+    /// (|M||x|)_i if two coordinates hardly move each other and masses are far apart. After
+    /// refinement r is like roundings of |M||x| + |b|, row by row, unless M is nearly singular
+    /// (Skeel, *Iterative refinement implies numerical stability for Gaussian elimination*, Math.
+    /// Comp. 35, 1980; Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, 12.2).
     ///
     /// # Panics
     /// If a slice is shorter.
@@ -92,7 +92,7 @@ impl<S: Scalar<Mask = bool>> Factor<S> {
         let mut residue = core::mem::take(&mut self.room[0]);
         let mut error = self.residue(matrix, b, x, &mut residue);
         for _ in 0..STEPS {
-            // Of no more than a rounding nothing is left to refine.
+            // An error of one rounding cannot be refined.
             if !greater(error, S::from_f64(const { two_to(-(S::BITS as i32)) })) {
                 break;
             }
@@ -124,7 +124,7 @@ impl<S: Scalar<Mask = bool>> Factor<S> {
         most
     }
 
-    /// What is left of each pivot, D/(Σ|terms|) in (0, 1]; `[n]`.
+    /// The remaining part of each pivot, D/(Σ|terms|) in (0, 1]; `[n]`.
     pub fn pivots(&self) -> &[S] {
         &self.pivots
     }

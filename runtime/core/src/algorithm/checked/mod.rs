@@ -1,12 +1,12 @@
-//! Solutions with the mass matrix that say whether they can be trusted.
+//! Solutions with the mass matrix that report whether they are reliable.
 //!
-//! A mass matrix is singular where some motion of the joints moves nothing that has mass: a joint
-//! that carries none, a straight row of thin rods turned about its own axis, two joints that do the
-//! same. In floating point it is singular before that, where a pivot D of the elimination is what
-//! rounding left of its terms. So the measure is D/(Σ|terms|), and a pivot of which less than
-//! [`least_pivot`] is left is an error that names its joint. The condition number of M says how far
-//! a solution moves for a small change of the robot; a solution may be exact to the last bit for a
-//! robot a few roundings away whatever it is.
+//! A mass matrix is singular if some motion of the joints moves no mass: a joint that carries none,
+//! a straight row of thin rods turned about its own axis, two equivalent joints. In floating point
+//! it is singular earlier, if a pivot D of the elimination is only rounding error of its terms. So
+//! the measure is D/(Σ|terms|), and a pivot with less than [`least_pivot`] left is an error that
+//! names its joint. The condition number of M says how far a solution moves for a small change of
+//! the robot. Whatever it is, a solution may be exact to the last bit for a robot a few roundings
+//! away.
 //!
 //! | | cost beside the unchecked form |
 //! |---|---|
@@ -35,30 +35,29 @@ use crate::scalar::two_to;
 // Why: named in the documentation.
 use crate::model::Model;
 
-/// Why there are no accelerations to be trusted: the joint whose pivot gave way, and what is left
-/// of it.
+/// Error of unreliable accelerations: the joint with the lost pivot, and its remaining part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Singular<S = f64> {
-    /// Name of the joint; empty where the robot cannot tell
+    /// Name of the joint; empty if the robot does not know it
     /// ([`crate::dynamics::Dynamics::joint_of`]).
     pub joint: String,
     /// Index in v of the degree of freedom.
     pub freedom: usize,
-    /// What was measured.
+    /// The measure.
     pub measure: Measure,
-    /// What was found; not a number where an argument was not.
+    /// The measured value; NaN if an argument was NaN.
     pub found: S,
     /// The least that would have been right.
     pub least: S,
 }
 
-/// What is measured of a solution.
+/// Measures of a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// D/(Σ|terms|) of a pivot.
     Pivot,
-    /// Whether the result is finite; torques or rates near the largest number there is may overflow
-    /// though the mass matrix is well.
+    /// Whether the result is finite; torques or rates near the largest finite number may overflow
+    /// though the mass matrix is regular.
     Finite,
 }
 
@@ -70,7 +69,7 @@ impl<S: Scalar> fmt::Display for Singular<S> {
         } else {
             write!(f, "joint {joint:?} (degree of freedom {freedom}): ")?;
         }
-        // What is not a number is not itself.
+        // NaN is not equal to itself.
         #[allow(clippy::eq_op)]
         let no_number = found != found;
         match measure {
@@ -85,8 +84,7 @@ impl<S: Scalar> fmt::Display for Singular<S> {
 
 impl<S: Scalar> core::error::Error for Singular<S> {}
 
-/// 2¹⁰u, u = 2^−[`Scalar::BITS`]: a pivot of which less is left has fewer than ten bits that are
-/// right.
+/// 2¹⁰u, u = 2^−[`Scalar::BITS`]: a pivot with less left has fewer than ten correct bits.
 pub fn least_pivot<S: Scalar>() -> S {
     S::from_f64(const { two_to(10 - S::BITS as i32) })
 }
@@ -103,7 +101,7 @@ fn larger<S: Scalar<Mask = bool>>(a: S, b: S) -> S {
 
 /// Whether it is a number, and not infinite.
 #[allow(clippy::eq_op)]
-// Why: ∞ − ∞ is not a number, and so is nothing else that is taken from itself.
+// Why: x − x is NaN for infinities and NaN, and zero for all else.
 fn finite<S: Scalar>(x: S) -> bool {
     (x - x).is_zero()
 }

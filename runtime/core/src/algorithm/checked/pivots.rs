@@ -1,4 +1,4 @@
-//! Pivots of forward dynamics, and what they are the difference of.
+//! Pivots of forward dynamics, and the terms whose difference they are.
 
 use alloc::string::ToString;
 
@@ -17,9 +17,9 @@ use crate::spatial::{ArticulatedInertia, SpatialInertia, Twist, Wrench};
 
 /// a = M(q)⁻¹·(τ − h(q, v)), or the joint at which M is singular to working precision.
 ///
-/// q: `[nq]`; v: `[nv]`; tau: `[nv]` N·m|N; out: `[nv]` rad/s²|m/s², of no meaning after an error.
-/// By ABA, or M = Lᵀ D L where joints follow others. What is returned is the smallest D/(Σ|terms|)
-/// of all pivots, in (0, 1]; below [`least_pivot`] it is an error. Cost: see [`super`].
+/// q: `[nq]`; v: `[nv]`; tau: `[nv]` N·m|N; out: `[nv]` rad/s²|m/s², meaningless after an error. By
+/// ABA, or M = Lᵀ D L if joints follow others. Returns the smallest D/(Σ|terms|) of all pivots, in
+/// (0, 1]; below [`least_pivot`] it is an error. Cost: see [`super`].
 ///
 /// # Panics
 /// If a slice is shorter than stated. [`super::Solver`] returns an error.
@@ -86,7 +86,7 @@ impl<S: Scalar<Mask = bool>> PivotMonitor<S> {
         }
     }
 
-    /// The first that is too small: its index and what is left of it.
+    /// The first that is too small: its index and its remaining part.
     pub(super) fn lost(&self) -> Option<(usize, S)> {
         self.lost
     }
@@ -104,11 +104,11 @@ impl<S: Scalar<Mask = bool>> PivotMonitor<S> {
 }
 
 /// D/(Σ|terms|) of each pivot of the articulated-body sweep that the workspace was last used for,
-/// from the tips inward: `see(index in v, what is left)`.
+/// from the tips inward: `see(index in v, remaining part)`.
 ///
-/// D_i = Sᵀ Iᴬ S is summed of the body's own inertia and of what its children hand on, each of
-/// these a difference; what is left of the sum of the magnitudes is the measure. For models in
-/// which no joint follows another.
+/// D_i = Sᵀ Iᴬ S is the sum of the body's own inertia and of the differences that its children pass
+/// on. The measure is its part of the sum of the magnitudes. For models in which no joint follows
+/// another.
 pub fn articulated_body_pivots<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, mut see: impl FnMut(usize, S)) {
     for (size, body) in ws.sizes.iter_mut().zip(&model.bodies) {
         *size = Size::of(&body.inertia);
@@ -127,7 +127,7 @@ pub fn articulated_body_pivots<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S
     }
 }
 
-/// The same of the elimination Lᵀ D L of M, for what
+/// The same for the elimination Lᵀ D L of M that
 /// [`forward_dynamics`](super::super::forward_dynamics()) left in the workspace: D⁻¹ on the
 /// diagonal of the matrix, composite inertias.
 pub fn factored_pivots<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, mut see: impl FnMut(usize, S)) {

@@ -1,4 +1,4 @@
-//! Forward dynamics of any robot, generated or not, that says whether it can be trusted.
+//! Forward dynamics of any robot, generated or not, that reports whether it is reliable.
 
 use alloc::string::ToString;
 use alloc::vec;
@@ -28,7 +28,7 @@ pub struct Solver<S = f64> {
     zeros: Vec<S>,
 }
 
-/// Why there are no accelerations.
+/// Errors of forward dynamics.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Unsolved<S = f64> {
     /// A slice has the wrong length, or the robot lacks a function.
@@ -61,15 +61,15 @@ impl<S: Scalar<Mask = bool>> Solver<S> {
         }
     }
 
-    /// a = M(q)⁻¹·(τ − h(q, v)), τ after motors, refined ([`Factor::refine`]); what is returned is
-    /// the smallest D/(Σ|terms|) of all pivots.
+    /// a = M(q)⁻¹·(τ − h(q, v)), τ after motors, refined ([`Factor::refine`]). Returns the smallest
+    /// D/(Σ|terms|) of all pivots.
     ///
-    /// q: `[nq]`; v, tau, out: `[nv]`. Calls the robot's `bias_forces`, `mass_matrix` and, where it
+    /// q: `[nq]`; v, tau, out: `[nv]`. Calls the robot's `bias_forces`, `mass_matrix` and, if it
     /// has motors, `motor_torques`, then eliminates: n³/3 operations at most. The torques that the
-    /// result needs are τ up to roundings of their terms, however far masses lie apart.
+    /// result needs are τ up to roundings of their terms, however far apart masses are.
     ///
     /// # Errors
-    /// [`Unsolved`]; `out` is of no meaning then.
+    /// [`Unsolved`]; `out` is then meaningless.
     pub fn forward_dynamics<R: Dynamics<S>>(
         &mut self,
         robot: &R,
@@ -123,7 +123,7 @@ impl<S: Scalar<Mask = bool>> Solver<S> {
             robot.mass_matrix(ws, q, &mut self.matrix)
         };
         asked().map_err(Unsolved::Function)?;
-        // Singular or not, all pivots are looked at.
+        // Singular or not, all pivots are checked.
         let _ = self.factor.factor(&self.matrix);
         // b = τ − h
         out.iter_mut().zip(&mut self.input).for_each(|(b, tau)| {
@@ -138,7 +138,7 @@ impl<S: Scalar<Mask = bool>> Solver<S> {
     }
 
     /// max_i |τ − h − M a|_i / (|M||a| + |τ − h|)_i of the last call, with M and h as they were
-    /// computed: a few roundings, or M is next to singular.
+    /// computed: a few roundings, or M is nearly singular.
     pub fn backward_error(&self) -> S {
         self.backward_error
     }

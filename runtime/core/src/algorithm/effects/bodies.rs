@@ -71,8 +71,8 @@ pub(in crate::algorithm) fn articulate_body_effects<S: Scalar>(
     });
 }
 
-/// What makes a spatial acceleration that fluid at rest feels of a classical one with gravity
-/// subtracted: g − ω × v, in the body's axes.
+/// Spatial acceleration that fluid at rest feels, less the classical one with gravity subtracted: g
+/// − ω × v, in the body's axes.
 fn bias_acceleration<S: Scalar>(ws: &Workspace<S>, i: BodyId, gravity: Vector3<S>) -> Vector3<S> {
     let twist = &ws.common[i].twist;
     rotate_back(&ws.placements[i].rotation, gravity) - twist.angular.cross(&twist.linear)
@@ -83,7 +83,7 @@ fn momentum<S: Scalar>(inertia: &ArticulatedInertia<S>, twist: &Twist<S>) -> Wre
     inertia.apply(twist)
 }
 
-/// Where bodies are and how they move, and what pushes them.
+/// Poses, motions and wrenches of bodies.
 fn wrenches<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], load: &LoadCase<S>) {
     place_bodies(model, ws, q);
     body_twists(model, ws, v);
@@ -98,7 +98,7 @@ fn wrenches<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S]
     }
 }
 
-/// Adds to the wrench of each body with added mass what `wrench` says.
+/// Adds the result of `wrench` to the wrench of each body with added mass.
 fn added<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,

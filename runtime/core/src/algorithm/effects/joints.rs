@@ -13,8 +13,8 @@ use crate::model::{Body, Model};
 use crate::spatial::Vector3;
 use crate::spatial::screw::{Quaternion, right_jacobian_inverse};
 
-/// One effect on one degree of freedom: what it is, at which place in v, its own coordinate and
-/// rate, and its own rate over that of the coordinate that it moves with.
+/// One effect on one degree of freedom: the effect, its place in v, its own coordinate and rate,
+/// and its own rate over that of the coordinate that it moves with.
 pub(super) struct Acting<'a, S: 'static> {
     pub(super) effect: &'a JointEffect<S>,
     pub(super) at: usize,
@@ -27,7 +27,7 @@ pub(super) struct Acting<'a, S: 'static> {
 pub(super) type Term<S> = (usize, Option<S>);
 
 impl<'a, S: Scalar> Acting<'a, S> {
-    /// Its own coordinate; of no meaning where the joint has none for each degree of freedom.
+    /// Its own coordinate; meaningless if the joint does not have one for each degree of freedom.
     pub(super) fn coordinate(&self, q: &[S]) -> S {
         let at = &self.body.coordinates;
         match self.body.joint.quaternion() {
@@ -64,7 +64,7 @@ impl<'a, S: Scalar> Acting<'a, S> {
         self.terms().skip(1).fold(scaled(v[self.at], self.ratio), |sum, (at, ratio)| sum + scaled(v[at], ratio))
     }
 
-    /// Whether it is a motor: of a joint that follows another there is none.
+    /// Whether it is a motor: a joint that follows another has none.
     pub(super) fn is_motor(&self) -> bool {
         self.ratio.is_none() && matches!(self.effect.effect.law::<S>(), Law::Drive { .. })
     }
@@ -79,7 +79,7 @@ pub(super) fn scaled<S: Scalar>(x: S, ratio: Option<S>) -> S {
     ratio.map_or(x, |r| x * r)
 }
 
-/// An effect on a ball joint whose law is one of φ = log(q₀⁻¹ q), the rotation vector from rest in
+/// An effect on a ball joint whose law depends on φ = log(q₀⁻¹ q), the rotation vector from rest in
 /// axes of the child: |φ| ≤ π, and at π one of two ([`Quaternion::log`]).
 pub(super) struct OnBall<'a, S: 'static> {
     law: &'static BallLaw<S>,
@@ -164,7 +164,7 @@ fn for_each_force<S: Scalar>(model: &Model<S>, q: &[S], v: &[S], mut visit: impl
     }
 }
 
-/// τ −= the forces of effects on joints: what actuators have to do against them.
+/// τ −= the forces of effects on joints, which actuators must balance.
 #[inline(always)]
 pub(in crate::algorithm) fn apply_joint_forces<S: Scalar>(model: &Model<S>, q: &[S], v: &[S], tau: &mut [S]) {
     for_each_force(model, q, v, |at, force| tau[at] -= force);
@@ -201,8 +201,8 @@ pub(in crate::algorithm) fn motor_torque<S: Scalar>(model: &Model<S>, v: &[S], t
     }
 }
 
-/// The torques that joints feel: what motors give, and the forces of effects on joints. The vector
-/// is the workspace's, to be given back.
+/// The torques on joints: those of motors, and the forces of effects on joints. The vector belongs
+/// to the workspace and must be returned.
 pub(in crate::algorithm) fn input_torque<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,
@@ -243,7 +243,7 @@ pub(in crate::algorithm) fn driven_slopes<S: Scalar>(model: &Model<S>, v: &[S], 
     }
 }
 
-/// The power of what is not conservative, W.
+/// The power of the effects that are not conservative, W.
 pub(super) fn dissipation<S: Scalar>(model: &Model<S>, q: &[S], v: &[S]) -> S {
     let mut sum = S::zero();
     for one in all(model).filter(|one| !one.effect.effect.row().conservative) {

@@ -18,12 +18,12 @@ pub(super) use bodies::{add_inertia, apply_body_wrenches, articulate_body_effect
 pub(super) use joints::{apply_joint_forces, armature, armature_matrix, driven_slopes, input_torque, motor_torque, rotor};
 pub(super) use slopes::{on_bodies as body_slopes, on_joints as joint_slopes};
 
-/// What acts on the robot from outside while a recursion runs.
+/// Loads of a recursion.
 #[derive(Clone, Copy)]
 pub(super) struct LoadCase<'a, S> {
     /// In the world frame, m/s².
     pub(super) gravity: Vector3<S>,
-    /// Whether effects push and pull.
+    /// Whether forces of effects count.
     pub(super) forces: bool,
     /// Whether rotors and added mass count.
     pub(super) inertia: bool,
@@ -42,7 +42,7 @@ impl<'a, S: Scalar> LoadCase<'a, S> {
         Self { gravity: Vector3::zeros(), forces: false, inertia: true, wrenches: &[] }
     }
 
-    /// Nothing but the links.
+    /// The links alone.
     pub(super) fn bare() -> Self {
         Self { inertia: false, ..Self::empty() }
     }
@@ -120,8 +120,8 @@ pub fn effect_forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]
 
 /// The power of the effects that are not conservative, W: negative where they take energy.
 ///
-/// q: `[nq]`; v: `[nv]`; out: one number. d(T + U)/dt = vᵀτ + this, with τ what motors give and U
-/// the [`super::potential_energy`].
+/// q: `[nq]`; v: `[nv]`; out: one number. d(T + U)/dt = vᵀτ + this, with τ of the motors and U the
+/// [`super::potential_energy`].
 ///
 /// # Panics
 /// As [`effect_forces`].
@@ -157,7 +157,7 @@ pub(super) fn energy<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]
 }
 
 impl<S: Scalar> Model<S> {
-    /// Whether a motor stands between the torques that forward dynamics is given and the joints.
+    /// Whether there are motors between the input torques of forward dynamics and the joints.
     pub fn has_motors(&self) -> bool {
         joints::all(self).any(|one| one.is_motor())
     }

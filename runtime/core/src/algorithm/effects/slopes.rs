@@ -1,4 +1,4 @@
-//! First derivatives of what effects do, by dual numbers: each law is evaluated once more with the
+//! First derivatives of effects, by dual numbers: each law is evaluated once more with the
 //! derivative of its arguments.
 //!
 //! For a small motion of a joint k on the way from body i to the base, in axes of the body (Singh,

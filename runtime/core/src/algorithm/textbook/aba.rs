@@ -32,7 +32,7 @@ use super::solve::Factor;
 use super::tree::Tree;
 use crate::Scalar;
 
-/// What the sweep inward leaves of a joint.
+/// Results of the inward sweep for a joint.
 struct Eliminated<S> {
     u: Matrix6xX<S>,
     d_inverse: DMatrix<S>,
@@ -50,7 +50,7 @@ pub fn aba<S: Scalar>(tree: &Tree<S>, v: &[S], tau: &[S], wrenches: &[Vector6<S>
     if has_followers(tree) {
         return None;
     }
-    // V_i, and c_i: what V̇_i would be at q̈ = 0 without what the parent hands on
+    // V_i, and c_i: V̇_i at q̈ = 0 without the parent's contribution
     let motion = rnea::outward(tree, v, &vec![S::zero(); tree.nv]);
     let c: Vec<Vector6<S>> = tree.bodies.iter().zip(&motion).map(|(b, m)| b.screw_rate + ad(&m.twist) * (&b.screws * b.part(v))).collect();
     // I_i = G_i, p_i = −ad(V_i)ᵀ G_i V_i − w_i
@@ -65,7 +65,7 @@ pub fn aba<S: Scalar>(tree: &Tree<S>, v: &[S], tau: &[S], wrenches: &[Vector6<S>
         let d_inverse = inverse(&(body.screws.transpose() * &u));
         let torque = body.part(tau) - body.screws.transpose() * p[i];
         if let Some(parent) = body.parent {
-            // What the joint lets through: I_i − U_i D_i⁻¹ U_iᵀ
+            // The part that the joint passes on: I_i − U_i D_i⁻¹ U_iᵀ
             let apparent = inertia[i] - &u * &d_inverse * u.transpose();
             let bias = p[i] + apparent * c[i] + &u * &d_inverse * &torque;
             inertia[parent] += body.adjoint.transpose() * apparent * body.adjoint;

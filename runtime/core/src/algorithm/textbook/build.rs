@@ -18,7 +18,7 @@ impl<S: Scalar> Textbook<S> {
     /// From a description; gravity in the world frame, m/s². Fails where [`Model::new`] fails.
     pub fn new(description: &Description, base: Base, gravity: [f64; 3]) -> Result<Self, ModelError> {
         // The order and the places of coordinates are the interface's, so they are taken from the
-        // model; no number is.
+        // model; numbers are not.
         let model = Model::new(description, base)?;
         let description = &description.in_sequence();
         let mut body_of_link: ById<LinkId, usize> = vec![0; description.links.len()].into();
@@ -76,7 +76,7 @@ fn child_joint<S: Scalar>(description: &Description, model: &Model, j: JointId) 
     }
 }
 
-/// What moves a joint.
+/// Driver of a joint.
 enum Led<S> {
     /// Nothing: it is locked, or follows one that is, at these coordinates.
     Still(Vec<S>),

@@ -77,7 +77,7 @@ impl<S: Scalar> Textbook<S> {
             F::torque_regressor => self.torque_regressor(q, x[1], x[2]),
             F::kinetic_energy_regressor => self.kinetic_energy_regressor(q, x[1]),
             F::potential_energy_regressor => self.potential_energy_regressor(q),
-            // The book knows of no effects.
+            // The book has no effects.
             F::effect_forces => still,
             F::dissipation => vec![S::zero()],
             F::motor_torques => x[1].to_vec(),

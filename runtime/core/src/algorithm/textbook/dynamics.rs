@@ -1,4 +1,4 @@
-//! Inverse dynamics, and what follows from it by linearity.
+//! Inverse dynamics, and functions that follow from it by linearity.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -18,8 +18,8 @@ impl<S: Scalar> Textbook<S> {
         rnea(&self.at(q, v), v, a, &[])
     }
 
-    /// τ = M(q)·a + h(q, v) − Σ Jᵀw, `[nv]`; wrenches `[frames][6]`: what the world gives to a
-    /// body, its joint need not.
+    /// τ = M(q)·a + h(q, v) − Σ Jᵀw, `[nv]`; wrenches `[frames][6]`: a joint need not supply what
+    /// the world supplies to its body.
     pub fn inverse_dynamics_with_wrenches(&self, q: &[S], v: &[S], a: &[S], wrenches: &[S]) -> Vec<S> {
         let (poses, mut on_bodies) = (self.poses(q), vec![Vector6::zeros(); self.bodies.len()]);
         for (&body, w) in self.frames.iter().zip(wrenches.chunks_exact(6)) {
@@ -28,7 +28,7 @@ impl<S: Scalar> Textbook<S> {
         rnea(&self.at(q, v), v, a, &on_bodies)
     }
 
-    /// What each joint passes to its link, `[links][6]`, in the link's frame.
+    /// The wrench that each joint passes to its link, `[links][6]`, in the link's frame.
     pub fn joint_wrenches(&self, q: &[S], v: &[S], a: &[S]) -> Vec<S> {
         let tree = self.at(q, v);
         let motion = outward(&tree, v, a);

@@ -15,7 +15,7 @@ use crate::description::{self, JointKind};
 use crate::dual::Dual;
 use crate::spatial::{Placement, Reference, from_quaternion};
 
-/// What a joint lets move, with unit axes in its frame: the definitions of [`JointKind`].
+/// The motion that a joint allows, with unit axes in its frame: the definitions of [`JointKind`].
 #[derive(Clone, Debug)]
 pub(super) enum Motion<S> {
     Fixed,
@@ -96,8 +96,7 @@ impl<S: Scalar> Motion<S> {
         }
     }
 
-    /// The same coordinates with a quaternion brought to a norm of one: for those that are written
-    /// in a file.
+    /// The same coordinates with a normalised quaternion: for those that are written in a file.
     pub(super) fn normalised(&self, x: &[S]) -> Vec<S> {
         let at = match self {
             Self::Ball => 0,

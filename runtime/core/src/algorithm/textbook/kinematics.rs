@@ -1,4 +1,4 @@
-//! Placements, and what their derivatives along a motion are: twists, Jacobians, accelerations.
+//! Placements, and their derivatives along a motion: twists, Jacobians, accelerations.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -59,7 +59,7 @@ impl<S: Scalar> Textbook<S> {
         jacobians.into_iter().map(|columns| columns.into_iter().map(|c| c.map(|x| x.slope)).collect()).collect()
     }
 
-    /// The frames' part of what every body has.
+    /// The values of the frames, from those of all bodies.
     fn of_frames<'a, T>(&'a self, all: &'a [T]) -> impl Iterator<Item = &'a T> {
         self.frames.iter().map(|&body| &all[body])
     }

@@ -1,11 +1,11 @@
 //! The reference: every function of the table by its definition, in plain matrices, in the frames
 //! of the file.
 //!
-//! What moves is differentiated ([`Dual`]) and not derived; what is linear is applied to unit
-//! vectors; what is a sum over links is that sum. Inverse dynamics is the plain matrix form with
-//! 6×6 Adjoint and inertia matrices and one set of screw axes a joint (Lynch & Park, *Modern
-//! Robotics*, 2017, §8.3.2). It shares no formula with the algorithms beside it, and is what they
-//! are measured against, in big floats where it matters. It is not meant to be fast.
+//! Motions are differentiated by [`Dual`] and not by formulas; linear functions are applied to unit
+//! vectors; sums over links are written as sums. Inverse dynamics is the plain matrix form with 6×6
+//! Adjoint and inertia matrices and one set of screw axes a joint (Lynch & Park, *Modern Robotics*,
+//! 2017, §8.3.2). It shares no formula with the other algorithms and is their reference, in big
+//! floats where it matters. It is not meant to be fast.
 //!
 //! The three recursions are a page each: [`rnea`], [`crba`] and [`aba`]. They read a [`Tree`], the
 //! robot at one configuration, which [`Textbook::at`] makes.

@@ -1,4 +1,4 @@
-//! Regressors: what a link whose only inertia is the unit of one parameter takes or has.
+//! Regressors: results for a link whose only inertia is the unit of one parameter.
 //!
 //! Parameters of a link: m, h = m c, and I about the link's origin: xx, xy, xz, yy, yz, zz, in its
 //! axes. The link is the first that a moving joint carries, with everything fixed to it.

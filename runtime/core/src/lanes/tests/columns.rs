@@ -1,5 +1,5 @@
-//! M X = B for all columns, as generated code solves it, is what the run-time's loop gives, on
-//! trees of every shape.
+//! M X = B for all columns: generated code agrees with the loop at run time, on trees of every
+//! shape.
 
 use std::sync::LazyLock;
 
@@ -28,7 +28,7 @@ struct Sample {
 }
 
 impl Sample {
-    /// Each joint stands on one of the `near` before it, the base being before the first.
+    /// The parent of each joint is one of the `near` before it, the base being before the first.
     fn random(nv: usize, near: usize) -> Self {
         let mut random = random((100 * nv + near) as u64);
         let parent_dof: Vec<usize> = (0..nv).map(|k| k - random(near.min(k + 1))).collect();
@@ -65,7 +65,7 @@ fn random(mut state: u64) -> impl FnMut(usize) -> usize {
     }
 }
 
-/// The text with a tree of `$nv` joints, of which each stands on one of the `$near` before it,
+/// The text with a tree of `$nv` joints, the parent of each being one of the `$near` before it,
 /// solved for `$together` matrices at once.
 macro_rules! columns {
     ($($name:ident: $nv:literal, $near:literal, $together:expr;)+) => { $(
@@ -101,7 +101,7 @@ macro_rules! columns {
                     unsafe { solve(&mut in_fours) };
                     assert_eq!(in_fours, x);
                 }
-                // What processors run that have no such vectors.
+                // The code for processors without such vectors.
                 use super::portable_f64x4::*;
                 solve!(4, TOGETHER[0];);
                 solve(&mut portable);

@@ -5,10 +5,10 @@ use core::mem::MaybeUninit;
 use super::available;
 use crate::lanes::Set;
 
-/// What a test puts where nothing is written.
+/// The value of a test at places where nothing is written.
 const NOTHING: f64 = -1.0;
 
-/// Results of some stores, which stand in room for 24 numbers.
+/// Results of some stores, in memory for 24 numbers.
 #[allow(unsafe_code)]
 fn room(write: impl FnOnce(&mut [MaybeUninit<f64>])) -> Vec<f64> {
     let mut room = [MaybeUninit::new(NOTHING); 24];
@@ -46,7 +46,7 @@ macro_rules! rows {
                 assert_eq!(room(|to| set::put_in_turn(va, vb, vc, to, 7)), at(&[(7, &turns)]));
                 let turns: [f64; 12] = turns.try_into().unwrap_or_default();
                 assert_eq!(set::every_third(&turns).map(|x| set::array(x)), [a, b, c]);
-                // Of numbers that are no whole ones, whose sums depend on the order.
+                // Numbers that are not whole, whose sums depend on the order.
                 let [a, b, c, d] = [a, b, c, d].map(|x| x.map(|x| 1.0 / x));
                 let [va, vb, vc, vd] = [set::lanes(a), set::lanes(b), set::lanes(c), set::lanes(d)];
                 let [x, y, z, w] = [va, vb, vc, vd].map(|x| set::array(set::reduce_add(x))[0]);

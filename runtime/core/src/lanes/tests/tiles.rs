@@ -1,4 +1,4 @@
-//! States one after the other become vectors with a state a lane, and come back.
+//! Conversion of consecutive states to vectors with one state per lane, and back.
 
 use super::{Set, available};
 

@@ -1,8 +1,8 @@
-//! How twists and wrenches change with the frame.
+//! Twists and wrenches under a change of frame.
 //!
-//! Ad(T) takes twists in b to twists in a, and Ad(T⁻¹)ᵀ wrenches, so that power stays what it is.
-//! Their derivatives are ad(V) W = [V, W], the Lie bracket ([`Twist::cross`]), and coad(V) =
-//! −ad(V)ᵀ ([`Twist::cross_wrench`]). Lynch & Park 2017, §3.3.2, §8.2.
+//! Ad(T) takes twists in b to twists in a, and Ad(T⁻¹)ᵀ wrenches, so that power is invariant. Their
+//! derivatives are ad(V) W = [V, W], the Lie bracket ([`Twist::cross`]), and coad(V) = −ad(V)ᵀ
+//! ([`Twist::cross_wrench`]). Lynch & Park 2017, §3.3.2, §8.2.
 
 use nalgebra::Matrix6;
 

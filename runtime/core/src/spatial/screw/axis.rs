@@ -5,11 +5,11 @@ use nalgebra::Vector3;
 use crate::Scalar;
 use crate::spatial::{Placement, Twist};
 
-/// A screw: a line, and the motion that goes with it: `turn` rad about the line and `slide` m along
-/// it for each unit of the coordinate.
+/// A screw: a line and a motion: `turn` rad about the line and `slide` m along it for each unit of
+/// the coordinate.
 ///
-/// Turn and slide stand for the pitch slide/turn as homogeneous coordinates do, so that a
-/// translation is a screw like any other. Lynch & Park 2017, §3.3.2.
+/// Turn and slide are homogeneous coordinates of the pitch slide/turn, so that a translation is a
+/// screw like any other. Lynch & Park 2017, §3.3.2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Screw<S> {
     /// A point on the line, m; of no meaning for a translation.
@@ -28,7 +28,7 @@ impl<S: Scalar> Screw<S> {
         Self { point, direction, turn: S::one(), slide: pitch }
     }
 
-    /// Infinite pitch: a translation, whose coordinate is the way in m.
+    /// Infinite pitch: a translation, whose coordinate is the distance in m.
     pub fn translation(direction: Vector3<S>) -> Self {
         Self { point: Vector3::zeros(), direction, turn: S::zero(), slide: S::one() }
     }
@@ -36,8 +36,8 @@ impl<S: Scalar> Screw<S> {
     /// The twist for a unit rate, in the frame that the line is given in: [ω; v] =
     /// [turn·s; slide·s + point × ω].
     ///
-    /// The exponential of this twist is analytic at turn = 0: a screw whose turn dies away goes
-    /// over to the translation.
+    /// The exponential of this twist is analytic at turn = 0: a screw whose turn goes to zero
+    /// becomes the translation.
     pub fn twist(&self) -> Twist<S> {
         let angular = self.direction * self.turn;
         Twist { angular, linear: self.direction * self.slide + self.point.cross(&angular) }
@@ -52,7 +52,7 @@ impl<S: Scalar> Screw<S> {
         let turns = square.positive();
         let safe = S::select(turns, square, one);
         let turn = S::select(turns, safe.sqrt(), S::zero());
-        // v/|v| where nothing turns; there v is not zero.
+        // v/|v| without rotation; there v is not zero.
         let way = S::select(turns, one, v.dot(&v)).sqrt();
         let length = S::select(turns, safe.sqrt(), way);
         let direction = w.zip_map(&v, |w, v| S::select(turns, w, v) / length);
@@ -60,7 +60,7 @@ impl<S: Scalar> Screw<S> {
     }
 }
 
-/// What a twist is measured in so that its squares are numbers that are not zero: one, unless it is
+/// Unit of a twist in which its squares are numbers that are not zero: one, unless the twist is
 /// very small or very large.
 fn unit_of<S: Scalar>(twist: &Twist<S>) -> S {
     let size = twist.angular.iter().chain(twist.linear.iter()).fold(S::zero(), |sum, x| sum + x.abs());
@@ -71,7 +71,7 @@ fn unit_of<S: Scalar>(twist: &Twist<S>) -> S {
 /// Product of exponentials with screws in the world frame: e^{S_1 θ_1} ⋯ e^{S_n θ_n} M, where
 /// `home` is the placement M at θ = 0.
 ///
-/// The twists as the robot stands at θ = 0; θ rad or m. Lynch & Park 2017, (4.14).
+/// The twists are those of the robot at θ = 0; θ rad or m. Lynch & Park 2017, (4.14).
 pub fn product_of_exponentials_in_space<S: Scalar>(joints: &[(Twist<S>, S)], home: &Placement<S>) -> Placement<S> {
     product(Placement::identity(), joints).compose(home)
 }

@@ -1,4 +1,4 @@
-//! The functions of the angle that exponentials, logarithms and their derivatives consist of.
+//! Functions of the angle in exponentials, logarithms and their derivatives.
 //!
 //! All are analytic in x = θ², and are functions of x here: √x has no derivative at 0. With h = θ/2
 //! and the spherical Bessel functions j_n, B_n = j_n(h)/hⁿ, for which dB_n/d(h²) = −½ B_{n+1}, most
@@ -135,8 +135,8 @@ fn inverse_rate_by_fraction<S: Scalar>(y: S) -> S {
     S::from_f64(1.0 / 16.0) * (ratio * ratio * slope)
 }
 
-/// How many levels of the fraction leave less than 2^(−bits − 4): each is worth y/((2k + 1)(2k +
-/// 3)), and a little, of the one before.
+/// Number of levels of the fraction that leave less than 2^(−bits − 4): each contributes y/((2k +
+/// 1)(2k + 3)), and a little, of the one before.
 const fn levels(bits: u32) -> u32 {
     let (mut k, mut left, mut halvings) = (1, 1.0_f64, 0);
     while halvings < bits + 4 {
@@ -150,8 +150,8 @@ const fn levels(bits: u32) -> u32 {
     k
 }
 
-/// 2·atan(s/w)/s from s² and w ≥ 0, not both zero: what takes the vector of a quaternion (s times
-/// the axis, w) to the rotation vector. It does not matter whether s² + w² is one.
+/// 2·atan(s/w)/s from s² and w ≥ 0, not both zero: the factor from the vector of a quaternion (s
+/// times the axis, w) to the rotation vector. s² + w² need not be one.
 #[inline(always)]
 pub(super) fn rotation_over_vector<S: Scalar>(square: S, w: S) -> S {
     let one = S::one();

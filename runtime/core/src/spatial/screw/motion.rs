@@ -1,7 +1,7 @@
 //! SE(3): twists taken for a unit of time, and placements.
 //!
-//! Every formula is that of SO(3) with ω + ε v for ω, ε² = 0 (the principle of transference): what
-//! stands with ε is the coupling block. So with δ = ω·v and primes for derivatives in θ²
+//! Every formula is that of SO(3) with ω + ε v for ω, ε² = 0 (the principle of transference): the
+//! factor of ε is the coupling block. So with δ = ω·v and primes for derivatives in θ²
 //!
 //! ```text
 //! p of exp ξ   = J_l(ω) v
@@ -111,7 +111,7 @@ impl<S: Scalar> Placement<S> {
     }
 
     /// The twist ξ with |ω| ≤ π whose exponential is this placement: absolute error some u in ω and
-    /// some u·|p| in v, up to |ω| = π. Which of the two axes it takes at π says
+    /// some u·|p| in v, up to |ω| = π. For its choice of the two axes at π see
     /// [`super::log_rotation`].
     pub fn log(&self) -> Twist<S> {
         Twist::log_of_parts(&Quaternion::from_rotation(&self.rotation), self.position)

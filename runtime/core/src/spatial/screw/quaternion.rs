@@ -55,7 +55,7 @@ impl<S: Scalar> Quaternion<S> {
         self.vector.dot(&self.vector) + self.scalar * self.scalar
     }
 
-    /// q/|q|, for |q| whose square is a number: from 1e-150 to 1e150. Its norm is off by at most
+    /// q/|q|, if the square of |q| is in range: from 1e-150 to 1e150. Its norm is off by at most
     /// 2u.
     #[inline(always)]
     #[must_use]
@@ -103,10 +103,9 @@ impl<S: Scalar> Quaternion<S> {
         })
     }
 
-    /// Of a rotation matrix: of the four ways to read it off, the one that divides by the largest
-    /// component (Shepperd 1978), which is then at least 1/2 and not negative. Absolute error 3u of
-    /// a matrix that is a rotation; one that is orthogonal only nearly gives a unit quaternion all
-    /// the same.
+    /// Of a rotation matrix: of the four formulas, the one that divides by the largest component
+    /// (Shepperd 1978), which is then at least 1/2 and not negative. Absolute error 3u for a matrix
+    /// that is a rotation; one that is only nearly orthogonal also gives a unit quaternion.
     pub fn from_rotation(r: &Matrix3<S>) -> Self {
         let one = S::one();
         // 4 q_k q for q_k = w, x, y, z.

@@ -1,4 +1,4 @@
-//! SO(3): rotation vectors and what their exponential does to small changes.
+//! SO(3): rotation vectors and the effect of their exponential on small changes.
 //!
 //! With θ = |ω| and β, γ, ε of the module's table:
 //!

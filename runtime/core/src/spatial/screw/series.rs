@@ -26,7 +26,7 @@ pub(super) enum Series {
 }
 
 impl Series {
-    /// Up to which x the series is used, and from which on the closed form.
+    /// The x up to which the series is used; beyond it, the closed form.
     ///
     /// A closed form that is the difference of terms a, b, … is off by some (|a| + |b| + …)/|a − b
     /// …| roundings; each limit lies where that has fallen to about 3. The sinc cancels nowhere,
@@ -137,7 +137,7 @@ fn is_beyond<S: Scalar>(x: S, limit: f64) -> S::Mask {
     (x - S::from_f64(limit)).positive()
 }
 
-/// x, or `limit` below it: what a closed form can divide by where it is not used, derivatives
+/// x, or `limit` below it: a valid divisor for a closed form that is not used, derivatives
 /// included.
 #[inline(always)]
 pub(super) fn beyond<S: Scalar>(x: S, limit: f64) -> S {

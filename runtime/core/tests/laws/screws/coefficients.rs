@@ -62,7 +62,7 @@ fn coefficients_at_zero_are_their_limits() {
     }
 }
 
-/// Beyond half a turn all that is lost is what x and its root lose: θ·df/dθ = 2x·df/dx a unit.
+/// Beyond half a turn the only loss is that of x and its root: θ·df/dθ = 2x·df/dx a unit.
 #[test]
 fn coefficients_beyond_half_a_turn_are_as_good_as_their_angle() {
     let random = &mut Random::new(2);

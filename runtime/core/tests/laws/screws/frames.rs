@@ -51,7 +51,7 @@ fn twists_and_wrenches_change_with_the_frame_and_power_does_not() {
     }
 }
 
-/// A screw whose turn dies away is a translation, and gets there with a finite slope.
+/// A screw whose turn goes to zero is a translation, with a finite slope there.
 #[test]
 fn a_screw_without_turn_is_a_translation() {
     let direction = Vector3::new(0.6, 0.0, 0.8);

@@ -36,7 +36,7 @@ fn logarithm_of_a_quaternion_is_good_to_a_few_ulps_from_nothing_to_half_a_turn()
     for angle in angles(random, 200, TAU) {
         Big::scope(|| {
             let axis = random.unit::<3>();
-            // Of any length and of either sign, since neither matters.
+            // Of any length and of either sign, which must not matter.
             let length = *random.choose(&[1.0, -1.0, 1.0 + 1e-9, 3.0]);
             let (s, c) = (angle / 2.0).sin_cos();
             let q = Quaternion { vector: Vector3::from(axis) * (s * length), scalar: c * length };
@@ -49,8 +49,8 @@ fn logarithm_of_a_quaternion_is_good_to_a_few_ulps_from_nothing_to_half_a_turn()
     }
 }
 
-/// By dual numbers of dual numbers: what cancels in a closed form cancels more in each derivative
-/// of it.
+/// By dual numbers of dual numbers: cancellation in a closed form is worse in each derivative of
+/// it.
 #[test]
 fn second_derivatives_of_the_logarithm_hold_at_small_angles_too() {
     let random = &mut Random::new(21);
@@ -77,7 +77,7 @@ fn curved<S: Scalar>(v: Vector3<S>, along: Vector3<S>) -> Vector3<Dual<Dual<S>>>
     Quaternion { vector: v.map(still) + along.map(still) * time, scalar: still(cosine) }.log()
 }
 
-/// The reference of the tests before, itself: log q is what exp takes back to q.
+/// The reference of the tests before, itself: exp takes log q back to q.
 #[test]
 fn logarithm_undoes_the_exponential_in_many_digits() {
     let random = &mut Random::new(12);

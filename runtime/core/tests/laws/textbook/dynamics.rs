@@ -1,4 +1,4 @@
-//! Forces and what they do.
+//! Forces and their effects.
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::Argument;
@@ -133,8 +133,8 @@ fn derivatives_are_those_of_differences() {
     });
 }
 
-/// What the joints pass is what the links need: a link's wrench is the sum of its momentum's rate
-/// and of what it hands on.
+/// Joints pass what links need: a link's wrench is the sum of its momentum's rate and of the wrench
+/// that it passes on.
 #[test]
 fn power_through_the_joints_is_that_of_the_torques() {
     for_each_scene(15, SMALL, |case, scene| {

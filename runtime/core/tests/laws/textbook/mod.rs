@@ -1,5 +1,5 @@
-//! The reference itself: what its functions must be to each other, in many digits. Each is computed
-//! by its definition alone.
+//! The reference itself: relations between its functions, in many digits. Each is computed by its
+//! definition alone.
 
 mod dynamics;
 mod motion;
@@ -16,13 +16,13 @@ use num_traits::{One, Zero};
 
 use crate::trees::for_each_tree;
 
-/// Digits that rounding leaves: of 96, less what is lost where matrices are nearly singular.
+/// Accuracy left by rounding: 96 digits, less the loss where matrices are nearly singular.
 const EXACT: f64 = 1e-60;
 
 /// A step for central differences, a power of two: their error is its square.
 const STEP: f64 = 1.0 / (1_u128 << 66) as f64;
 
-/// What differences leave.
+/// Accuracy left by differences.
 const NEARLY: f64 = 1e-36;
 
 const REFERENCES: [Reference; 3] = [Reference::Body, Reference::World, Reference::WorldAligned];
@@ -109,7 +109,7 @@ fn dot(a: &[Big], b: &[Big]) -> Big {
     a.iter().zip(b).fold(Big::zero(), |sum, (&a, &b)| sum + a * b)
 }
 
-/// Matrix times vector; nothing times nothing is the rows' number of zeros.
+/// Matrix times vector; for zero columns, as many zeros as rows.
 fn apply(matrix: &[Big], x: &[Big], rows: usize) -> Vec<Big> {
     (0..rows).map(|i| dot(&matrix[i * x.len()..][..x.len()], x)).collect()
 }

@@ -1,4 +1,4 @@
-//! Placements and what moves along them.
+//! Placements and their motion.
 
 use articulated_core::algorithm::Argument;
 use articulated_core::description::LinkId;
@@ -82,8 +82,8 @@ fn a_step_and_a_difference_undo_each_other() {
     });
 }
 
-/// What a small change δ of an argument makes of a step's end e, as the step δ' with e ⊕ δ' where
-/// it gets to; and of a difference.
+/// Effect of a small change δ of an argument on a step's end e, as the step δ' with e ⊕ δ' at the
+/// new end; and on a difference.
 #[test]
 fn derivatives_of_steps_and_differences_are_those_of_differences() {
     for_each_scene(25, SMALL, |_, scene| {

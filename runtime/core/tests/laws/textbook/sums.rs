@@ -1,4 +1,4 @@
-//! What is a sum over links: energies, momentum, regressors.
+//! Sums over links: energies, momentum, regressors.
 
 use articulated_core::algorithm::Argument;
 use articulated_reference::Big;
