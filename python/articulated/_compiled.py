@@ -37,6 +37,15 @@ def cache():
         path.mkdir(mode=0o700, parents=True, exist_ok=True)
     except OSError as error:
         raise RuntimeError(f"compile: found no folder for compiled robots ({error}), expected one in ARTICULATED_CACHE") from None
+    if os.name == "posix":
+        status = path.stat()
+        # What is loaded from the folder runs in this process.
+        if status.st_uid not in (0, os.getuid()) or status.st_mode & 0o022:
+            found = f"{path}, of user {status.st_uid}, mode {status.st_mode & 0o7777:o}"
+            raise RuntimeError(
+                f"compile: found the folder {found}, expected one of this user that others cannot write to:"
+                f" chmod go-w {shlex.quote(str(path))}, or another in ARTICULATED_CACHE"
+            )
     return path
 
 
@@ -117,21 +126,51 @@ def library(robot, functions, flags, batch):
     command = compiler()
     files = sources(robot, functions, batch)
     version = subprocess.run([*command, "--version"], capture_output=True, text=True).stdout
-    key = repr((files, command, version, FLAGS, flags, platform.machine(), sys.platform))
+    key = repr((files, command, version, FLAGS, flags, processor(flags), platform.machine(), sys.platform))
     path = cache() / f"{hashlib.sha256(key.encode('utf-8', 'surrogatepass')).hexdigest()[:32]}.so"
-    if path.exists():
+    record = path.with_suffix(".sha256")
+    if _is_whole(path, record):
         return path
     with tempfile.TemporaryDirectory(dir=path.parent) as folder:
-        # At once, so that another process never finds half of it.
-        os.replace(build(files, command, flags, folder, "robot.so"), path)
+        built = build(files, command, flags, folder, "robot.so")
+        digest = Path(folder, "robot.sha256")
+        digest.write_text(_digest(built), encoding="ascii")
+        # Each at once, so that another process never finds half of it. Between the two it finds an
+        # object that does not match its digest, and compiles one of its own.
+        os.replace(built, path)
+        os.replace(digest, record)
     return path
+
+
+def _digest(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def _is_whole(path, record):
+    """Whether the object is there, and is what the compiler wrote: a truncated one would end the process."""
+    try:
+        return record.read_text(encoding="ascii") == _digest(path)
+    except (OSError, UnicodeDecodeError):
+        return False
+
+
+def processor(flags):
+    """The processor, if a flag asks the compiler for code of its own: a cache may be shared by machines."""
+    if not any("native" in flag for flag in flags):
+        return None
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").split("\n\n")[0].splitlines()
+    except OSError:
+        return platform.processor() or platform.machine()
+    return sorted(line for line in lines if line.split(":")[0].strip() in ("model name", "flags", "CPU implementer", "CPU part", "Features"))
 
 
 class CompiledRobot:
     """Some of a robot's functions, compiled. ``Robot.compile`` makes one.
 
     Its methods take the arguments of the robot's methods, check them in the same way, and return the
-    same values up to rounding.
+    same values up to rounding. They compute in float64; of arguments in float32 the result is
+    rounded to float32.
     """
 
     def __init__(self, robot, functions, flags, batch, text):
@@ -141,6 +180,12 @@ class CompiledRobot:
         rows = [(index, symbol(function), function.name, text(function)) for index, function in functions]
         for name, method in zip(self.functions, _native.load_compiled(robot, self.path, rows)):
             setattr(self, name, method)
+
+    def __getattr__(self, name):
+        functions = self.__dict__.get("functions", ())
+        near = None if name.startswith("_") else _native.nearest(name, list(functions))
+        hint = f"; did you mean {near!r}?" if near else f": compiled are {', '.join(functions)}"
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}{hint}", name=name, obj=self)
 
     def __repr__(self):
         return f"<articulated.CompiledRobot {self.robot.name!r}: {', '.join(self.functions)}>"

@@ -51,11 +51,38 @@ def _shared(name, value):
         return None
 
 
-def as_numbers(name, value):
-    """``value`` as a C-contiguous array of float64; the errors name the argument."""
+def is_single(value):
+    """Whether ``value`` is an array of float32, of NumPy or of another library."""
+    dtype = getattr(value, "dtype", None)
+    if dtype is None and hasattr(value, "__dlpack__"):
+        try:
+            dtype = np.from_dlpack(value).dtype
+        except Exception:
+            return False
+    return dtype is not None and str(dtype) in ("float32", "torch.float32")
+
+
+def broadcast(array, shape):
+    """The array with the dimensions of a batch that it lacks, in C order."""
+    return np.ascontiguousarray(np.broadcast_to(array, shape))
+
+
+def narrow(result, out):
+    """A result of float64 as float32, in ``out`` if that is given."""
+    if out is None:
+        return np.float32(result) if np.ndim(result) == 0 else result.astype(np.float32)
+    if not isinstance(out, np.ndarray) or out.dtype != np.float32 or out.shape != np.shape(result) or not out.flags.writeable:
+        found = f"{out.dtype} of shape {out.shape}" if isinstance(out, np.ndarray) else type(out).__name__
+        raise ValueError(f"out: found {found}, expected a writable array of float32, of shape {np.shape(result)}")
+    out[...] = result
+    return out
+
+
+def as_numbers(name, value, dtype="float64"):
+    """``value`` as a C-contiguous array of this type; the errors name the argument."""
     shared = _shared(name, value)
     if shared is not None:
-        if shared.dtype == np.float64 and shared.flags.c_contiguous and shared.flags.aligned:
+        if shared.dtype == dtype and shared.flags.c_contiguous and shared.flags.aligned:
             return shared
         value = shared
     try:
@@ -73,4 +100,4 @@ def as_numbers(name, value):
         raise TypeError(f"{name}: found a masked array with masked elements, expected an array without")
     # A copy, unless only the class or the layout of a single row differs.
     with np.errstate(over="ignore"):
-        return np.require(np.array(array, dtype=np.float64, copy=True, order="C", subok=False), requirements=["C", "A"])
+        return np.require(np.array(array, dtype=dtype, copy=True, order="C", subok=False), requirements=["C", "A"])

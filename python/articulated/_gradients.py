@@ -207,15 +207,17 @@ def _flat(robot, takes, arguments):
 
 
 def value(robot, name, threads, arguments):
-    """The function of arrays of any batch dimensions."""
+    """The function of arrays of any batch dimensions: of float32 if all of them are."""
     call = _Calls(robot, threads)
     takes, gives = sizes(robot, name)
-    batch, flat = _flat(call.robot, takes, [np.asarray(array, dtype=np.float64) for array in arguments])
+    arrays = [np.asarray(array) for array in arguments]
+    dtype = np.float32 if all(array.dtype == np.float32 for array in arrays) else np.float64
+    batch, flat = _flat(call.robot, takes, [array.astype(dtype, copy=False) for array in arrays])
     return call(name, *flat).reshape(batch + gives)
 
 
 def gradients(robot, name, threads, arguments, gradient):
-    """Gradients of all arguments, of the gradient of the result."""
+    """Gradients of all arguments, of the gradient of the result, in float64."""
     call = _Calls(robot, threads)
     takes, gives = sizes(robot, name)
     arguments = [np.asarray(array, dtype=np.float64) for array in arguments]

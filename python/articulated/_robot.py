@@ -49,6 +49,13 @@ def _shape(dimensions):
     return "(" + ", ".join(str(one) for one in dimensions) + ("," if len(dimensions) == 1 else "") + ")"
 
 
+def _missing(robot, name, functions):
+    """The error for an attribute that a robot does not have."""
+    near = None if name.startswith("_") else _native.nearest(name, list(functions))
+    hint = f"; did you mean {near!r}?" if near else ""
+    return AttributeError(f"{type(robot).__name__!r} object has no attribute {name!r}{hint}", name=name, obj=robot)
+
+
 def _unknown(what, found, names, expected):
     near = _native.nearest(str(found), list(names))
     return ValueError(f"{what}: found {found!r}, expected {expected}" + (f"; did you mean {near!r}?" if near else ""))
@@ -147,8 +154,12 @@ class Robot(_native.Robot):
     """A robot's dynamics. ``articulated.load``, ``loads`` and ``bundled`` make one.
 
     Each function takes one state, such as q of shape (nq,), or N states, of shape (N, nq), and
-    returns one result or N. A single argument beside arguments of N states is the same for all of
+    returns one result or N. There may be several dimensions in place of N; those of the arguments
+    broadcast as NumPy's do. A single argument beside arguments of N states is the same for all of
     them. ``threads``: None or 1 for one thread, 0 for all, or their number.
+
+    Arguments that are all float32 are computed in float32, and so is the result; all others in
+    float64. ``out``: an array for the result, of its shape and type, which the call returns.
 
     SI units, radians. Six-vectors are [angular, linear]. A floating base comes first: of q its
     position and unit quaternion (x, y, z, w), of v its twist in its own axes. Joints and their places
@@ -165,6 +176,9 @@ class Robot(_native.Robot):
         robot = _native.Robot.__new__(cls, *source, like)
         robot._source = source
         return robot
+
+    def __getattr__(self, name):
+        raise _missing(self, name, _INDEX)
 
     def __reduce__(self):
         return _remade, (type(self), self._source)
@@ -289,12 +303,12 @@ class Robot(_native.Robot):
                 warnings.warn(RobotWarning(finding["message"], finding), stacklevel=3)
         return robot
 
-    def call(self, name, *arguments, threads=None):
+    def call(self, name, *arguments, threads=None, out=None):
         """The function of this name, with its arguments in order."""
         index = _INDEX.get(name) if isinstance(name, str) else None
         if index is None:
             raise _unknown("name", name, _INDEX, "a function of articulated.functions()")
-        return self._call(index, arguments, threads)
+        return self._call(index, arguments, threads, out)
 
     def compile(self, functions, *, flags=(), batch=False):
         """Some of the functions as straight-line C for this robot, compiled by the system's C compiler.
@@ -373,7 +387,7 @@ class Robot(_native.Robot):
 
         Args:
             rng: A numpy.random.Generator, or a seed for one, or None for any.
-            size: None for one configuration, or their number N.
+            size: None for one configuration, or their number N, or a tuple of dimensions.
             uniform: (nq,) or (N, nq), numbers in [0, 1) in place of rng and size.
             threads: None or 1 for one thread, 0 for all, or their number.
 
@@ -387,7 +401,8 @@ class Robot(_native.Robot):
                 except (TypeError, ValueError) as error:
                     raise TypeError(f"rng: found {type(rng).__name__} ({error}), expected a numpy.random.Generator, a seed, or None") from None
             try:
-                uniform = rng.random(self.nq if size is None else (size, self.nq))
+                batch = () if size is None else tuple(size) if isinstance(size, (tuple, list)) else (size,)
+                uniform = rng.random((*batch, self.nq))
             except (TypeError, ValueError) as error:
                 raise type(error)(f"size: found {size!r} ({error}), expected None or a number of configurations") from None
         elif rng is not None or size is not None:
@@ -412,6 +427,7 @@ def _documentation(function):
             "    Args:",
             *several,
             "        threads: None or 1 for one thread, 0 for all, or their number.",
+            "        out: An array for the result, of its shape and type; None for a new one.",
             "",
             "    Returns:",
             f"        {result}",
@@ -425,7 +441,7 @@ def _documentation(function):
 def _text(function):
     """The signature and the documentation of a method, as the interpreter reads them."""
     given = "".join(f"{name}, " for name, _, _ in function.takes)
-    return f"{function.name}($self, {given}*, threads=None)\n--\n\n{_documentation(function)}"
+    return f"{function.name}($self, {given}*, threads=None, out=None)\n--\n\n{_documentation(function)}"
 
 
 def _reader(function):
@@ -433,7 +449,7 @@ def _reader(function):
     scope = {}
     # The names are the table's; Python itself parses the keywords of a call, and refuses wrong
     # ones.
-    exec(f"def {function.name}(self, {given}*, threads=None):\n    return ({given}), threads\n", scope)
+    exec(f"def {function.name}(self, {given}*, threads=None, out=None):\n    return ({given}), threads, out\n", scope)
     return scope[function.name]
 
 

@@ -7,8 +7,8 @@
 (7, 7)
 
 Functions are calls back from JAX to the CPU. ``jit`` and ``vmap`` take them; ``vmap`` makes one call
-for the batch. They compute in float64; without ``jax_enable_x64`` arguments and results are float32.
-Derivatives are first ones, in reverse mode.
+for the batch. Without ``jax_enable_x64`` arguments, results and the computation are float32; gradients
+are computed in float64 and rounded. Derivatives are first ones, in reverse mode.
 """
 
 import functools

@@ -5,7 +5,9 @@
 >>> q = torch.zeros(7, dtype=torch.float64, requires_grad=True)         # doctest: +SKIP
 >>> articulated.torch.gravity_torque(robot, q).sum().backward()         # doctest: +SKIP
 
-Tensors are of float64 on the CPU, and shared with NumPy without a copy. Derivatives are first ones.
+Tensors are of float64 or float32 on the CPU, and shared with NumPy without a copy. Functions of
+tensors of float32 compute in float32; gradients are computed in float64 and rounded. Derivatives
+are first ones: a second one is an error.
 """
 
 try:
@@ -24,12 +26,26 @@ class _Function(torch.autograd.Function):
         return torch.from_numpy(_gradients.value(robot, name, threads, [tensor.detach().numpy() for tensor in tensors]))
 
     @staticmethod
-    @torch.autograd.function.once_differentiable
     def backward(ctx, gradient):
-        arrays = [tensor.detach().numpy() for tensor in ctx.saved_tensors]
-        found = _gradients.gradients(*ctx.of, arrays, gradient.detach().numpy())
+        found = _Gradients.apply(*ctx.of, gradient, *ctx.saved_tensors)
         needed = ctx.needs_input_grad[3:]
-        return None, None, None, *(torch.from_numpy(one) if is_needed else None for one, is_needed in zip(found, needed))
+        return None, None, None, *(one if is_needed else None for one, is_needed in zip(found, needed))
+
+
+class _Gradients(torch.autograd.Function):
+    """The gradients of a function: a node of its own, so that their derivatives are an error, not zero."""
+
+    @staticmethod
+    def forward(ctx, robot, name, threads, gradient, *tensors):
+        ctx.of = name
+        found = _gradients.gradients(robot, name, threads, [tensor.detach().numpy() for tensor in tensors], gradient.detach().numpy())
+        return tuple(torch.from_numpy(one).to(tensor.dtype) for one, tensor in zip(found, tensors))
+
+    @staticmethod
+    def backward(ctx, *_):
+        raise NotImplementedError(
+            f"articulated.torch.{ctx.of}: found a second derivative, expected first ones: differentiate once, without create_graph=True"
+        )
 
 
 def _tensor(name, value):
@@ -38,9 +54,9 @@ def _tensor(name, value):
             return torch.as_tensor(value, dtype=torch.float64)
         except (TypeError, ValueError, RuntimeError) as error:
             raise TypeError(f"{name}: found {type(value).__name__} ({error}), expected a tensor") from None
-    if value.dtype != torch.float64 or value.device.type != "cpu" or value.layout != torch.strided:
+    if value.dtype not in (torch.float64, torch.float32) or value.device.type != "cpu" or value.layout != torch.strided:
         found = f"{value.dtype} on {value.device}, {value.layout}"
-        raise TypeError(f"{name}: found {found}, expected a dense tensor of torch.float64 on the CPU: {name}.double().cpu()")
+        raise TypeError(f"{name}: found {found}, expected a dense tensor of torch.float64 or float32 on the CPU: {name}.double().cpu()")
     return value
 
 
@@ -50,10 +66,13 @@ def _wrapper(name):
         arguments = _gradients.in_order(name, arguments, named)
         tensors = [_tensor(argument, value) for (argument, _), value in zip(takes, arguments)]
         batch = _gradients.batch_shape(tensors, takes)
-        # PyTorch sums the gradients of broadcast arguments.
+        # Float32 beside float64 is float64, as in PyTorch. It sums the gradients of broadcast
+        # arguments.
+        dtype = torch.float64 if any(tensor.dtype == torch.float64 for tensor in tensors) else torch.float32
+        tensors = [tensor.to(dtype) for tensor in tensors]
         return _Function.apply(robot, name, threads, *(tensor.expand(batch + shape) for tensor, (_, shape) in zip(tensors, takes)))
 
-    return _gradients.document(function, name, "Tensors of float64 on the CPU")
+    return _gradients.document(function, name, "Tensors of float64 or float32 on the CPU")
 
 
 for _name in _gradients.RULES:

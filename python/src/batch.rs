@@ -8,7 +8,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use articulated::algorithm::Function;
-use articulated::{FunctionError, Model, Workspace};
+use articulated::{FunctionError, Model, Scalar, Workspace};
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
@@ -25,13 +25,18 @@ const MOST_THREADS: usize = 1024;
 const BLOCK: usize = 1 << 15;
 
 /// Workspaces that no call uses at the moment.
-#[derive(Default)]
-pub(crate) struct Workspaces(Mutex<Vec<Workspace<f64>>>);
+pub(crate) struct Workspaces<T: Scalar>(Mutex<Vec<Workspace<T>>>);
 
-impl Workspaces {
+impl<T: Scalar> Default for Workspaces<T> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<T: Scalar> Workspaces<T> {
     /// Runs with a workspace of the model: one that is free, or a new one. Never waits, so that a
     /// process that was forked in the middle of another thread's call does not wait for ever.
-    fn with<T>(&self, model: &Model<f64>, run: impl FnOnce(&mut Workspace<f64>) -> T) -> T {
+    fn with<R>(&self, model: &Model<T>, run: impl FnOnce(&mut Workspace<T>) -> R) -> R {
         let free = self.0.try_lock().ok().and_then(|mut free| free.pop());
         let mut ws = free.unwrap_or_else(|| Workspace::new(model));
         let out = run(&mut ws);
@@ -42,20 +47,70 @@ impl Workspaces {
     }
 }
 
+/// A function of the library, for a model.
+pub(crate) struct Generic<'a, T: Scalar> {
+    pub(crate) function: &'static Function<T>,
+    pub(crate) model: &'a Model<T>,
+    pub(crate) workspaces: &'a Workspaces<T>,
+}
+
 /// Implementation of a function.
-#[derive(Clone, Copy)]
 pub(crate) enum Kernel<'a> {
     /// The library.
-    Generic { function: &'static Function<f64>, model: &'a Model<f64>, workspaces: &'a Workspaces },
+    Generic(Generic<'a, f64>),
     /// Compiled code for the robot whose signature checks arguments and results.
     Compiled(Loop),
+}
+
+/// The numbers of an argument, those of one state, and the step from one state to the next: zero if
+/// it is the same for all.
+pub(crate) type Numbers<'a, T> = (&'a [T], usize, usize);
+
+/// Computes many states.
+pub(crate) trait Compute<T>: Sync {
+    /// The states from number `first` on, as many as `out` has room for; `len` numbers each.
+    fn compute(&self, arguments: &[Numbers<'_, T>], len: usize, first: usize, out: &mut [T]) -> Result<(), FunctionError>;
+}
+
+impl<T: Scalar + Send + Sync> Compute<T> for Generic<'_, T> {
+    fn compute(&self, all: &[Numbers<'_, T>], len: usize, first: usize, out: &mut [T]) -> Result<(), FunctionError> {
+        self.workspaces.with(self.model, |ws| {
+            let mut arguments: Vec<&[T]> = Vec::with_capacity(all.len());
+            for (i, out) in out.chunks_exact_mut(len).enumerate() {
+                arguments.clear();
+                arguments.extend(all.iter().map(|(numbers, len, step)| &numbers[(first + i) * step..][..*len]));
+                self.function.call(self.model, ws, &arguments, out)?;
+            }
+            Ok(())
+        })
+    }
+}
+
+impl Compute<f64> for Kernel<'_> {
+    fn compute(&self, arguments: &[Numbers<'_, f64>], len: usize, first: usize, out: &mut [f64]) -> Result<(), FunctionError> {
+        match self {
+            Self::Generic(generic) => generic.compute(arguments, len, first, out),
+            Self::Compiled(function) => {
+                let states = out.len() / len;
+                let last = first + states.saturating_sub(1);
+                let place = |&(all, len, step): &Numbers<'_, f64>| all[first * step..last * step + len].as_ptr();
+                let places: Vec<*const f64> = arguments.iter().map(place).collect();
+                let steps: Vec<usize> = arguments.iter().map(|(_, _, step)| *step).collect();
+                // SAFETY: for each of `states` states it reads and writes as many numbers, of each
+                // argument and of the result, as the signature has; the slices above contain all of
+                // them.
+                unsafe { function(states, places.as_ptr(), steps.as_ptr(), out.as_mut_ptr()) };
+                Ok(())
+            }
+        }
+    }
 }
 
 impl Kernel<'_> {
     /// One state, whose arguments and result have the sizes of the robot's signature.
     pub(crate) fn one(&self, arguments: &[&[f64]], out: &mut [f64]) -> PyResult<()> {
         match self {
-            Self::Generic { function, model, workspaces } => {
+            Self::Generic(Generic { function, model, workspaces }) => {
                 let done = workspaces.with(model, |ws| function.call(model, ws, arguments, out));
                 done.map_err(|error| PyValueError::new_err(error.to_string()))
             }
@@ -71,45 +126,21 @@ impl Kernel<'_> {
     }
 }
 
-/// A call with its arguments checked: slices of all states, and how many numbers one state has
-/// there; zero for an argument that is the same for all.
-pub(crate) struct Call<'a> {
-    pub(crate) kernel: &'a Kernel<'a>,
-    pub(crate) arguments: Vec<(&'a [f64], usize, usize)>,
+/// A call with its arguments checked.
+pub(crate) struct Call<'a, T, K> {
+    pub(crate) kernel: &'a K,
+    pub(crate) arguments: Vec<Numbers<'a, T>>,
     /// Numbers of one result.
     pub(crate) len: usize,
 }
 
-impl Call<'_> {
-    /// Computes the states from number `first` on, as many as `out` has room for.
-    fn states(&self, first: usize, out: &mut [f64]) -> Result<(), FunctionError> {
-        match *self.kernel {
-            Kernel::Generic { function, model, workspaces } => workspaces.with(model, |ws| {
-                let mut arguments: Vec<&[f64]> = Vec::with_capacity(self.arguments.len());
-                for (i, out) in out.chunks_exact_mut(self.len).enumerate() {
-                    arguments.clear();
-                    arguments.extend(self.arguments.iter().map(|(all, stride, len)| &all[(first + i) * stride..][..*len]));
-                    function.call(model, ws, &arguments, out)?;
-                }
-                Ok(())
-            }),
-            Kernel::Compiled(function) => {
-                let states = out.len() / self.len;
-                let last = first + states.saturating_sub(1);
-                let place = |&(all, stride, len): &(&[f64], usize, usize)| all[first * stride..last * stride + len].as_ptr();
-                let places: Vec<*const f64> = self.arguments.iter().map(place).collect();
-                let steps: Vec<usize> = self.arguments.iter().map(|(_, stride, _)| *stride).collect();
-                // SAFETY: for each of `states` states it reads and writes as many numbers, of each
-                // argument and of the result, as the signature has; the slices above contain all of
-                // them.
-                unsafe { function(states, places.as_ptr(), steps.as_ptr(), out.as_mut_ptr()) };
-                Ok(())
-            }
-        }
+impl<T: Send + Sync, K: Compute<T>> Call<'_, T, K> {
+    fn states(&self, first: usize, out: &mut [T]) -> Result<(), FunctionError> {
+        self.kernel.compute(&self.arguments, self.len, first, out)
     }
 
     /// Computes all states of `out`, in this number of threads.
-    pub(crate) fn run(&self, py: Python<'_>, out: &mut [f64], threads: usize) -> PyResult<()> {
+    pub(crate) fn run(&self, py: Python<'_>, out: &mut [T], threads: usize) -> PyResult<()> {
         if out.is_empty() {
             return Ok(());
         }
@@ -126,11 +157,11 @@ impl Call<'_> {
         Ok(())
     }
 
-    fn block(&self, first: usize, out: &mut [f64], pool: Option<&ThreadPool>) -> Result<(), FunctionError> {
+    fn block(&self, first: usize, out: &mut [T], pool: Option<&ThreadPool>) -> Result<(), FunctionError> {
         let Some(pool) = pool else { return self.states(first, out) };
         // Some parts for each thread, so that no thread waits long for the last.
         let part = (out.len() / self.len).div_ceil(8 * pool.current_num_threads());
-        let one = |(i, out): (usize, &mut [f64])| self.states(first + i * part, out);
+        let one = |(i, out): (usize, &mut [T])| self.states(first + i * part, out);
         pool.install(|| out.par_chunks_mut(part * self.len).enumerate().try_for_each(one))
     }
 }

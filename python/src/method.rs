@@ -19,6 +19,7 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyFloat, PyString, PyTuple, PyType};
 use pyo3::{PyTypeInfo, ffi};
 
+use crate::arrays::Real;
 use crate::batch::{Kernel, mistake};
 use crate::compiled::CompiledFunction;
 use crate::robot::Robot;
@@ -103,17 +104,18 @@ impl Numpy {
 }
 
 /// Whether no number is infinite or not a number.
-pub(crate) fn is_finite(numbers: &[f64]) -> bool {
+pub(crate) fn is_finite<T: Real>(numbers: &[T]) -> bool {
     // Zero times a number is zero, unless it is not finite. Without branches, for vectors.
-    let mut sums = [0.0; 8];
+    let zero = T::from_f64(0.0);
+    let mut sums = [zero; 8];
     let mut chunks = numbers.chunks_exact(8);
     for chunk in &mut chunks {
         for (sum, x) in sums.iter_mut().zip(chunk) {
-            *sum += x * 0.0;
+            *sum += *x * zero;
         }
     }
-    let rest: f64 = chunks.remainder().iter().map(|x| x * 0.0).sum();
-    sums.iter().sum::<f64>() + rest == 0.0
+    let rest = chunks.remainder().iter().fold(zero, |sum, x| sum + *x * zero);
+    sums.iter().fold(rest, |sum, x| sum + *x).wide() == 0.0
 }
 
 /// The result of a call with one state whose arguments are plain arrays; `None`: another call.
@@ -189,7 +191,15 @@ unsafe fn in_order(
     Some(out)
 }
 
-/// The arguments and `threads` of any other call. Python itself reads keywords, so that its errors
+/// The keywords of a call beside its arguments.
+#[derive(Default)]
+pub(crate) struct Keywords<'py> {
+    pub(crate) threads: Option<Bound<'py, PyAny>>,
+    /// The array of the result.
+    pub(crate) out: Option<Bound<'py, PyAny>>,
+}
+
+/// The arguments and the keywords of any other call. Python itself reads keywords, so that its errors
 /// are those of a Python function.
 fn read<'py>(
     py: Python<'py>,
@@ -197,11 +207,11 @@ fn read<'py>(
     signature: &Signature,
     given: Vec<Bound<'py, PyAny>>,
     names: Option<Bound<'py, PyTuple>>,
-) -> PyResult<(Bound<'py, PyTuple>, Option<Bound<'py, PyAny>>)> {
+) -> PyResult<(Bound<'py, PyTuple>, Keywords<'py>)> {
     static READ: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let keywords = names.as_ref().map_or(0, |names| names.len());
     if keywords == 0 && given.len() == signature.arguments.len() {
-        return Ok((PyTuple::new(py, given)?, None));
+        return Ok((PyTuple::new(py, given)?, Keywords::default()));
     }
     let named = PyDict::new(py);
     let positional = given.len() - keywords;
@@ -210,8 +220,9 @@ fn read<'py>(
     }
     let read = READ.get_or_try_init(py, || py.import("articulated._robot")?.getattr("_read").map(Bound::unbind))?;
     let out = read.bind(py).call1((index, PyTuple::new(py, &given[..positional])?, named))?;
-    let (given, threads): (Bound<'py, PyTuple>, Bound<'py, PyAny>) = out.extract()?;
-    Ok((given, Some(threads)))
+    let (given, threads, out): (Bound<'py, PyTuple>, Bound<'py, PyAny>, Bound<'py, PyAny>) = out.extract()?;
+    let unless_none = |value: Bound<'py, PyAny>| if value.is_none() { None } else { Some(value) };
+    Ok((given, Keywords { threads: unless_none(threads), out: unless_none(out) }))
 }
 
 /// Calls a function with the interpreter's arguments. Null, with an error set, if there is no
@@ -253,8 +264,8 @@ unsafe fn respond(
         let names = unsafe { Bound::from_borrowed_ptr_or_opt(py, names) }.map(|names| names.cast_into::<PyTuple>()).transpose()?;
         let all = count as usize + names.as_ref().map_or(0, |names| names.len());
         let given = objects(all).iter().map(|object| unsafe { Bound::from_borrowed_ptr(py, *object) }).collect();
-        let (given, threads) = read(py, index, signature, given, names)?;
-        robot.call(py, index, kernel, &given, threads.as_ref()).map(Bound::into_ptr)
+        let (given, keywords) = read(py, index, signature, given, names)?;
+        robot.call(py, index, kernel, &given, &keywords).map(Bound::into_ptr)
     })
 }
 

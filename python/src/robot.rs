@@ -18,9 +18,10 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
 
-use crate::arrays::{self, Argument};
-use crate::batch::{self, Call, Kernel, Workspaces};
+use crate::arrays::{self, Argument, Real as _};
+use crate::batch::{self, Call, Compute, Generic, Kernel, Workspaces};
 use crate::errors;
+use crate::method::Keywords;
 use crate::signature::{Signature, signatures};
 
 /// A robot's model. `articulated.load` makes one.
@@ -34,7 +35,9 @@ pub(crate) struct Robot {
     links: Vec<String>,
     warnings: Vec<Diagnostic>,
     unused: Vec<String>,
-    workspaces: Workspaces,
+    workspaces: Workspaces<f64>,
+    /// The same in float32.
+    single: OnceLock<(Model<f32>, Workspaces<f32>)>,
     lacks: OnceLock<Lacks>,
 }
 
@@ -105,12 +108,22 @@ fn framed(py: Python<'_>, model: Model<f64>, names: &[String]) -> PyResult<Model
 impl Robot {
     fn made(model: Model<f64>, request: Request, (links, warnings, unused): (Vec<String>, Vec<Diagnostic>, Vec<String>)) -> Self {
         let signatures = signatures(model.shape());
-        Self { model, request, signatures, links, warnings, unused, workspaces: Workspaces::default(), lacks: OnceLock::new() }
+        Self {
+            model,
+            request,
+            signatures,
+            links,
+            warnings,
+            unused,
+            workspaces: Workspaces::default(),
+            single: OnceLock::new(),
+            lacks: OnceLock::new(),
+        }
     }
 
     /// Implementation of a row of the table.
     pub(crate) fn kernel(&self, index: usize) -> Kernel<'_> {
-        Kernel::Generic { function: self.signatures[index].function, model: &self.model, workspaces: &self.workspaces }
+        Kernel::Generic(Generic { function: self.signatures[index].function, model: &self.model, workspaces: &self.workspaces })
     }
 
     fn lacks(&self) -> &Lacks {
@@ -164,49 +177,94 @@ impl Robot {
         Ok(())
     }
 
-    /// The number of states, if it has a dimension of its own, and the arguments.
-    fn checked<'py>(&self, signature: &Signature, given: &Bound<'py, PyTuple>) -> PyResult<(Option<usize>, Vec<Argument<'py>>)> {
+    /// The arguments of a call, of one type of numbers.
+    fn checked<'py, T: arrays::Real>(
+        &self,
+        signature: &Signature,
+        given: &Bound<'py, PyTuple>,
+    ) -> PyResult<(Vec<usize>, Vec<Argument<'py, T>>)> {
         let names: Vec<&str> = signature.function.takes.iter().map(|argument| argument.name()).collect();
-        if given.len() != names.len() {
-            let (name, found, expected) = (signature.function.name, given.len(), names.len());
-            return Err(PyTypeError::new_err(format!("{name}: found {found} arguments, expected {expected}: {}", names.join(", "))));
-        }
         let mut arguments = Vec::with_capacity(names.len());
         for ((name, size), value) in names.iter().zip(&signature.arguments).zip(given.iter()) {
-            arguments.push(arrays::argument(name, &value, &size.lengths())?);
+            arguments.push(arrays::argument::<T>(name, &value, &size.lengths())?);
         }
-        Ok((arrays::states(&names, &arguments)?, arguments))
+        let batch = arrays::batch(&names, &arguments)?;
+        let arguments = arguments.into_iter().map(|argument| argument.broadcast(given.py(), &batch)).collect::<PyResult<_>>()?;
+        Ok((batch, arguments))
     }
 
-    /// Row `index` of the table at these arguments, one state or many.
+    /// Row `index` of the table at these arguments, one state or many. float32 in, float32 out.
     pub(crate) fn call<'py>(
         &self,
         py: Python<'py>,
         index: usize,
         kernel: &Kernel<'_>,
         given: &Bound<'py, PyTuple>,
-        threads: Option<&Bound<'py, PyAny>>,
+        keywords: &Keywords<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let signature = self.signatures.get(index).ok_or_else(|| PyValueError::new_err("found no such function"))?;
         self.check_defined(py, signature.function)?;
-        let (states, arguments) = self.checked(signature, given)?;
-        let threads = batch::threads(threads.filter(|given| !given.is_none()))?;
-        let shape: Vec<usize> = states.into_iter().chain(signature.result.lengths()).collect();
+        let takes = signature.function.takes;
+        if given.len() != takes.len() {
+            let names: Vec<&str> = takes.iter().map(|argument| argument.name()).collect();
+            let (name, found, expected) = (signature.function.name, given.len(), names.len());
+            return Err(PyTypeError::new_err(format!("{name}: found {found} arguments, expected {expected}: {}", names.join(", "))));
+        }
+        if takes.is_empty() || !given.iter().all(|value| arrays::is_single(&value)) {
+            return self.of_numbers::<f64, _>(py, signature, kernel, given, keywords);
+        }
+        match kernel {
+            Kernel::Generic(_) => {
+                let (model, workspaces) = self.single.get_or_init(|| (self.model.cast(), Workspaces::default()));
+                let function = &functions::<f32>()[index];
+                self.of_numbers::<f32, _>(py, signature, &Generic { function, model, workspaces }, given, keywords)
+            }
+            // Compiled functions compute in float64.
+            Kernel::Compiled(_) => {
+                let wide = Keywords { threads: keywords.threads.clone(), out: None };
+                let wide = self.of_numbers::<f64, _>(py, signature, kernel, given, &wide)?;
+                py.import("articulated._errors")?.getattr("narrow")?.call1((wide, keywords.out.as_ref()))
+            }
+        }
+    }
+
+    fn of_numbers<'py, T: arrays::Real, K: Compute<T>>(
+        &self,
+        py: Python<'py>,
+        signature: &Signature,
+        kernel: &K,
+        given: &Bound<'py, PyTuple>,
+        keywords: &Keywords<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (batch, arguments) = self.checked::<T>(signature, given)?;
+        let threads = batch::threads(keywords.threads.as_ref())?;
+        let shape: Vec<usize> = batch.iter().copied().chain(signature.result.lengths()).collect();
         let mut slices = Vec::with_capacity(arguments.len());
         for argument in &arguments {
-            slices.push((argument.numbers()?, if argument.states.is_some() { argument.len } else { 0 }, argument.len));
+            slices.push((argument.numbers()?, argument.len, if argument.batch.is_empty() { 0 } else { argument.len }));
         }
         let call = Call { kernel, arguments: slices, len: signature.result.len };
-        if shape.is_empty() {
-            let mut number = [0.0];
+        if shape.is_empty() && keywords.out.is_none() && T::NAME == f64::NAME {
+            let mut number = [T::from_f64(0.0)];
             call.run(py, &mut number, threads)?;
-            return Ok(number[0].into_pyobject(py)?.into_any());
+            return Ok(number[0].wide().into_pyobject(py)?.into_any());
         }
-        let out = arrays::output(py, &shape)?;
-        let mut numbers = out.try_readwrite().map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let out = match &keywords.out {
+            Some(out) => arrays::given_output::<T>(out, &shape)?,
+            None => arrays::output::<T>(py, &shape)?,
+        };
+        // Refuses an array that is read-only, or that is an argument too.
+        let overlap = |error: numpy::BorrowError| PyValueError::new_err(format!("out: found {error}, expected an array of its own"));
+        let mut numbers = out.try_readwrite().map_err(overlap)?;
         call.run(py, numbers.as_slice_mut().map_err(|error| PyValueError::new_err(error.to_string()))?, threads)?;
         drop(numbers);
-        Ok(out.into_any())
+        match &keywords.out {
+            // The caller's object, of whatever class it is.
+            Some(out) => Ok(out.clone()),
+            // One number: as NumPy returns it.
+            None if shape.is_empty() => out.get_item(()),
+            None => Ok(out.into_any()),
+        }
     }
 
     fn for_each_joint(
@@ -328,17 +386,19 @@ impl Robot {
     }
 
     /// Row `index` of the table at these arguments, one state or many.
+    #[pyo3(signature = (index, given, threads=None, out=None))]
     fn _call<'py>(
         &self,
         py: Python<'py>,
         index: usize,
         given: &Bound<'py, PyTuple>,
-        threads: Option<&Bound<'py, PyAny>>,
+        threads: Option<Bound<'py, PyAny>>,
+        out: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         if index >= functions::<f64>().len() {
             return Err(PyValueError::new_err("found no such function"));
         }
-        self.call(py, index, &self.kernel(index), given, threads)
+        self.call(py, index, &self.kernel(index), given, &Keywords { threads, out })
     }
 
     /// "fixed" or "floating".

@@ -18,10 +18,15 @@ HEAD = '''"""Types of the package. Made by tests/stubs.py from the table of func
 
 from os import PathLike
 from pathlib import Path
-from typing import Any, Iterable, Mapping, NamedTuple, Optional, Sequence, Union
+from typing import Any, Iterable, Literal, Mapping, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+# float32 if all arguments are, else float64.
+_Array = NDArray[Any]
+_Base = Literal["fixed", "floating"]
+_Reference = Literal["body", "world", "world_aligned"]
 
 __version__: str
 
@@ -47,12 +52,6 @@ class Function(NamedTuple):
     unit: str
     group: str
     source: str
-
-class CompiledRobot:
-    robot: Robot
-    functions: tuple[str, ...]
-    path: PathLike[str]
-    def __getattr__(self, name: str) -> Any: ...
 
 class Scene:
     def __init__(self, scene: Union[str, bytes, PathLike[str], PathLike[bytes]]) -> None: ...
@@ -94,49 +93,49 @@ def bundled_scene_names() -> dict[str, str]: ...
 def bundled_names() -> dict[str, str]: ...
 def load(
     path: Union[str, bytes, PathLike[str], PathLike[bytes]],
-    base: str = "fixed",
+    base: _Base = "fixed",
     gravity: Optional[ArrayLike] = ...,
     frames: Optional[Iterable[str]] = None,
-    wrenches_in: str = "body",
+    wrenches_in: _Reference = "body",
     *,
     args: Optional[Mapping[str, Union[str, bool, int, float]]] = None,
     packages: Optional[Mapping[str, Union[str, PathLike[str]]]] = None,
-    coupling: Optional[str] = None,
+    coupling: Optional[Literal["file"]] = None,
     allow_unphysical_inertia: bool = False,
     first_of_duplicates: bool = False,
-    leave_out: Iterable[str] = ...,
+    leave_out: Iterable[Literal["flex", "composite", "plugin"]] = ...,
     allow_unknown_version: bool = False,
     snap_angles: Optional[float] = None,
 ) -> Robot: ...
 def loads(
     text: Union[str, bytes, bytearray, memoryview],
     name: str = "robot.urdf",
-    base: str = "fixed",
+    base: _Base = "fixed",
     gravity: Optional[ArrayLike] = ...,
     frames: Optional[Iterable[str]] = None,
-    wrenches_in: str = "body",
+    wrenches_in: _Reference = "body",
     *,
     args: Optional[Mapping[str, Union[str, bool, int, float]]] = None,
-    coupling: Optional[str] = None,
+    coupling: Optional[Literal["file"]] = None,
     allow_unphysical_inertia: bool = False,
     first_of_duplicates: bool = False,
-    leave_out: Iterable[str] = ...,
+    leave_out: Iterable[Literal["flex", "composite", "plugin"]] = ...,
     allow_unknown_version: bool = False,
     snap_angles: Optional[float] = None,
 ) -> Robot: ...
 def bundled(
     name: str,
-    base: Optional[str] = None,
+    base: Optional[_Base] = None,
     gravity: Optional[ArrayLike] = ...,
     frames: Optional[Iterable[str]] = None,
-    wrenches_in: str = "body",
+    wrenches_in: _Reference = "body",
 ) -> Robot: ...
 
 class Robot:
     @property
     def name(self) -> str: ...
     @property
-    def base(self) -> str: ...
+    def base(self) -> _Base: ...
     @property
     def nq(self) -> int: ...
     @property
@@ -162,12 +161,12 @@ class Robot:
     @property
     def neutral(self) -> NDArray[np.float64]: ...
     @property
-    def wrenches_in(self) -> str: ...
+    def wrenches_in(self) -> _Reference: ...
     @property
     def unused(self) -> tuple[str, ...]: ...
     def with_gravity(self, gravity: ArrayLike) -> Robot: ...
     def with_frames(self, frames: Iterable[str]) -> Robot: ...
-    def with_wrenches_in(self, reference: str) -> Robot: ...
+    def with_wrenches_in(self, reference: _Reference) -> Robot: ...
     def lock(self, joint: Union[str, Mapping[str, ArrayLike]], at: ArrayLike = 0.0) -> Robot: ...
     def couple(self, joint: str, leaders: Mapping[str, float], offset: float = 0.0) -> Robot: ...
     def payload(
@@ -181,7 +180,7 @@ class Robot:
         position: ArrayLike = ...,
         rpy: ArrayLike = ...,
     ) -> Robot: ...
-    def call(self, name: str, *arguments: ArrayLike, threads: Optional[int] = None) -> Any: ...
+    def call(self, name: str, *arguments: ArrayLike, threads: Optional[int] = None, out: Optional[_Array] = None) -> Any: ...
     def compile(self, functions: Iterable[str], *, flags: Iterable[str] = ..., batch: bool = False) -> CompiledRobot: ...
     def wheel(
         self,
@@ -197,7 +196,7 @@ class Robot:
     def random_configuration(
         self,
         rng: Union[np.random.Generator, int, Sequence[int], None] = None,
-        size: Optional[int] = None,
+        size: Union[int, Sequence[int], None] = None,
         *,
         uniform: Optional[ArrayLike] = None,
         threads: Optional[int] = None,
@@ -208,12 +207,18 @@ class Robot:
 def method(function):
     given = "".join(f"{name}: ArrayLike, " for name, _, _ in function.takes)
     # Of one state a single number is a float, of several an array.
-    result = "NDArray[np.float64]" if function.gives else "Any"
+    result = "_Array" if function.gives else "Any"
     shape = ", ".join(str(one) for one in function.gives) or "one number"
     return (
-        f"    def {function.name}(self, {given}*, threads: Optional[int] = None) -> {result}:\n"
+        f"    def {function.name}(self, {given}*, threads: Optional[int] = None, out: Optional[_Array] = None) -> {result}:\n"
         f'        """{function.summary}. [{shape}] {function.unit}."""\n'
     )
+
+
+def compiled(rows):
+    """The type of compiled robots: the functions that a call of `compile` lists are there."""
+    head = "\nclass CompiledRobot:\n    robot: Robot\n    functions: tuple[str, ...]\n    path: PathLike[str]\n"
+    return head + "".join(method(function) for function in rows)
 
 
 def derivatives(library, array, imported):
@@ -230,8 +235,9 @@ def derivatives(library, array, imported):
 
 
 def main():
+    rows = articulated.functions()
     texts = {
-        "__init__.pyi": HEAD + "".join(method(f) for f in articulated.functions() if f.name != "random_configuration"),
+        "__init__.pyi": HEAD + "".join(method(f) for f in rows if f.name != "random_configuration") + compiled(rows),
         "torch.pyi": derivatives("PyTorch", "Tensor", "from torch import Tensor"),
         "jax.pyi": derivatives("JAX", "ArrayLike", "from numpy.typing import ArrayLike"),
     }

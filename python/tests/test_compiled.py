@@ -49,6 +49,57 @@ def test_compiled_functions_are_the_library_s(name):
 
 
 @needs_compiler
+def test_an_object_of_the_cache_that_is_not_whole_is_compiled_again():
+    robot = articulated.bundled("simple_pendulum")
+    expected = robot.gravity_torque([0.3])
+    path = robot.compile(["gravity_torque"]).path
+    for damage in (lambda: path.write_bytes(path.read_bytes()[:200]), lambda: path.write_bytes(b""), lambda: path.with_suffix(".sha256").unlink()):
+        # In a new file: this process has the old one open.
+        whole = path.read_bytes()
+        path.unlink()
+        path.write_bytes(whole)
+        damage()
+        assert robot.compile(["gravity_torque"]).path == path
+        np.testing.assert_allclose(robot.compile(["gravity_torque"]).gravity_torque([0.3]), expected, rtol=1e-14)
+
+
+@needs_compiler
+@pytest.mark.skipif(os.name != "posix", reason="modes of folders are those of POSIX")
+def test_a_folder_that_others_may_write_to_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setenv("ARTICULATED_CACHE", str(tmp_path / "cache"))
+    (tmp_path / "cache").mkdir()
+    (tmp_path / "cache").chmod(0o777)
+    with pytest.raises(RuntimeError, match="mode 777, expected one of this user that others cannot write to: chmod go-w"):
+        articulated.bundled("simple_pendulum").compile(["gravity_torque"])
+    assert not list((tmp_path / "cache").iterdir())
+
+
+def test_the_key_has_the_processor_where_code_is_for_it_alone():
+    from articulated import _compiled
+
+    assert _compiled.processor(("-O3",)) is None and _compiled.processor(("-march=native",))
+
+
+@needs_compiler
+def test_compiled_functions_take_float32_and_out():
+    robot = articulated.bundled("panda_like")
+    compiled = robot.compile(["gravity_torque", "potential_energy"])
+    q = robot.random_configuration(1, 4).astype(np.float32)
+    tau = compiled.gravity_torque(q)
+    assert tau.dtype == np.float32 and compiled.potential_energy(q[0]).dtype == np.float32
+    np.testing.assert_array_equal(tau, compiled.gravity_torque(q.astype(float)).astype(np.float32))
+    out = np.empty_like(tau)
+    assert compiled.gravity_torque(q, out=out) is out
+    np.testing.assert_array_equal(out, tau)
+    with pytest.raises(ValueError, match=r"out: found float64 of shape \(4, 7\), expected a writable array of float32"):
+        compiled.gravity_torque(q, out=np.empty((4, 7)))
+    with pytest.raises(AttributeError, match="no attribute 'gravity_torqe'; did you mean 'gravity_torque'"):
+        compiled.gravity_torqe
+    with pytest.raises(AttributeError, match="no attribute 'mass_matrix'"):
+        compiled.mass_matrix
+
+
+@needs_compiler
 def test_compiled_robots_are_kept(monkeypatch):
     robot = articulated.bundled("simple_pendulum")
     first = robot.compile(["gravity_torque"])

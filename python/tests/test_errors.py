@@ -14,7 +14,7 @@ Q = ROBOT.random_configuration(0)
 @pytest.mark.parametrize("q, error, message", [
     (np.zeros(6), ValueError, "q: found shape (6,), expected (7,) for one state or (N, 7) for N states"),
     (np.zeros((7, 2)), ValueError, "q: found shape (7, 2), expected (7,)"),
-    (np.zeros((2, 3, 7)), ValueError, "q: found shape (2, 3, 7)"),
+    (np.zeros((2, 3, 6)), ValueError, "q: found shape (2, 3, 6)"),
     (0.5, ValueError, "q: found shape (), expected (7,)"),
     ([], ValueError, "q: found shape (0,)"),
     ([[0.0] * 7, [0.0] * 6], ValueError, "q: found no rectangular array"),
@@ -60,8 +60,8 @@ def test_numbers_of_states():
     with pytest.raises(ValueError) as error:
         ROBOT.inverse_dynamics(np.zeros((4, 7)), np.zeros(7), np.zeros((5, 7)))
     assert str(error.value) == "a: found 5 states, expected 4 as in q, or one state for all of them"
-    with pytest.raises(ValueError, match="v: found 1 states, expected 4 as in q"):
-        ROBOT.bias_forces(np.zeros((4, 7)), np.zeros((1, 7)))
+    with pytest.raises(ValueError, match="v: found 3 states, expected 4 as in q"):
+        ROBOT.bias_forces(np.zeros((4, 7)), np.zeros((3, 7)))
 
 
 def test_wrenches():

@@ -83,7 +83,7 @@ def test_methods_have_signature_and_documentation(function):
 
     parameters = list(inspect.signature(getattr(articulated.Robot, function.name)).parameters)
     if function.name != "random_configuration":
-        assert parameters == ["self", *(name for name, _, _ in function.takes), "threads"]
+        assert parameters == ["self", *(name for name, _, _ in function.takes), "threads", "out"]
     documentation = getattr(articulated.Robot, function.name).__doc__
     assert all(f"{name}: (" in documentation for name, _, _ in function.takes) and "Returns:" in documentation
 
@@ -107,9 +107,96 @@ def test_other_numbers_and_layouts():
     for other in same:
         np.testing.assert_array_equal(robot.gravity_torque(other), expected)
     whole = np.arange(7)
-    for dtype in (np.int8, np.uint16, np.int64, np.float16, np.float32):
+    for dtype in (np.int8, np.uint16, np.int64, np.float16):
         np.testing.assert_array_equal(robot.gravity_torque(whole.astype(dtype)), robot.gravity_torque(whole.astype(float)))
     np.testing.assert_array_equal(q, robot.random_configuration(1, 6))
+
+
+@pytest.mark.parametrize("name", ["panda_like", "quadruped"])
+def test_float32_in_is_float32_out(name):
+    robot = articulated.bundled(name)
+    for function in FUNCTIONS:
+        if function.name == "random_configuration" and robot.nq != robot.nv:
+            continue
+        arguments = draw(robot, function, np.random.default_rng(7), 5)
+        if not arguments or function.name == "operational_space_inertia":
+            continue
+        single = [argument.astype(np.float32) for argument in arguments]
+        expected = method(robot, function, [argument.astype(np.float64) for argument in single])
+        found = method(robot, function, single)
+        assert found.dtype == np.float32 and found.shape == expected.shape
+        scale = np.abs(expected).max()
+        assert not scale or np.abs(found - expected).max() <= 2e-3 * scale, function.name
+        one = method(robot, function, [argument[2] for argument in single])
+        np.testing.assert_array_equal(one, found[2])
+        assert one.dtype == np.float32
+        # Beside one of float64 all are.
+        mixed = method(robot, function, [single[0].astype(np.float64), *single[1:]])
+        assert mixed.dtype == np.float64
+        np.testing.assert_array_equal(mixed, expected)
+    # Computed in float32, not rounded to it.
+    tau = robot.gravity_torque(robot.random_configuration(0, 40).astype(np.float32))
+    assert (tau != robot.gravity_torque(robot.random_configuration(0, 40).astype(np.float32).astype(float)).astype(np.float32)).any()
+
+
+def test_a_result_goes_to_an_array_of_the_caller():
+    robot = articulated.bundled("panda_like")
+    q = robot.random_configuration(3, 6)
+    expected = robot.inverse_dynamics(q, q, q)
+    out = np.full((6, 7), np.nan)
+    assert robot.inverse_dynamics(q, q, q, threads=2, out=out) is out
+    np.testing.assert_array_equal(out, expected)
+    one = np.empty(7)
+    assert robot.inverse_dynamics(q[1], q[1], a=q[1], out=one) is one
+    np.testing.assert_array_equal(one, expected[1])
+    # A part of a larger array; one number; float32.
+    whole = np.zeros((2, 6, 7))
+    robot.inverse_dynamics(q, q, q, out=whole[1])
+    np.testing.assert_array_equal(whole, [np.zeros((6, 7)), expected])
+    energy = np.empty(())
+    assert robot.potential_energy(q[0], out=energy) is energy and energy == robot.potential_energy(q[0])
+    single = np.empty((6, 7), np.float32)
+    assert robot.gravity_torque(q.astype(np.float32), out=single) is single
+    frozen = np.empty(7)
+    frozen.flags.writeable = False
+    for wrong, error, message in (
+        (np.empty((7, 6)), ValueError, r"out: found shape \(7, 6\), expected a writable array of float64, of shape \(6, 7\) in C order"),
+        (np.empty((7, 6)).T, ValueError, "out: found an array in another order"),
+        (np.empty((6, 7), np.float32), TypeError, "out: found an array of float32, expected"),
+        ([[0.0] * 7] * 6, TypeError, "out: found <class 'list'>, expected"),
+        (q, ValueError, "out: found"),
+    ):
+        with pytest.raises(error, match=message):
+            robot.inverse_dynamics(q, q, q, out=wrong)
+    with pytest.raises(ValueError, match="out: found"):
+        robot.gravity_torque(q[0], out=frozen)
+    # An argument stays as it was.
+    np.testing.assert_array_equal(q, robot.random_configuration(3, 6))
+
+
+def test_a_batch_may_have_several_dimensions_which_broadcast():
+    robot = articulated.bundled("quadruped")
+    robot = robot.with_frames(robot.frames[-2:])
+    q, v = robot.random_configuration(0, (2, 3)), np.random.default_rng(1).normal(size=(3, robot.nv))
+    assert q.shape == (2, 3, robot.nq)
+    tau = robot.bias_forces(q, v, threads=2)
+    flat = robot.bias_forces(q.reshape(6, -1), np.tile(v, (2, 1)))
+    np.testing.assert_array_equal(tau, flat.reshape(2, 3, robot.nv))
+    np.testing.assert_array_equal(robot.bias_forces(q[:, :1], v)[1, 2], robot.bias_forces(q[1, 0], v[2]))
+    assert robot.placements(q).shape == (2, 3, 2, 12) and robot.potential_energy(q).shape == (2, 3)
+    assert robot.placements_matrices(q).shape == (2, 3, 2, 4, 4)
+    assert robot.bias_forces(q[:, :0], v[0]).shape == (2, 0, robot.nv)
+    with pytest.raises(ValueError, match=r"v: found dimensions \(4,\) of a batch, expected those of q, \(2, 3\), or some that broadcast"):
+        robot.bias_forces(q, np.zeros((4, robot.nv)))
+
+
+def test_a_misspelt_function_has_a_nearest_name():
+    robot = articulated.bundled("panda_like")
+    with pytest.raises(AttributeError, match="'Robot' object has no attribute 'mass_matrx'; did you mean 'mass_matrix'?"):
+        robot.mass_matrx
+    with pytest.raises(AttributeError, match="has no attribute '__nothing__'$"):
+        robot.__nothing__
+    assert not hasattr(robot, "quite_another")
 
 
 def test_an_argument_may_be_given_twice_and_results_are_new():

@@ -65,11 +65,38 @@ def test_values_at_unit_quaternions_are_the_robot_s():
     np.testing.assert_allclose(articulated.torch.gravity_torque(robot, torch.tensor(q)).numpy(), robot.gravity_torque(q), rtol=0, atol=1e-11)
 
 
+def test_float32_in_is_float32_out():
+    robot = articulated.bundled("panda_like")
+    q = torch.tensor(robot.random_configuration(1, 3), dtype=torch.float32, requires_grad=True)
+    tau = articulated.torch.gravity_torque(robot, q)
+    assert tau.dtype == torch.float32
+    tau.sum().backward()
+    wide = q.detach().double().requires_grad_()
+    articulated.torch.gravity_torque(robot, wide).sum().backward()
+    assert q.grad.dtype == torch.float32
+    np.testing.assert_allclose(q.grad.numpy(), wide.grad.numpy(), rtol=1e-5, atol=1e-4)
+    assert articulated.torch.bias_forces(robot, q, wide).dtype == torch.float64
+
+
+@pytest.mark.parametrize("name", ["potential_energy", "gravity_torque"])
+def test_a_second_derivative_is_an_error_and_not_zero(name):
+    robot = articulated.bundled("panda_like")
+    q = torch.tensor(robot.random_configuration(1), requires_grad=True)
+    function = getattr(articulated.torch, name)
+    with pytest.raises(NotImplementedError, match=f"{name}: found a second derivative, expected first ones"):
+        torch.autograd.functional.hessian(lambda q: function(robot, q).sum(), q)
+    with pytest.raises(NotImplementedError, match="second derivative"):
+        torch.autograd.grad(torch.autograd.grad(function(robot, q).sum(), q, create_graph=True)[0].sum(), q)
+    # A first one that keeps its graph is right.
+    (first,) = torch.autograd.grad(articulated.torch.potential_energy(robot, q), q, create_graph=True)
+    np.testing.assert_allclose(first.detach().numpy(), robot.gravity_torque(q.detach().numpy()), rtol=1e-12, atol=1e-10)
+
+
 def test_bad_calls():
     robot = articulated.bundled("panda_like")
     q = torch.zeros(7, dtype=torch.float64)
     for call, error, message in (
-        (lambda: articulated.torch.gravity_torque(robot, q.float()), TypeError, "q: found torch.float32 on cpu"),
+        (lambda: articulated.torch.gravity_torque(robot, q.half()), TypeError, "q: found torch.float16 on cpu"),
         (lambda: articulated.torch.gravity_torque(robot, q[:6]), ValueError, "q: found shape \\(6,\\), expected \\(7,\\)"),
         (lambda: articulated.torch.gravity_torque(robot), TypeError, "gravity_torque: found 0 arguments after the robot, expected 1: q"),
         (lambda: articulated.torch.gravity_torque(robot, q, q=q), TypeError, "gravity_torque: found 'q' by name"),

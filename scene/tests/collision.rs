@@ -192,17 +192,28 @@ fn geometry_that_cannot_be_read_is_an_error_where_it_is_asked_for() {
     assert_eq!(told(&format!("[effects.contact.sole]\nradius = 1\n{LAW}")), Ok(1));
 }
 
+/// The error has lines that work.
 #[test]
-fn contact_of_a_robot_without_geometry_is_odd() {
-    let bare = "<robot name='r'><link name='b'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link></robot>";
-    let resolved = resolve_on(bare, &format!("[effects.contact]\nfrom = 'collision'\n{LAW}"), Base::Floating).unwrap();
-    assert!(resolved.effects.is_empty());
-    assert_eq!(resolved.report.off.iter().find(|off| off.effect == "contact").map(|off| off.why), Some(Why::Nowhere));
-    let [odd] = resolved.warnings.as_slice() else { panic!("{:?}", resolved.warnings) };
-    assert_eq!(
-        odd.to_string(),
-        "s.toml:1: effects.contact: found a robot without collision geometry, expected links with <collision>: nothing touches the ground"
-    );
+fn contact_where_nothing_can_touch_is_an_error() {
+    const BODY: &str = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial>";
+    let leg = |name: &str, shape: &str| {
+        format!(
+            "<link name='{name}'>{BODY}{shape}</link><joint name='{name}' type='continuous'><parent link='b'/><child link='{name}'/></joint>"
+        )
+    };
+    let robot =
+        |shape: &str| format!("<robot name='r'><link name='b'>{BODY}</link>{}{}</robot>", leg("left", shape), leg("right foot", shape));
+    let scene = |lines: &str| format!("[effects.contact]\n{lines}\n[effects.contact.'*']\nfrom = 'collision'\n{LAW}");
+    let mesh = "<collision><geometry><mesh filename='a.stl'/></geometry></collision>";
+    for (shape, found) in [("", "without collision geometry"), (mesh, "with meshes alone as collision geometry, which make no contact")] {
+        let told = resolve_on(&robot(shape), &scene(""), Base::Floating).map(|_| ()).unwrap_err().to_string();
+        let (before, lines) = told.split_once(" with the lines ").unwrap_or_else(|| panic!("{told}"));
+        let expected = "expected <collision> of boxes, cylinders, spheres or capsules, or spheres of the scene, such as [effects.contact]";
+        assert_eq!(before, format!("s.toml:3: effects.contact.\"*\": found a robot {found}, {expected}"));
+        assert_eq!(lines, "left = { radius = 0.02 } and \"right foot\" = { radius = 0.02 }");
+        let resolved = resolve_on(&robot(shape), &scene(&lines.replace(" and ", "\n")), Base::Floating).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(resolved.effects.len(), 2);
+    }
 }
 
 /// The points are those of the description's own.

@@ -41,6 +41,28 @@ pub fn check_header(compiler: &str, standard: &str, header: &File) {
     assert!(answer.status.success(), "{compiler} refused {}: {}", header.name, String::from_utf8_lossy(&answer.stderr));
 }
 
+/// Checks that a header and its source are free of warnings, with vectors and without, where an
+/// inline function counts as any other: Clang warns of one in a source that is not called.
+///
+/// # Panics
+/// If the compiler warns: its message is printed.
+pub fn check_source(compiler: &str, files: &[File]) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    files.iter().for_each(|file| std::fs::write(folder.path().join(&file.name), &file.text).expect("a folder that can be written"));
+    let [_, source] = files else { panic!("a header and a source") };
+    let prefix = source.name.trim_end_matches(".c").to_uppercase();
+    for vectors in [String::new(), format!("-D{prefix}_NO_VECTORS")] {
+        let mut command = Command::new(compiler);
+        // The headers of the processor's vectors are inline functions themselves.
+        command.current_dir(&folder).args(&FLAGS[..7]).args(["-fsyntax-only", "-include", "math.h"]);
+        if vectors.is_empty() && !source.text.contains("intrin.h") || !vectors.is_empty() {
+            command.arg("-Dinline=");
+        }
+        let answer = command.args(Some(vectors).filter(|flag| !flag.is_empty())).arg(&source.name).output().expect("it is there");
+        assert!(answer.status.success(), "{compiler} refused {}: {}", source.name, String::from_utf8_lossy(&answer.stderr));
+    }
+}
+
 /// Which vectors generated C uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vectors {

@@ -1,6 +1,6 @@
 //! Contact of the collision geometry of a robot's file.
 
-use articulated_core::description::{Collision, CollisionShape, Link, Origin};
+use articulated_core::description::{Collision, CollisionShape, Link, LinkId, Origin};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Subject};
 use articulated_core::effect::{Effect, EffectId};
 use articulated_formats::world::ContactMask;
@@ -43,6 +43,12 @@ pub(super) fn is_requested(one: &EffectRequest) -> bool {
 pub(super) fn is_taken(row: &Effect, says: &Numbers, rest: Option<&Numbers>) -> bool {
     let has_radius = || row.fields.iter().zip(&says.fields).any(|(field, own)| field.name == RADIUS && own.is_some());
     says.from_collision || (rest.is_some_and(|rest| rest.from_collision) && says.at.is_none() && !has_radius())
+}
+
+/// A name as a key of TOML: in quotes unless it is bare.
+fn toml_key(name: &str) -> String {
+    let is_bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-'));
+    if is_bare { name.to_owned() } else { format!("{name:?}") }
 }
 
 impl<'a> Resolving<'a> {
@@ -109,13 +115,40 @@ impl<'a> Resolving<'a> {
         self.warn(one, &Subject::Link(link.name.clone()), kind, found, expected);
     }
 
-    /// Warns if contact is requested for the geometry of all links and no link has any.
-    pub(super) fn warn_of_no_geometry(&mut self, asked: &[&EffectRequest]) {
+    /// Refuses contact of the geometry of all links if no link has any, unless there are errors
+    /// beyond the first `errors` already: nothing would touch the ground.
+    pub(super) fn refuse_no_geometry(&self, asked: &[&EffectRequest], errors: usize, log: &mut Diagnostics) {
         let Some(one) = asked.iter().find(|one| one.on == Selector::All && is_requested(one)) else { return };
-        if self.robot.description.links.iter().all(|link| link.collision.is_empty()) {
-            let expected = "links with <collision>: nothing touches the ground";
-            self.warn(one, &Subject::Document, Code::NoContact, "a robot without collision geometry", expected);
+        if log.count() > errors {
+            return;
         }
+        let links = &self.robot.description.links;
+        let found = match links.iter().any(|link| !link.collision.is_empty()) {
+            false => "a robot without collision geometry",
+            true if self.touches_by_masks() => "a robot with meshes alone as collision geometry, which make no contact",
+            // The file lets its geometry pass through the planes.
+            true => return,
+        };
+        // The tips of the tree: the links that no other is on.
+        let joints = &self.robot.description.joints;
+        let is_tip = |id: LinkId| joints.iter().all(|joint| joint.parent != id) && !self.still[id];
+        let tips: Vec<&str> = links.with_ids().filter(|(id, _)| is_tip(*id)).map(|(_, link)| link.name.as_str()).take(4).collect();
+        let lines: Vec<String> = tips.iter().map(|tip| format!("{} = {{ radius = 0.02 }}", toml_key(tip))).collect();
+        let expected = match lines.is_empty() {
+            true => "<collision> of boxes, cylinders, spheres or capsules".to_owned(),
+            false => format!(
+                "<collision> of boxes, cylinders, spheres or capsules, or spheres of the scene, such as [effects.contact] with the lines {}",
+                lines.join(" and ")
+            ),
+        };
+        log.error((one.place, &one.key), Code::NoContact, found.to_owned(), &expected);
+    }
+
+    /// Whether a link has geometry that no mask keeps from contact.
+    fn touches_by_masks(&self) -> bool {
+        let masks = &self.robot.world.contact_masks;
+        let all = self.robot.description.links.iter();
+        all.flat_map(|link| &link.collision).any(|piece| matches!(piece.shape, CollisionShape::Mesh { .. })) || masks.is_empty()
     }
 
     pub(super) fn warn(&mut self, one: &EffectRequest, subject: &Subject, kind: Code, found: &str, expected: &str) {

@@ -92,7 +92,7 @@ pub(super) struct Resolving<'a> {
     requests: &'a [EffectRequest],
     pub(super) robot: &'a Edited<'a>,
     /// Links fixed to the base.
-    still: ById<LinkId, bool>,
+    pub(super) still: ById<LinkId, bool>,
     /// Joints that let their links move.
     moving: ById<JointId, bool>,
     index: Index<'a>,
@@ -107,7 +107,7 @@ pub(super) type Filled = (Vec<f64>, Option<&'static str>);
 impl<'a> Resolving<'a> {
     fn effect(&mut self, row: &'static Effect, log: &mut Diagnostics) {
         let asked: Vec<&EffectRequest> = self.requests.iter().filter(|a| a.effect == row.id).collect();
-        let before = self.resolved.effects.len();
+        let (before, errors) = (self.resolved.effects.len(), log.count());
         self.known_names(row, &asked, log);
         match row.on {
             On::Joint => self.on_joints(row, &asked, log),
@@ -115,7 +115,7 @@ impl<'a> Resolving<'a> {
         }
         self.warn_of_no_numbers(row, &asked);
         if self.resolved.effects.len() == before {
-            self.warn_of_no_geometry(&asked);
+            self.refuse_no_geometry(&asked, errors, log);
             self.resolved.report.off.push(EffectOff { effect: row.name, why: why(&asked) });
         }
     }

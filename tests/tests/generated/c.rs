@@ -264,6 +264,29 @@ fn headers_compile_without_a_warning_as_c_and_as_cplusplus() {
     assert!(compilers > 0, "a compiler of C is there");
 }
 
+/// Each level with mathematical functions of its own and with those of the library, alone and with
+/// batches: what no function calls is not there.
+#[test]
+fn sources_compile_without_a_warning_of_a_function_that_is_not_called() {
+    let compilers: Vec<&str> = ["gcc", "clang"].into_iter().filter(|compiler| c_program::is_there(compiler)).collect();
+    assert!(!compilers.is_empty(), "a compiler of C is there");
+    let urdf = articulated_models::robot("ur5_like").expect("a bundled robot").urdf;
+    for (level, no_libm) in ["f64", "f32", "f32_f64"].into_iter().flat_map(|level| [(level, false), (level, true)]) {
+        for names in
+            [&["inverse_dynamics"][..], &["mass_matrix"], &["forward_dynamics_derivatives", "difference", "energy_like = kinetic_energy"]]
+        {
+            for batch in [vec![], vec![Real::F32]] {
+                let mut request = articulated_codegen::Request::new("arm.urdf", urdf);
+                let target = Target::C(COptions { prefix: Some("arm".into()), no_libm, ..COptions::default() });
+                let functions = names.iter().map(|name| (*name).into()).collect();
+                request.options = Options { target, functions, batch, level: level.parse().expect("a level"), ..Options::default() };
+                let files = generate(&request).expect("a robot").files;
+                compilers.iter().for_each(|compiler| c_program::check_source(compiler, &files));
+            }
+        }
+    }
+}
+
 /// The first program of docs/embedded.md, as printed, with the robot of the README.
 #[test]
 fn the_program_of_the_documentation_compiles_and_prints_what_the_library_computes() {
