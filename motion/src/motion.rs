@@ -22,7 +22,7 @@ pub struct Motion<'a, R: Dynamics<f64>> {
     session: &'a Session,
     robot: &'a R,
     detectors: Detectors<'a>,
-    simulation: Simulation<'a, R>,
+    simulation: Simulation<'a>,
 }
 
 /// The result of a run.

@@ -4,7 +4,7 @@ use articulated_core::description::{Base, Collision};
 use articulated_core::diagnostic::{Code, Diagnostics, Subject};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_formats::{Options, Reading, read};
-use articulated_scene::{Edited, Resolved, Scene, Why};
+use articulated_scene::{Edited, Resolved, Scene};
 
 /// A trunk that is a box with a ball; a shin with a capsule, and a sole without mass fixed to it
 /// that is a plate; a hand of a mesh, and one of a mesh and a ball; a bare link.

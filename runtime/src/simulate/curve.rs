@@ -1,14 +1,12 @@
 //! The motion between the ends of a step.
 
-use articulated_core::dynamics::Dynamics;
-
 use super::integrator::{Method, Start};
 use super::system::System;
 use super::{Control, SimulateError};
 
 /// The last step's curve, and memory for a point of it.
-pub(crate) struct Curve<'a, R: Dynamics<f64>> {
-    pub(crate) method: &'a mut dyn Method<R>,
+pub(crate) struct Curve<'a> {
+    pub(crate) method: &'a mut dyn Method,
     pub(crate) start: Start<'a>,
     pub(crate) end: &'a [f64],
     pub(crate) point: &'a mut Point,
@@ -29,14 +27,14 @@ impl Point {
     }
 }
 
-impl<R: Dynamics<f64>> Curve<'_, R> {
+impl Curve<'_> {
     /// Computes the data of the curve.
-    pub(crate) fn prepare(&mut self, system: &mut System<R>, control: &mut dyn Control) -> Result<(), SimulateError> {
+    pub(crate) fn prepare(&mut self, system: &mut System<'_>, control: &mut dyn Control) -> Result<(), SimulateError> {
         self.method.prepare(system, control, self.start, self.end)
     }
 
     /// The point at t + θ·h; at the ends the ends themselves.
-    pub(crate) fn at(&mut self, system: &mut System<R>, theta: f64) -> Result<&Point, SimulateError> {
+    pub(crate) fn at(&mut self, system: &mut System<'_>, theta: f64) -> Result<&Point, SimulateError> {
         let Point { t, y, q } = &mut *self.point;
         *t = self.start.t + theta * self.start.h;
         if theta <= 0.0 {

@@ -25,6 +25,7 @@
 mod control;
 mod curve;
 mod effects;
+mod erased;
 mod error;
 mod event;
 mod integrator;

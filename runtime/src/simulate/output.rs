@@ -67,7 +67,7 @@ pub(crate) struct Known {
 
 impl Known {
     /// The functions that the robot has.
-    pub(crate) fn of<R: Dynamics<f64>>(system: &mut System<R>) -> Self {
+    pub(crate) fn of(system: &mut System<'_>) -> Self {
         let (q, v) = (system.origin.clone(), vec![0.0; system.nv()]);
         let (robot, ws) = (system.robot, &mut system.ws);
         let has = |r: Result<(), FunctionError>| r.is_ok();
@@ -84,7 +84,7 @@ impl Known {
     }
 
     /// Room for a motion.
-    pub(crate) fn recording<R: Dynamics<f64>>(&self, system: &System<R>, settings: &Settings) -> Recording {
+    pub(crate) fn recording(&self, system: &System<'_>, settings: &Settings) -> Recording {
         let (n, nq, nv) = (Times::count(settings), system.manifold.nq, system.manifold.nv);
         let room = |wanted: bool, each: usize| Vec::with_capacity(if wanted { n * each } else { 0 });
         let mut recording = Recording {
@@ -106,7 +106,7 @@ impl Known {
     }
 
     /// Starts a recording: only the robot of the motion is recorded.
-    pub(crate) fn begin<R: Dynamics<f64>>(&self, system: &System<R>, recording: &mut Recording) {
+    pub(crate) fn begin(&self, system: &System<'_>, recording: &mut Recording) {
         let names = [
             ("kinetic_energy", self.kinetic),
             ("potential_energy", self.potential),
@@ -120,9 +120,9 @@ impl Known {
     }
 
     /// One more record.
-    pub(crate) fn record<R: Dynamics<f64>>(
+    pub(crate) fn record(
         &mut self,
-        system: &mut System<R>,
+        system: &mut System<'_>,
         control: &mut dyn Control,
         point: &Point,
         to: &mut Recording,
@@ -152,13 +152,7 @@ impl Known {
 
     /// Adds a state to the balance of energy, if that is requested; the first one is where the
     /// motion begins.
-    pub(crate) fn follow<R: Dynamics<f64>>(
-        &mut self,
-        system: &mut System<R>,
-        y: &[f64],
-        q: &[f64],
-        to: &mut Recording,
-    ) -> Result<(), FunctionError> {
+    pub(crate) fn follow(&mut self, system: &mut System<'_>, y: &[f64], q: &[f64], to: &mut Recording) -> Result<(), FunctionError> {
         if !(system.follows_work && self.kinetic && self.potential) {
             return Ok(());
         }
@@ -182,12 +176,7 @@ impl Known {
     }
 
     /// T and U, J, as far as the robot has them.
-    fn energies<R: Dynamics<f64>>(
-        &self,
-        system: &mut System<R>,
-        q: &[f64],
-        v: &[f64],
-    ) -> Result<(Option<f64>, Option<f64>), FunctionError> {
+    fn energies(&self, system: &mut System<'_>, q: &[f64], v: &[f64]) -> Result<(Option<f64>, Option<f64>), FunctionError> {
         let (robot, ws, mut t, mut u) = (system.robot, &mut system.ws, [0.0], [0.0]);
         if self.kinetic {
             robot.kinetic_energy(ws, q, v, &mut t)?;
@@ -199,7 +188,7 @@ impl Known {
     }
 
     /// T + U, J; zero if the robot lacks one of them.
-    pub(crate) fn energy<R: Dynamics<f64>>(&self, system: &mut System<R>, q: &[f64], v: &[f64]) -> Result<f64, FunctionError> {
+    pub(crate) fn energy(&self, system: &mut System<'_>, q: &[f64], v: &[f64]) -> Result<f64, FunctionError> {
         let (kinetic, potential) = self.energies(system, q, v)?;
         Ok(kinetic.zip(potential).map_or(0.0, |(t, u)| t + u))
     }

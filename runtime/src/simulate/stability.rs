@@ -7,8 +7,6 @@
 //! Eigenvalue Problem*, 1965, §9.3). z is kept from one check to the next, so that later checks
 //! need two evaluations.
 
-use articulated_core::dynamics::Dynamics;
-
 use super::integrator::{Method, roots};
 use super::system::System;
 use super::{Control, SimulateError};
@@ -107,11 +105,11 @@ impl Stability {
 
     /// The longest stable step up to h and the rate that bounds it, if h itself is not stable at
     /// (t, y), where dy/dt = f.
-    pub(crate) fn exceeded<R: Dynamics<f64>>(
+    pub(crate) fn exceeded(
         &mut self,
-        system: &mut System<R>,
+        system: &mut System<'_>,
         control: &mut dyn Control,
-        method: &dyn Method<R>,
+        method: &dyn Method,
         (t, y, f): (f64, &[f64], &[f64]),
         h: f64,
     ) -> Result<Option<(f64, f64)>, SimulateError> {
@@ -134,9 +132,9 @@ impl Stability {
         Ok(Some((admissible, pair.rate)))
     }
 
-    fn look<R: Dynamics<f64>>(
+    fn look(
         &mut self,
-        system: &mut System<R>,
+        system: &mut System<'_>,
         control: &mut dyn Control,
         at: (f64, &[f64], &[f64]),
         rounds: usize,
@@ -180,9 +178,9 @@ impl Stability {
     }
 
     /// z_{k+1} = J z_k by a difference of rates, at the time t, the state y and its rate f.
-    fn drive<R: Dynamics<f64>>(
+    fn drive(
         &mut self,
-        system: &mut System<R>,
+        system: &mut System<'_>,
         control: &mut dyn Control,
         (t, y, f): (f64, &[f64], &[f64]),
         k: usize,
@@ -201,13 +199,13 @@ impl Stability {
     }
 }
 
-fn stable<R: Dynamics<f64>>(method: &dyn Method<R>, pair: Pair, h: f64) -> bool {
+fn stable(method: &dyn Method, pair: Pair, h: f64) -> bool {
     // Where |hλ| < 1 accuracy decides.
     h * pair.rate <= 1.0 || excess(method, pair, h) <= SUFFERED
 }
 
 /// Relative growth of the pair in a step of length h beyond its own growth, at least −1.
-fn excess<R: Dynamics<f64>>(method: &dyn Method<R>, pair: Pair, h: f64) -> f64 {
+fn excess(method: &dyn Method, pair: Pair, h: f64) -> f64 {
     let grows = roots(pair.a, pair.b).into_iter().map(|(re, _)| (h * re).exp()).fold(1.0, f64::max);
     method.amplification(pair.a, pair.b, h).map_or(-1.0, |r| r / grows - 1.0)
 }

@@ -1,7 +1,5 @@
 //! Errors in units of the tolerances, and the steps that follow from them.
 
-use articulated_core::dynamics::Dynamics;
-
 use super::system::System;
 use super::{Control, Settings, SimulateError};
 
@@ -22,7 +20,7 @@ impl Norm {
     }
 
     /// A step begins at the origin of the system's chart, with the velocities of y.
-    pub(crate) fn begin<R: Dynamics<f64>>(&mut self, system: &System<R>, y: &[f64]) {
+    pub(crate) fn begin(&mut self, system: &System<'_>, y: &[f64]) {
         let nv = system.nv();
         system.manifold.magnitudes(&system.origin, &mut self.before[..nv]);
         self.before[nv..].iter_mut().zip(&y[nv..2 * nv]).for_each(|(m, v)| *m = v.abs());
@@ -102,8 +100,8 @@ impl Controller {
 
 /// A first step, s: Hairer, Nørsett & Wanner 1993, §II.4. `order` is that of the method, `room` two
 /// vectors as long as y.
-pub(crate) fn first_step<R: Dynamics<f64>>(
-    system: &mut System<R>,
+pub(crate) fn first_step(
+    system: &mut System<'_>,
     control: &mut dyn Control,
     norm: &Norm,
     (t, y, f): (f64, &[f64], &[f64]),

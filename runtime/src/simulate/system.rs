@@ -4,6 +4,7 @@ use articulated_core::algorithm::FunctionError;
 use articulated_core::algorithm::checked::{Measure, Singular, Solver, Unsolved};
 use articulated_core::dynamics::Dynamics;
 
+use super::erased::{Erased, Functions};
 use super::error::joint;
 use super::manifold::Manifold;
 use super::{Control, Counts, SimulateError};
@@ -12,9 +13,9 @@ use super::{Control, Counts, SimulateError};
 ///
 /// y: `[2·nv + 2]`: step vector from the chart's origin, velocities, work of the torques and energy
 /// of the effects that are not conservative, J.
-pub(crate) struct System<'r, R: Dynamics<f64>> {
-    pub(crate) robot: &'r R,
-    pub(crate) ws: R::Workspace,
+pub(crate) struct System<'r> {
+    pub(crate) robot: Erased<'r>,
+    pub(crate) ws: Box<dyn Functions + 'r>,
     pub(crate) manifold: Manifold,
     /// Origin of the chart, `[nq]`.
     pub(crate) origin: Vec<f64>,
@@ -41,9 +42,9 @@ pub(crate) struct System<'r, R: Dynamics<f64>> {
     pub(crate) over_layer: bool,
 }
 
-impl<'r, R: Dynamics<f64>> System<'r, R> {
-    pub(crate) fn new(robot: &'r R) -> Result<Self, FunctionError> {
-        let (shape, manifold) = (robot.shape(), Manifold::of(robot)?);
+impl<'r> System<'r> {
+    pub(crate) fn new(robot: Erased<'r>) -> Result<Self, FunctionError> {
+        let (shape, manifold) = (robot.shape(), Manifold::of(&robot)?);
         let (nq, nv) = (shape.nq, shape.nv);
         let mut system = Self {
             robot,
@@ -65,8 +66,8 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
             over_layer: false,
         };
         let zero = vec![0.0; nv];
-        system.has_motors = super::effects::motor_torques(robot, &mut system.ws, &zero, &zero, &mut system.applied);
-        system.has_losses = super::effects::dissipation(robot, &mut system.ws, &system.origin, &zero).is_some();
+        system.has_motors = super::effects::motor_torques(&robot, &mut system.ws, &zero, &zero, &mut system.applied);
+        system.has_losses = super::effects::dissipation(&robot, &mut system.ws, &system.origin, &zero).is_some();
         system.has_energies = system.energy_here(&zero).is_some();
         Ok(system)
     }
@@ -83,7 +84,7 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
 
     /// q = origin ⊕ u.
     pub(crate) fn configuration(&mut self, u: &[f64], q: &mut [f64]) -> Result<(), FunctionError> {
-        self.manifold.step(self.robot, &mut self.ws, &self.origin, u, q)
+        self.manifold.step(&self.robot, &mut self.ws, &self.origin, u, q)
     }
 
     /// The commanded torques of a state, in `tau`.
@@ -149,19 +150,19 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         let nv = self.nv();
         let (u, v) = (&y[..nv], &y[nv..2 * nv]);
         self.command_at(control, t, u, v)?;
-        if !(self.has_motors && super::effects::motor_torques(self.robot, &mut self.ws, v, &self.tau, given)) {
+        if !(self.has_motors && super::effects::motor_torques(&self.robot, &mut self.ws, v, &self.tau, given)) {
             given.copy_from_slice(&self.tau);
         }
         Ok(())
     }
 
     fn place(&mut self, u: &[f64]) -> Result<(), FunctionError> {
-        self.manifold.step(self.robot, &mut self.ws, &self.origin, u, &mut self.q)
+        self.manifold.step(&self.robot, &mut self.ws, &self.origin, u, &mut self.q)
     }
 
     /// Quaternions of norm one, by a step of no length.
     pub(crate) fn normalise_origin(&mut self, still: &[f64]) -> Result<(), FunctionError> {
-        self.manifold.integrate(self.robot, &mut self.ws, &self.origin, still, &mut self.q)?;
+        self.manifold.integrate(&self.robot, &mut self.ws, &self.origin, still, &mut self.q)?;
         std::mem::swap(&mut self.origin, &mut self.q);
         Ok(())
     }
@@ -173,12 +174,12 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
             return [0.0; 2];
         }
         let work = |tau: &[f64]| tau.iter().zip(v).map(|(tau, v)| tau * v).sum();
-        let given = if self.has_motors && super::effects::motor_torques(self.robot, &mut self.ws, v, &self.tau, &mut self.applied) {
+        let given = if self.has_motors && super::effects::motor_torques(&self.robot, &mut self.ws, v, &self.tau, &mut self.applied) {
             work(&self.applied)
         } else {
             work(&self.tau)
         };
-        let lost = if self.has_losses { super::effects::dissipation(self.robot, &mut self.ws, &self.q, v).unwrap_or(0.0) } else { 0.0 };
+        let lost = if self.has_losses { super::effects::dissipation(&self.robot, &mut self.ws, &self.q, v).unwrap_or(0.0) } else { 0.0 };
         [given, lost]
     }
 
@@ -193,12 +194,12 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
     /// Whether a step of h s at these rates turns a joint by `most` rad or more.
     pub(crate) fn turns_too_far(&self, (t, h): (f64, f64), v: &[f64], most: f64) -> Option<SimulateError> {
         let (freedom, rate) = self.manifold.fastest_turn(v).filter(|(_, rate)| rate * h >= most)?;
-        Some(SimulateError::Turn { t, step: h, turn: rate * h, most, joint: joint(self.robot, freedom) })
+        Some(SimulateError::Turn { t, step: h, turn: rate * h, most, joint: joint(&self.robot, freedom) })
     }
 
     /// With the names of the joints that these degrees of freedom belong to.
     pub(crate) fn named(&self, t: f64, what: &'static str, index: Vec<usize>) -> SimulateError {
-        let mut names: Vec<String> = index.iter().filter_map(|&i| joint(self.robot, i)).collect();
+        let mut names: Vec<String> = index.iter().filter_map(|&i| joint(&self.robot, i)).collect();
         names.dedup();
         SimulateError::NotFinite { t, what, index, names }
     }
@@ -208,7 +209,7 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
     pub(crate) fn without_mass(&mut self, v: &[f64]) -> Option<Singular> {
         let zero = vec![0.0; self.nv()];
         let state = [&self.origin[..], v, &zero];
-        let solved = Solver::new(self.robot.shape()).forward_dynamics(self.robot, &mut self.ws, state, &mut zero.clone());
+        let solved = Solver::new(self.robot.shape()).forward_dynamics(&self.robot, &mut self.ws, state, &mut zero.clone());
         match solved {
             Err(Unsolved::Singular(cause)) if cause.measure == Measure::Pivot => Some(cause),
             _ => None,

@@ -1,7 +1,5 @@
 //! Finding events on the curve of a step.
 
-use articulated_core::dynamics::Dynamics;
-
 use super::{Direction, Event};
 use crate::simulate::SimulateError;
 use crate::simulate::curve::Curve;
@@ -60,11 +58,11 @@ impl Detectors {
 
     /// All zeros of a step, in `zeros`; its curve is ready. A zero at the end belongs to the next
     /// step, if it is not the `last`.
-    pub(crate) fn scan<R: Dynamics<f64>>(
+    pub(crate) fn scan(
         &mut self,
         events: &mut [Event],
-        system: &mut System<R>,
-        curve: &mut Curve<R>,
+        system: &mut System<'_>,
+        curve: &mut Curve<'_>,
         (tolerance, last): (f64, bool),
     ) -> Result<(), SimulateError> {
         self.zeros.clear();
@@ -83,7 +81,7 @@ impl Detectors {
     }
 
     /// The zeros of one event, between the places at which its function is known.
-    fn zeros_of<R: Dynamics<f64>>(&mut self, e: usize, search: &mut Search<R>, last: bool) -> Result<(), SimulateError> {
+    fn zeros_of(&mut self, e: usize, search: &mut Search<'_, '_, '_, '_>, last: bool) -> Result<(), SimulateError> {
         let count = search.events.len();
         let (mut side, mut from) = (self.side[e], 0);
         for place in 0..PLACES.len() {
@@ -129,11 +127,11 @@ fn push(zeros: &mut Vec<Zero>, events: &[Event], event: usize, theta: f64, to: f
 }
 
 /// g of event e at θ; the point is computed where `fresh`.
-fn value<R: Dynamics<f64>>(
+fn value(
     events: &mut [Event],
     e: usize,
-    system: &mut System<R>,
-    curve: &mut Curve<R>,
+    system: &mut System<'_>,
+    curve: &mut Curve<'_>,
     theta: f64,
     fresh: bool,
 ) -> Result<f64, SimulateError> {
@@ -147,15 +145,15 @@ fn value<R: Dynamics<f64>>(
     if g.is_nan() { Err(nowhere()) } else { Ok(g) }
 }
 
-struct Search<'s, 'e, 'c, 'r, R: Dynamics<f64>> {
+struct Search<'s, 'e, 'c, 'r> {
     events: &'s mut [Event<'e>],
-    system: &'s mut System<'r, R>,
-    curve: &'s mut Curve<'c, R>,
+    system: &'s mut System<'r>,
+    curve: &'s mut Curve<'c>,
     /// In units of the step.
     tolerance: f64,
 }
 
-impl<R: Dynamics<f64>> Search<'_, '_, '_, '_, R> {
+impl Search<'_, '_, '_, '_> {
     fn at(&mut self, e: usize, theta: f64) -> Result<f64, SimulateError> {
         value(self.events, e, self.system, self.curve, theta, true)
     }

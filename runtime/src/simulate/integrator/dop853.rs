@@ -4,8 +4,6 @@
 //! Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 1993, §II.5 (method),
 //! (II.10.17) (error), §II.6 (curve); test of stiffness as in dopri5.
 
-use articulated_core::dynamics::Dynamics;
-
 use super::dop853_coefficients::{A, C, D, E3, E5};
 use super::stages::Stages;
 use super::{Method, Start, distance, largest_of_polynomial};
@@ -48,10 +46,10 @@ fn of_order_three(j: usize) -> f64 {
     A[LAST - 1][j] - E3.iter().find(|(i, _)| *i == j).map_or(0.0, |(_, x)| *x)
 }
 
-impl<R: Dynamics<f64>> Method<R> for Dop853 {
+impl Method for Dop853 {
     fn step(
         &mut self,
-        system: &mut System<R>,
+        system: &mut System<'_>,
         control: &mut dyn Control,
         start: Start,
         end: &mut [f64],
@@ -79,7 +77,7 @@ impl<R: Dynamics<f64>> Method<R> for Dop853 {
         Some(self.stages.k(LAST))
     }
 
-    fn prepare(&mut self, system: &mut System<R>, control: &mut dyn Control, start: Start, _: &[f64]) -> Result<(), SimulateError> {
+    fn prepare(&mut self, system: &mut System<'_>, control: &mut dyn Control, start: Start, _: &[f64]) -> Result<(), SimulateError> {
         let h = start.h;
         if self.ready {
             return Ok(());

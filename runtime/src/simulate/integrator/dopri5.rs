@@ -5,8 +5,6 @@
 //! Math. 6, 1980; curve of order 4 and test of stiffness: Hairer, Nørsett & Wanner 1993, (II.6.12),
 //! and Hairer & Wanner 1996, §IV.2.
 
-use articulated_core::dynamics::Dynamics;
-
 use super::stages::Stages;
 use super::{Method, Start, distance, largest_of_polynomial};
 use crate::simulate::step_control::{Controller, Error, Norm};
@@ -53,10 +51,10 @@ impl Dopri5 {
     }
 }
 
-impl<R: Dynamics<f64>> Method<R> for Dopri5 {
+impl Method for Dopri5 {
     fn step(
         &mut self,
-        system: &mut System<R>,
+        system: &mut System<'_>,
         control: &mut dyn Control,
         start: Start,
         end: &mut [f64],
@@ -79,7 +77,7 @@ impl<R: Dynamics<f64>> Method<R> for Dopri5 {
         Some(self.stages.k(6))
     }
 
-    fn prepare(&mut self, _: &mut System<R>, _: &mut dyn Control, _: Start, _: &[f64]) -> Result<(), SimulateError> {
+    fn prepare(&mut self, _: &mut System<'_>, _: &mut dyn Control, _: Start, _: &[f64]) -> Result<(), SimulateError> {
         Ok(())
     }
 

@@ -1,7 +1,5 @@
 //! The curve of third degree through both ends of a step, for methods without a curve of their own.
 
-use articulated_core::dynamics::Dynamics;
-
 use super::Start;
 use crate::simulate::system::System;
 use crate::simulate::{Control, SimulateError};
@@ -30,9 +28,9 @@ impl Hermite {
     }
 
     /// One evaluation; two where the slope at the start is not known.
-    pub(super) fn prepare<R: Dynamics<f64>>(
+    pub(super) fn prepare(
         &mut self,
-        system: &mut System<R>,
+        system: &mut System<'_>,
         control: &mut dyn Control,
         start: Start,
         end: &[f64],
@@ -69,8 +67,8 @@ macro_rules! hand_on_to_hermite {
             self.curve.last()
         }
 
-        fn prepare(&mut self, system: &mut System<R>, control: &mut dyn Control, start: Start, end: &[f64]) -> Result<(), SimulateError> {
-            let known = Method::<R>::wants_rate(self);
+        fn prepare(&mut self, system: &mut System<'_>, control: &mut dyn Control, start: Start, end: &[f64]) -> Result<(), SimulateError> {
+            let known = Method::wants_rate(self);
             self.curve.prepare(system, control, start, end, known)
         }
 

@@ -20,8 +20,6 @@
 
 use std::f64::consts::PI;
 
-use articulated_core::dynamics::Dynamics;
-
 use super::hermite::{Hermite, hand_on_to_hermite};
 use super::{Method, Start};
 use crate::simulate::step_control::{Error, Norm};
@@ -52,7 +50,7 @@ fn largest(x: impl Iterator<Item = f64>) -> f64 {
 
 impl LieMidpoint {
     /// The acceleration in the middle of the step, by rounds of substitution.
-    fn solve<R: Dynamics<f64>>(&mut self, system: &mut System<R>, control: &mut dyn Control, start: Start) -> Result<(), SimulateError> {
+    fn solve(&mut self, system: &mut System<'_>, control: &mut dyn Control, start: Start) -> Result<(), SimulateError> {
         let (h, nv, middle) = (start.h, system.nv(), start.t + 0.5 * start.h);
         let v = &start.y[nv..2 * nv];
         let mut before = f64::INFINITY;
@@ -80,7 +78,7 @@ impl LieMidpoint {
     }
 
     /// The step and its middle, as the acceleration has them.
-    fn place_middle<R: Dynamics<f64>>(&mut self, system: &System<R>, v: &[f64], h: f64) {
+    fn place_middle(&mut self, system: &System<'_>, v: &[f64], h: f64) {
         let nv = v.len();
         let mean = &mut self.middle[nv..2 * nv];
         mean.iter_mut().zip(v).zip(&self.acceleration).for_each(|((mean, v), a)| *mean = v + 0.5 * h * a);
@@ -90,14 +88,14 @@ impl LieMidpoint {
     }
 }
 
-impl<R: Dynamics<f64>> Method<R> for LieMidpoint {
+impl Method for LieMidpoint {
     fn reset(&mut self) {
         self.acceleration.fill(0.0);
     }
 
     fn step(
         &mut self,
-        system: &mut System<R>,
+        system: &mut System<'_>,
         control: &mut dyn Control,
         start: Start,
         end: &mut [f64],

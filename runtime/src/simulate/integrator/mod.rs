@@ -11,8 +11,6 @@ mod rodas4;
 mod semi_implicit_euler;
 mod stages;
 
-use articulated_core::dynamics::Dynamics;
-
 use super::manifold::Manifold;
 use super::step_control::{Controller, Error, Norm};
 use super::system::System;
@@ -29,14 +27,14 @@ pub(crate) struct Start<'a> {
 }
 
 /// The interface of an integrator. All vectors have the length of y.
-pub(crate) trait Method<R: Dynamics<f64>> {
+pub(crate) trait Method {
     /// Starts another motion.
     fn reset(&mut self) {}
 
     /// One step from `start` to `end`; its error in `norm` if the method estimates one, else zero.
     fn step(
         &mut self,
-        system: &mut System<R>,
+        system: &mut System<'_>,
         control: &mut dyn Control,
         start: Start,
         end: &mut [f64],
@@ -54,12 +52,12 @@ pub(crate) trait Method<R: Dynamics<f64>> {
     }
 
     /// Completes an accepted step.
-    fn finish(&mut self, _: &mut System<R>, _: &mut dyn Control, _: Start, _: &mut [f64]) -> Result<(), SimulateError> {
+    fn finish(&mut self, _: &mut System<'_>, _: &mut dyn Control, _: Start, _: &mut [f64]) -> Result<(), SimulateError> {
         Ok(())
     }
 
     /// Prepares [`Method::between`] for the last step.
-    fn prepare(&mut self, system: &mut System<R>, control: &mut dyn Control, start: Start, end: &[f64]) -> Result<(), SimulateError>;
+    fn prepare(&mut self, system: &mut System<'_>, control: &mut dyn Control, start: Start, end: &[f64]) -> Result<(), SimulateError>;
 
     /// y at t + θ·h of the last step, θ from 0 to 1.
     fn between(&self, theta: f64, start: Start, end: &[f64], out: &mut [f64]);
@@ -89,7 +87,7 @@ pub(crate) trait Method<R: Dynamics<f64>> {
 
 /// The integrator of this name, on this manifold; whether explicit ones look for motion that is too
 /// fast for their steps.
-pub(crate) fn method<R: Dynamics<f64>>(id: IntegratorId, manifold: &Manifold, looks: bool) -> Box<dyn Method<R>> {
+pub(crate) fn method(id: IntegratorId, manifold: &Manifold, looks: bool) -> Box<dyn Method> {
     let nv = manifold.nv;
     let n = 2 * nv + 2;
     match id {

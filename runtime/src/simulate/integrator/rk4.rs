@@ -1,7 +1,5 @@
 //! The classical Runge–Kutta method: four stages, order 4.
 
-use articulated_core::dynamics::Dynamics;
-
 use super::hermite::{Hermite, hand_on_to_hermite};
 use super::stages::Stages;
 use super::{Method, Start, largest_of_polynomial};
@@ -20,10 +18,10 @@ impl Rk4 {
     }
 }
 
-impl<R: Dynamics<f64>> Method<R> for Rk4 {
+impl Method for Rk4 {
     fn step(
         &mut self,
-        system: &mut System<R>,
+        system: &mut System<'_>,
         control: &mut dyn Control,
         start: Start,
         end: &mut [f64],

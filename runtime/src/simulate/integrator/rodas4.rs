@@ -107,12 +107,7 @@ impl Rodas4 {
     }
 
     /// ∂f/∂y and ∂f/∂t at the start of a step.
-    fn differentiate<R: Dynamics<f64>>(
-        &mut self,
-        system: &mut System<R>,
-        control: &mut dyn Control,
-        start: Start,
-    ) -> Result<(), SimulateError> {
+    fn differentiate(&mut self, system: &mut System<'_>, control: &mut dyn Control, start: Start) -> Result<(), SimulateError> {
         let nv = self.nv;
         self.q.copy_from_slice(&system.origin);
         let (v, [tau, _]) = (&start.y[nv..2 * nv], &mut self.tau);
@@ -130,9 +125,9 @@ impl Rodas4 {
     }
 
     /// Columns of ∂τ, by differences.
-    fn differentiate_control<R: Dynamics<f64>>(
+    fn differentiate_control(
         &mut self,
-        system: &mut System<R>,
+        system: &mut System<'_>,
         control: &mut dyn Control,
         start: Start,
         depends: Dependence,
@@ -184,7 +179,7 @@ impl Rodas4 {
     }
 
     /// Factorises 1/(hγ) − ∂a/∂v − ∂a/∂q (1/(hγ) − ∂u̇/∂u)⁻¹.
-    fn factorize<R: Dynamics<f64>>(&mut self, system: &mut System<R>, start: Start) -> Result<(), SimulateError> {
+    fn factorize(&mut self, system: &mut System<'_>, start: Start) -> Result<(), SimulateError> {
         let h = start.h;
         let (nv, g) = (self.nv, 1.0 / (h * GAMMA));
         let singular = SimulateError::Singular { t: start.t, step: h };
@@ -212,13 +207,7 @@ impl Rodas4 {
     }
 
     /// Where stage i is, and the rate there.
-    fn begin_stage<R: Dynamics<f64>>(
-        &mut self,
-        i: usize,
-        system: &mut System<R>,
-        control: &mut dyn Control,
-        start: Start,
-    ) -> Result<(), SimulateError> {
+    fn begin_stage(&mut self, i: usize, system: &mut System<'_>, control: &mut dyn Control, start: Start) -> Result<(), SimulateError> {
         let nv = self.nv;
         for m in 0..2 * nv {
             self.argument[m] = start.y[m] + self.combine(A[i], m);
@@ -279,9 +268,9 @@ impl Rodas4 {
     /// Work and losses of a step over a layer, in J: by the change of energy. The work is that of
     /// the mean torque on the way, which is exact if the torque is linear in the way. `None` if the
     /// powers at the nodes agree.
-    fn over_layer<R: Dynamics<f64>>(
+    fn over_layer(
         &mut self,
-        system: &mut System<R>,
+        system: &mut System<'_>,
         control: &mut dyn Control,
         start: Start,
         end: &[f64],
@@ -332,14 +321,14 @@ const SAME_ENERGY: f64 = 1e-9;
 /// Where the middle of the other two nodes of Gauss is, from ½.
 const OUTER: f64 = 0.387_298_334_620_741_7;
 
-impl<R: Dynamics<f64>> Method<R> for Rodas4 {
+impl Method for Rodas4 {
     fn reset(&mut self) {
         self.at = None;
     }
 
     fn step(
         &mut self,
-        system: &mut System<R>,
+        system: &mut System<'_>,
         control: &mut dyn Control,
         start: Start,
         end: &mut [f64],
@@ -370,7 +359,7 @@ impl<R: Dynamics<f64>> Method<R> for Rodas4 {
         Ok(norm.of(|i| self.k[5 * n + i], end))
     }
 
-    fn finish(&mut self, system: &mut System<R>, control: &mut dyn Control, start: Start, end: &mut [f64]) -> Result<(), SimulateError> {
+    fn finish(&mut self, system: &mut System<'_>, control: &mut dyn Control, start: Start, end: &mut [f64]) -> Result<(), SimulateError> {
         if !system.follows_work {
             end[2 * self.nv..].copy_from_slice(&start.y[2 * self.nv..]);
             return Ok(());
@@ -378,7 +367,7 @@ impl<R: Dynamics<f64>> Method<R> for Rodas4 {
         let h = start.h;
         let mut y = std::mem::take(&mut self.argument);
         for (node, s) in [0.5 - OUTER, 0.5, 0.5 + OUTER].into_iter().enumerate() {
-            Method::<R>::between(self, s, start, end, &mut y);
+            Method::between(self, s, start, end, &mut y);
             let powers = system.power(control, start.t + s * h, &y)?;
             (self.powers[0][node], self.powers[1][node]) = (powers[0], powers[1]);
         }
@@ -397,7 +386,7 @@ impl<R: Dynamics<f64>> Method<R> for Rodas4 {
         Ok(())
     }
 
-    fn prepare(&mut self, _: &mut System<R>, _: &mut dyn Control, _: Start, _: &[f64]) -> Result<(), SimulateError> {
+    fn prepare(&mut self, _: &mut System<'_>, _: &mut dyn Control, _: Start, _: &[f64]) -> Result<(), SimulateError> {
         Ok(())
     }
 

@@ -4,8 +4,6 @@
 //! The linear velocity of a floating joint is stepped in axes that do not rotate with it:
 //! [`Manifold::semi_implicit_step`](crate::simulate::manifold::Manifold::semi_implicit_step).
 
-use articulated_core::dynamics::Dynamics;
-
 use super::hermite::{Hermite, hand_on_to_hermite};
 use super::stages::Fastest;
 use super::{Method, Start, roots};
@@ -31,14 +29,14 @@ impl SemiImplicitEuler {
     }
 }
 
-impl<R: Dynamics<f64>> Method<R> for SemiImplicitEuler {
+impl Method for SemiImplicitEuler {
     fn reset(&mut self) {
         self.rate.fill(f64::NAN);
     }
 
     fn step(
         &mut self,
-        system: &mut System<R>,
+        system: &mut System<'_>,
         _: &mut dyn Control,
         start: Start,
         end: &mut [f64],

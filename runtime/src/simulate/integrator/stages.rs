@@ -1,7 +1,5 @@
 //! Stages of explicit Runge–Kutta methods, and fast motion between them.
 
-use articulated_core::dynamics::Dynamics;
-
 use super::{Start, squared_distance};
 use crate::simulate::stability::SUSPICIOUS;
 use crate::simulate::system::System;
@@ -53,9 +51,9 @@ impl Stages {
 
     /// Slope i at t + c·h, y + h·Σ a_j k_j.
     #[inline(always)]
-    pub(super) fn stage<R: Dynamics<f64>>(
+    pub(super) fn stage(
         &mut self,
-        system: &mut System<R>,
+        system: &mut System<'_>,
         control: &mut dyn Control,
         start: Start,
         i: usize,

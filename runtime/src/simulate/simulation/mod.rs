@@ -15,6 +15,7 @@ use self::pace::Pace;
 use self::stiffness::Held;
 use crate::simulate::control::wrong_period;
 use crate::simulate::curve::Point;
+use crate::simulate::erased::Erased;
 use crate::simulate::event::detectors::Detectors;
 use crate::simulate::integrator::{Method, Start, method};
 use crate::simulate::output::{Known, Times};
@@ -24,11 +25,11 @@ use crate::simulate::system::System;
 use crate::simulate::{Control, Counts, Ended, Event, Output, Recording, Settings, SimulateError, StateError, Stiffness};
 
 /// A robot and all the memory that its simulation needs; a step allocates nothing.
-pub struct Simulation<'r, R: Dynamics<f64>> {
+pub struct Simulation<'r> {
     settings: Settings,
     shape: Shape,
-    system: System<'r, R>,
-    method: Box<dyn Method<R> + 'r>,
+    system: System<'r>,
+    method: Box<dyn Method + 'r>,
     norm: Norm,
     stability: Stability,
     detectors: Detectors,
@@ -130,15 +131,15 @@ enum Outcome {
     Mapped,
 }
 
-impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
+impl<'r> Simulation<'r> {
     /// Everything that is wrong with the settings, or the function that the robot lacks.
-    pub fn new(robot: &'r R, settings: Settings) -> Result<Self, SimulateError> {
+    pub fn new<R: Dynamics<f64>>(robot: &'r R, settings: Settings) -> Result<Self, SimulateError> {
         let shape = robot.shape();
         let wrong = settings.problems(shape);
         if !wrong.is_empty() {
             return Err(SimulateError::Settings(wrong));
         }
-        let mut system = System::new(robot)?;
+        let mut system = System::new(Erased::new(robot))?;
         let (n, nv) = (system.len(), shape.nv);
         let mut simulation = Self {
             shape,
@@ -239,7 +240,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         observer: &mut dyn FnMut(&Reached<'_>) -> bool,
     ) -> Result<(), SimulateError> {
         self.known.begin(&self.system, recording);
-        let state = self.system.manifold.wrong_state(self.system.robot, q, v);
+        let state = self.system.manifold.wrong_state(&self.system.robot, q, v);
         let events_wrong = events.iter().flat_map(|event| event.wrong(self.shape));
         StateError::none(state.chain(events_wrong).chain(self.wrong_control(control)))?;
         self.begin(q, v)?;

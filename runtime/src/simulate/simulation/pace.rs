@@ -1,7 +1,5 @@
 //! Pace of a motion, and the number that limits its steps.
 
-use articulated_core::dynamics::Dynamics;
-
 use super::{STEP, Simulation};
 use crate::simulate::SimulateError;
 use crate::simulate::error::joint;
@@ -49,7 +47,7 @@ impl Pace {
     }
 }
 
-impl<R: Dynamics<f64>> Simulation<'_, R> {
+impl Simulation<'_> {
     /// Ends a motion that would need far more steps than are allowed, as soon as that is certain.
     pub(super) fn check_pace(&mut self) -> Result<(), SimulateError> {
         let tries = self.tries();
@@ -74,7 +72,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
     pub(super) fn number(&self, index: usize) -> (&'static str, usize, Option<String>) {
         let nv = self.shape.nv;
         let (what, index) = if index < nv { (STEP, index) } else { ("v", index - nv) };
-        (what, index, joint(self.system.robot, index))
+        (what, index, joint(&self.system.robot, index))
     }
 }
 

@@ -1,12 +1,10 @@
 //! Records of the state that a simulation has reached.
 
-use articulated_core::dynamics::Dynamics;
-
 use super::{Run, Simulation};
 use crate::simulate::step_control::rounding;
 use crate::simulate::{Output, SimulateError};
 
-impl<R: Dynamics<f64>> Simulation<'_, R> {
+impl Simulation<'_> {
     /// The state as it is.
     pub(super) fn record_here(&mut self, run: &mut Run) -> Result<(), SimulateError> {
         // An output may be later by a rounding.

@@ -1,7 +1,5 @@
 //! Outputs and events of a step, and the actions of events on the state.
 
-use articulated_core::dynamics::Dynamics;
-
 use super::{Outcome, Run, Simulation};
 use crate::simulate::curve::Curve;
 use crate::simulate::event::detectors::Zero;
@@ -22,7 +20,7 @@ macro_rules! curve {
     };
 }
 
-impl<R: Dynamics<f64>> Simulation<'_, R> {
+impl Simulation<'_> {
     /// Outputs and events of the step to t, which is not yet the state. If the step is cut short,
     /// `end` is at the cut. Returns the time up to which the step counts, and its outcome.
     pub(super) fn look(&mut self, run: &mut Run, t: f64) -> Result<(f64, Outcome), SimulateError> {
@@ -122,7 +120,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         self.v.copy_from_slice(&self.y[nv..2 * nv]);
         let before = self.known.energy(&mut self.system, &self.point.q, &self.v)?;
         run.recording.events[hit].value = map(self.t, &mut self.point.q, &mut self.v)?;
-        StateError::none(self.system.manifold.wrong_state(self.system.robot, &self.point.q, &self.v))?;
+        StateError::none(self.system.manifold.wrong_state(&self.system.robot, &self.point.q, &self.v))?;
         self.system.origin.copy_from_slice(&self.point.q);
         self.y[nv..2 * nv].copy_from_slice(&self.v);
         self.renormalise()?;

@@ -1,11 +1,9 @@
 //! Steps one by one, for a loop of the caller.
 
-use articulated_core::dynamics::Dynamics;
-
 use super::{Run, Simulation};
 use crate::simulate::{Control, Counts, SimulateError, StateError};
 
-impl<R: Dynamics<f64>> Simulation<'_, R> {
+impl Simulation<'_> {
     /// Puts the robot at q `[nq]` and v `[nv]` at the start time, for [`Simulation::step`]. Errors:
     /// all errors in the state.
     ///
@@ -31,7 +29,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
     /// # Ok(()) }
     /// ```
     pub fn start(&mut self, q: &[f64], v: &[f64]) -> Result<(), SimulateError> {
-        StateError::none(self.system.manifold.wrong_state(self.system.robot, q, v))?;
+        StateError::none(self.system.manifold.wrong_state(&self.system.robot, q, v))?;
         self.begin(q, v)
     }
 

@@ -1,11 +1,9 @@
 //! Stiff motions under explicit integrators.
 
-use articulated_core::dynamics::Dynamics;
-
 use super::{Run, Simulation};
 use crate::simulate::{SimulateError, Stiffness};
 
-impl<R: Dynamics<f64>> Simulation<'_, R> {
+impl Simulation<'_> {
     /// Refuses a fixed step that an explicit integrator is not stable at.
     pub(super) fn check_stability(&mut self, run: &mut Run) -> Result<(), SimulateError> {
         let (nv, counts) = (self.shape.nv, &self.system.counts);

@@ -13,7 +13,7 @@ pub(super) struct Ours<'r> {
     settings: Settings,
     q: Vec<f64>,
     v: Vec<f64>,
-    made: Option<(Effort, Simulation<'r, Straight>, Recording)>,
+    made: Option<(Effort, Simulation<'r>, Recording)>,
 }
 
 impl<'r> Ours<'r> {
@@ -22,7 +22,7 @@ impl<'r> Ours<'r> {
         Self { robot, settings, q: q.to_vec(), v: v.to_vec(), made: None }
     }
 
-    fn simulation(&self, effort: Effort) -> Option<(Simulation<'r, Straight>, Recording)> {
+    fn simulation(&self, effort: Effort) -> Option<(Simulation<'r>, Recording)> {
         let mut settings = self.settings.clone();
         match effort {
             Effort::Steps(n) => settings.step = Some((settings.end - settings.start) / n as f64),
