@@ -102,5 +102,6 @@ step python3 tests/shipped/shipped.py --sample
 step python_package
 step browser
 rejoin
+step python3 tests/command_lines.py
 step readme_command
 printf '\nall checks passed in %d s\n' $SECONDS

@@ -31,7 +31,7 @@ pub(crate) fn check(asked: Option<f64>, log: &mut Diagnostics) {
 const NEARLY: f64 = 1e-4;
 
 /// Angles of joints that are nearly multiples of π/2 and could be snapped, each with the name of
-/// its joint. Exact ones save 8 to 16 % of the time that generated code takes.
+/// its joint.
 pub fn nearly_right_angles(description: &Description) -> Vec<(&str, f64)> {
     let angles = description.joints.iter().flat_map(|joint| joint.origin.rotation.rpy().map(|angle| (joint.name.as_str(), angle)));
     angles.filter(|(_, angle)| right_angle(*angle, NEARLY).is_some()).collect()

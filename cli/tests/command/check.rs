@@ -59,18 +59,40 @@ fn warnings_of_one_sort_are_one_line_with_a_count() {
 
 #[test]
 fn an_angle_that_is_nearly_right_names_the_option_that_makes_it_so() {
-    let arm = |angle: &str| File::new("arm.urdf", MASSLESS.replace("<axis", &format!("<origin rpy='0 {angle} 0'/><axis")).as_bytes());
+    let link = |k: usize| {
+        format!(
+            "<link name='l{k}'><inertial><origin xyz='0.1 0.02 0.3'/><mass value='2'/>\
+             <inertia ixx='0.1' ixy='0.01' ixz='0.02' iyy='0.2' iyz='0.03' izz='0.15'/></inertial></link>"
+        )
+    };
+    let joint = |k: usize, angle: &str| {
+        format!(
+            "<joint name='j{k}' type='continuous'><parent link='l{}'/><child link='l{k}'/>\
+             <origin xyz='0.1 0.2 0.3' rpy='{angle} 0 0'/><axis xyz='0 0 1'/></joint>",
+            k - 1
+        )
+    };
+    // A tool that is fixed costs nothing, whatever its angle.
+    let tool =
+        "<link name='tool'/><joint name='mount' type='fixed'><parent link='l3'/><child link='tool'/><origin rpy='1.5708 0 0'/></joint>";
+    let arm = |angle: &str| {
+        let links: String = (0..4).map(link).chain((1..4).map(|k| joint(k, angle))).collect();
+        File::new("arm.urdf", format!("<robot name='r'>{links}{tool}</robot>").as_bytes())
+    };
     let told = |file: &File, words: &[&str]| {
         let ended = run(&[&["check", file.name()], words].concat());
         ended.out.lines().find(|line| line.contains("nearly a multiple of π/2")).map(str::to_owned)
     };
-    let near = arm("1.57079632679");
-    let line = told(&near, &[]).unwrap();
-    assert!(
-        line.contains("joint \"idle\": origin rpy: found 1.57079632679") && line.contains("`--snap-angles 1e-5` (key `snap_angles`"),
-        "{line}"
-    );
-    assert_eq!(told(&near, &["--snap-angles", "1e-5"]), None);
+    let line = told(&arm("1.5708"), &[]).unwrap();
+    assert!(line.contains("joint \"j1\": origin rpy: found 1.5708, nearly a multiple of π/2 (and 3 more)"), "{line}");
+    assert!(line.contains("`--snap-angles 1e-5` (key `snap_angles`"), "{line}");
+    let numbers = line.split_once("exact ones make ").and_then(|(_, rest)| rest.split_once(" instructions of inverse dynamics"));
+    let (then, now) = numbers.and_then(|(numbers, _)| numbers.split_once(" of ")).unwrap_or_else(|| panic!("{line}"));
+    assert!(then.parse::<u32>().unwrap() < now.parse::<u32>().unwrap(), "{line}");
+    // The tolerance that the warning names makes the angles exact.
+    assert_eq!(told(&arm("1.5708"), &["--snap-angles", "1e-5"]), None);
+    assert!(told(&arm("1.57"), &[]).is_none() && told(&arm("1.57085"), &[]).unwrap().contains("`--snap-angles 1e-4`"));
+    // Nothing is promised where there is no gain.
     assert_eq!((told(&arm("1.5707963267948966"), &[]), told(&arm("1.5"), &[])), (None, None));
 }
 
