@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 
 use crate::edits::{Edits, FrameArguments};
 use crate::failure::Failure;
-use crate::names::{Names, known, wanted};
+use crate::names::{Names, known, requested};
 use crate::table::counted;
 
 /// Output format.
@@ -129,7 +129,7 @@ pub(crate) struct CheckArguments {
     #[command(flatten)]
     pub(crate) frames: FrameArguments,
     /// Also check that these functions can be generated
-    #[arg(long, alias = "functions", value_name = "NAMES", value_parser = wanted)]
+    #[arg(long, alias = "functions", value_name = "NAMES", value_parser = requested)]
     pub(crate) function: Vec<Names>,
 }
 
@@ -157,7 +157,7 @@ pub(crate) struct GenerateArguments {
     pub(crate) frames: FrameArguments,
     /// The functions to generate: names, groups, name = first + second(a = 0), or motion: all
     /// functions that the motion of a scene calls [default: placements,inverse_dynamics]
-    #[arg(long, alias = "function", value_name = "NAMES", value_parser = wanted)]
+    #[arg(long, alias = "function", value_name = "NAMES", value_parser = requested)]
     pub(crate) functions: Vec<Names>,
     /// Constants of the model that stay inputs: payload(LINK), inertia(LINK), origin(JOINT),
     /// gravity, and numbers of an effect that is on, as damping(JOINT), contact(LINK)

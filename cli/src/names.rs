@@ -1,6 +1,6 @@
 //! Lists of functions on the command line.
 
-use articulated_codegen::{FunctionSpec, meant};
+use articulated_codegen::{FunctionSpec, resolve_synonym};
 use articulated_core::algorithm::{function, functions};
 
 use articulated_codegen::function_groups::{ALL, Group, MOTION, functions_of};
@@ -16,7 +16,7 @@ pub(crate) fn known(text: &str) -> Result<Names, String> {
 
 /// As [`known`], with the generator's syntax: `name = first + second(a = 0)`, and `motion` of a
 /// scene.
-pub(crate) fn wanted(text: &str) -> Result<Names, String> {
+pub(crate) fn requested(text: &str) -> Result<Names, String> {
     each(text, &|entry| match entry.contains(['=', '+', '(']) {
         true => FunctionSpec::parse(entry).map(|_| vec![entry.to_owned()]).map_err(|e| e.to_string()),
         // A group may have functions that the robot lacks: it stays one word.
@@ -59,7 +59,7 @@ fn known_one(name: &str) -> Result<Vec<String>, String> {
         return Ok(functions);
     }
     let all = || functions::<f64>().iter().map(|f| f.name).chain(Group::ALL.map(Group::name)).chain([ALL]);
-    let near = meant(name, all()).map(|n| format!("did you mean {n}? ")).unwrap_or_default();
+    let near = resolve_synonym(name, all()).map(|n| format!("did you mean {n}? ")).unwrap_or_default();
     let groups = Group::ALL.map(Group::name).join(", ");
     Err(format!("{near}there are the groups {groups} and {ALL}, and the functions that `articulated functions` lists"))
 }
@@ -78,7 +78,7 @@ mod tests {
         assert!(known("kinematic").unwrap_err().contains("did you mean kinematics?"));
         assert!(known("rnea").unwrap_err().starts_with("did you mean inverse_dynamics?"));
         assert!(known("inverse_kinematics").unwrap_err().starts_with("there are the groups"));
-        assert!(known("x = mass_matrix").is_err() && wanted("x = mass_matrx").is_err());
+        assert!(known("x = mass_matrix").is_err() && requested("x = mass_matrx").is_err());
     }
 
     #[test]
@@ -92,6 +92,6 @@ mod tests {
     #[test]
     fn commas_within_brackets_do_not_part() {
         let one = "slow = inverse_dynamics(v = 0, a = [0, 1])";
-        assert_eq!(wanted(&format!("{one},mass_matrix")), list(&[one, "mass_matrix"]));
+        assert_eq!(requested(&format!("{one},mass_matrix")), list(&[one, "mass_matrix"]));
     }
 }

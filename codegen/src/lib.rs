@@ -227,14 +227,14 @@ pub fn function(name: &str) -> Result<&'static Function<Sym>, Diagnostic> {
         let groups = Group::ALL.map(Group::name).into_iter().chain([function_groups::ALL]);
         let groups = groups.filter(|_| function_groups::functions_of(name).is_none());
         let known: Vec<&str> = functions::<Sym>().iter().map(|f| f.name).chain(groups).collect();
-        let nearest = meant(name, known.iter().copied());
+        let nearest = resolve_synonym(name, known.iter().copied());
         let rest = nearest.map_or_else(|| format!("there are: {}", known.join(", ")), |nearest| format!("did you mean `{nearest}`?"));
         Diagnostic::refusal("", Place::DOCUMENT, Code::UnknownFunction, format!("unknown function `{name}`, {rest}"))
     })
 }
 
 /// The name that an unknown name probably means: a synonym in other libraries, or the nearest.
-pub fn meant<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
+pub fn resolve_synonym<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let plain: String = name.chars().filter(|c| *c != '_').collect();
     match ELSEWHERE.iter().find(|(theirs, _)| plain.eq_ignore_ascii_case(theirs)) {
         Some((_, ours)) => (!ours.is_empty()).then(|| (*ours).to_owned()),

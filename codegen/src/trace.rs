@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use articulated_core::Scalar;
-use articulated_core::algorithm::{Argument, Way};
+use articulated_core::algorithm::{Argument, Variant};
 use articulated_core::model::Model;
 use num_traits::Zero;
 
@@ -135,7 +135,7 @@ fn run(part: &FunctionTerm, strategy: &Strategy, view: &View<Sym>, arguments: &[
 }
 
 /// Whether a way applies to the model.
-pub(crate) fn applies(way: &Way<Sym>, model: &Model<f64>) -> bool {
+pub(crate) fn applies(way: &Variant<Sym>, model: &Model<f64>) -> bool {
     let mut applies = false;
     let _ = sym::trace(|| {
         applies = (way.applies)(&model.cast());
@@ -146,11 +146,11 @@ pub(crate) fn applies(way: &Way<Sym>, model: &Model<f64>) -> bool {
 
 /// The ways of a function that apply to the model, with a lower bound of each cost, the cheapest
 /// first.
-pub(crate) fn ways(part: &FunctionTerm, model: &Model<f64>) -> Vec<(&'static Way<Sym>, u64)> {
+pub(crate) fn ways(part: &FunctionTerm, model: &Model<f64>) -> Vec<(&'static Variant<Sym>, u64)> {
     if let [one] = part.function.ways {
         return vec![(one, 0)];
     }
-    let mut ways: Vec<(&'static Way<Sym>, u64)> = Vec::new();
+    let mut ways: Vec<(&'static Variant<Sym>, u64)> = Vec::new();
     let _ = sym::trace(|| {
         let symbolic = model.cast();
         let applies = part.function.ways.iter().filter(|w| (w.applies)(&symbolic));

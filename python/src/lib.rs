@@ -70,7 +70,7 @@ fn read<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyBytes>> {
     let bytes = read_file(&path, MOST_BYTES).map_err(|error| {
         let near = articulated::formats::nearest_file(&path);
         let finding = Diagnostic::refusal(&path.display().to_string(), Place::DOCUMENT, Code::File, error.to_string());
-        errors::refused(py, &finding.meant(near).into())
+        errors::refused(py, &finding.with_nearest(near).into())
     })?;
     Ok(PyBytes::new(py, &bytes))
 }

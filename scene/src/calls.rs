@@ -64,9 +64,9 @@ mod tests {
 
     #[test]
     fn a_scene_that_does_not_move_calls_nothing_and_others_what_they_ask_for() {
-        const TOLD: [&str; 3] = ["kinetic_energy", "potential_energy", "centroidal_momentum"];
+        const ENERGIES: [&str; 3] = ["kinetic_energy", "potential_energy", "centroidal_momentum"];
         assert_eq!(called("effects = { damping = 1 }"), [""; 0]);
-        assert_eq!(called("simulation = { end = 1 }"), [&["forward_dynamics", "integrate"][..], &TOLD].concat());
+        assert_eq!(called("simulation = { end = 1 }"), [&["forward_dynamics", "integrate"][..], &ENERGIES].concat());
         let all = called(
             "effects = { damping = 1 }
             simulation = { end = 1, integrator = 'rodas4', events = ['contacts'] }
@@ -83,6 +83,6 @@ mod tests {
             "solve_mass_matrix",
         ];
         let effects = ["dissipation", "motor_torques"];
-        assert!(all.iter().eq(required.iter().chain(&TOLD).chain(&effects)), "{all:?}");
+        assert!(all.iter().eq(required.iter().chain(&ENERGIES).chain(&effects)), "{all:?}");
     }
 }

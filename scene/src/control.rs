@@ -11,7 +11,7 @@ use crate::scene::Scene;
 use crate::series::{Reader, Source, unreadable};
 use crate::simulation::set;
 use crate::slots::{Side, Slots};
-use crate::table::{Row, Spot};
+use crate::table::{Cursor, Row};
 use crate::tree::Value;
 use crate::world::RobotInWorld;
 
@@ -258,7 +258,7 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
     },
 ];
 
-pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Control {
+pub(crate) fn read(spot: &Cursor<'_>, log: &mut Diagnostics) -> Control {
     let mut keys = Keys::default();
     let before = log.count();
     spot.read(KEYS, &mut keys, log);
@@ -286,7 +286,7 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Control {
 }
 
 /// Checks that the keys are those of the kind; `right`: the accepted keys of a table.
-fn check(keys: &Keys, spot: &Spot<'_>, right: &[&str], log: &mut Diagnostics) {
+fn check(keys: &Keys, spot: &Cursor<'_>, right: &[&str], log: &mut Diagnostics) {
     let of_sort = OF_SORT.iter().find(|(sort, _)| *sort == keys.kind).map_or(&[][..], |(_, keys)| keys);
     let word = SORTS.iter().find(|(_, sort)| *sort == keys.kind).map_or("", |(word, _)| word);
     for row in KEYS.iter().filter(|row| row.name != "kind" && !of_sort.contains(&row.name)) {
@@ -316,7 +316,7 @@ fn listed(keys: &[&str]) -> String {
     if keys.is_empty() { "no other key".into() } else { format!("one of {}", keys.join(", ")) }
 }
 
-fn rows(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Vec<f64>> {
+fn rows(spot: &Cursor<'_>, log: &mut Diagnostics) -> Vec<Vec<f64>> {
     match spot.list() {
         Some(list) => list.iter().filter_map(|row| row.some_numbers(log, "a list of numbers: the time and one for each column")).collect(),
         None => {
@@ -326,7 +326,7 @@ fn rows(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Vec<f64>> {
     }
 }
 
-fn per_joint(spot: &Spot<'_>, range: Range, log: &mut Diagnostics) -> PerJoint {
+fn per_joint(spot: &Cursor<'_>, range: Range, log: &mut Diagnostics) -> PerJoint {
     match &spot.node.value {
         Value::Number(_) => PerJoint::Same(spot.within(log, range).unwrap_or_default()),
         Value::Table(_) => {
@@ -349,7 +349,7 @@ fn per_joint(spot: &Spot<'_>, range: Range, log: &mut Diagnostics) -> PerJoint {
 
 /// The number for all joints. Other errors are reported by the reader of the numbers, which may be
 /// lists there.
-fn same(spot: &Spot<'_>, log: &mut Diagnostics) -> f64 {
+fn same(spot: &Cursor<'_>, log: &mut Diagnostics) -> f64 {
     match spot.node.value {
         Value::Number(x) => x,
         Value::List(_) => spot.number(log).unwrap_or_default(),
@@ -358,7 +358,7 @@ fn same(spot: &Spot<'_>, log: &mut Diagnostics) -> f64 {
 }
 
 /// Checks the range of every finite number. Other errors are reported by the reader of the numbers.
-fn all_within(spot: &Spot<'_>, range: Range, log: &mut Diagnostics) {
+fn all_within(spot: &Cursor<'_>, range: Range, log: &mut Diagnostics) {
     match &spot.node.value {
         Value::Number(x) if x.is_finite() => {
             let _ = spot.within(log, range);

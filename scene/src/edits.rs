@@ -4,7 +4,7 @@
 use articulated_core::description::{Coupling, Origin, Payload, Rotation};
 use articulated_core::diagnostic::{At, Code, Diagnostics};
 
-use crate::table::{Row, Spot};
+use crate::table::{Cursor, Row};
 use crate::tree::Value;
 
 /// A joint and the coordinates at which it is locked.
@@ -56,7 +56,7 @@ pub struct Append {
 }
 
 /// `{ joint = coordinates, … }`.
-pub(crate) fn locks(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Lock> {
+pub(crate) fn locks(spot: &Cursor<'_>, log: &mut Diagnostics) -> Vec<Lock> {
     let entries = spot.entries(log, "a table of joints, as { elbow = 0.5 }");
     let lock = |entry| {
         let value = spot.of(entry);
@@ -68,14 +68,14 @@ pub(crate) fn locks(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Lock> {
 /// `{ joint = { joint = […], coefficients = […], offset = 0 }, … }`.
 /// The same, or the word `file`: the couplings of the scene, and whether those of the robot's file
 /// apply.
-pub(crate) fn couplings(spot: &Spot<'_>, log: &mut Diagnostics) -> (Vec<Follower>, bool) {
+pub(crate) fn couplings(spot: &Cursor<'_>, log: &mut Diagnostics) -> (Vec<Follower>, bool) {
     match &spot.node.value {
         Value::Text(word) if word == "file" => (Vec::new(), true),
         _ => (followers(spot, log), false),
     }
 }
 
-fn followers(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Follower> {
+fn followers(spot: &Cursor<'_>, log: &mut Diagnostics) -> Vec<Follower> {
     let entries = spot.entries(log, "a table of joints, as { pitch = { joint = [\"m1\", \"m2\"], coefficients = [0.5, -0.5] } }");
     let follower = |entry| {
         let (value, mut one) = (spot.of(entry), Follower { place: entry.at, ..Follower::default() });
@@ -120,7 +120,7 @@ const FOLLOWER: &[Row<Follower>] = &[
 ];
 
 /// One number or several.
-pub(crate) fn coordinates(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Vec<f64>> {
+pub(crate) fn coordinates(spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<Vec<f64>> {
     match spot.node.value {
         Value::List(_) => spot.some_numbers(log, "finite numbers"),
         _ => spot.number(log).map(|x| vec![x]),
@@ -128,15 +128,15 @@ pub(crate) fn coordinates(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Vec<
 }
 
 /// `{ "name" = "NAME", … }`.
-pub(crate) fn renamings(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<(String, String)> {
+pub(crate) fn renamings(spot: &Cursor<'_>, log: &mut Diagnostics) -> Vec<(String, String)> {
     let entries = spot.entries(log, "a table of names, as { \"a-b\" = \"A_MINUS_B\" }");
     entries.iter().filter_map(|e| Some((e.name.clone(), spot.of(e).text(log, "a name in Rust")?.to_owned()))).collect()
 }
 
 /// Arguments of a file: values are texts, or numbers and truth values as they are written.
-pub(crate) fn arguments(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<(String, String)> {
+pub(crate) fn arguments(spot: &Cursor<'_>, log: &mut Diagnostics) -> Vec<(String, String)> {
     let entries = spot.entries(log, "a table of arguments, as { hand = true, prefix = \"left_\" }");
-    let value = |spot: Spot<'_>, log: &mut Diagnostics| match &spot.node.value {
+    let value = |spot: Cursor<'_>, log: &mut Diagnostics| match &spot.node.value {
         Value::Number(number) => Some(number.to_string()),
         Value::Bool(value) => Some(value.to_string()),
         _ => spot.text(log, "a text, a number, true or false").map(str::to_owned),
@@ -145,13 +145,13 @@ pub(crate) fn arguments(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<(String, 
 }
 
 /// Folders of packages.
-pub(crate) fn packages(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<(String, String)> {
+pub(crate) fn packages(spot: &Cursor<'_>, log: &mut Diagnostics) -> Vec<(String, String)> {
     let entries = spot.entries(log, "a table of folders, as { arm_description = \"../arm_description\" }");
     entries.iter().filter_map(|e| Some((e.name.clone(), spot.of(e).text(log, "the path of a folder")?.to_owned()))).collect()
 }
 
 /// Places of the items of a list, or of the entries of a table.
-pub(crate) fn places(spot: &Spot<'_>) -> Vec<At> {
+pub(crate) fn places(spot: &Cursor<'_>) -> Vec<At> {
     match &spot.node.value {
         Value::List(list) => list.iter().map(|item| item.at).collect(),
         Value::Table(entries) => entries.iter().map(|entry| entry.at).collect(),
@@ -160,7 +160,7 @@ pub(crate) fn places(spot: &Spot<'_>) -> Vec<At> {
 }
 
 /// A name that is not empty.
-pub(crate) fn name(spot: &Spot<'_>, log: &mut Diagnostics, what: &str) -> Option<String> {
+pub(crate) fn name(spot: &Cursor<'_>, log: &mut Diagnostics, what: &str) -> Option<String> {
     let name = spot.text(log, what)?;
     if name.is_empty() {
         log.error((spot.node.at, &spot.key), Code::Word, "an empty text", what);

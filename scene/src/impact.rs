@@ -5,7 +5,7 @@ use articulated_core::effect::Range;
 
 use crate::edits::name;
 use crate::simulation::set;
-use crate::table::{Row, Spot};
+use crate::table::{Cursor, Row};
 use crate::tree::Value;
 
 /// A ball at rest and the link that hits it: an instantaneous impact along the normal, without
@@ -142,7 +142,7 @@ pub(crate) const KEYS: &[Row<Impact>] = &[
     },
 ];
 
-pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Impact> {
+pub(crate) fn read(spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<Impact> {
     let mut impact = Impact::default();
     let before = log.count();
     spot.read(KEYS, &mut impact, log);

@@ -9,7 +9,7 @@ use articulated_core::spatial::normalise_input;
 use crate::edits::{coordinates, name};
 use crate::scene::Scene;
 use crate::slots::Side;
-use crate::table::{Row, Spot};
+use crate::table::{Cursor, Row};
 use crate::tree::Value;
 use crate::world::RobotInWorld;
 
@@ -171,7 +171,7 @@ pub(crate) const BASE: &[Row<BaseState>] = &[
     },
 ];
 
-pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Initial {
+pub(crate) fn read(spot: &Cursor<'_>, log: &mut Diagnostics) -> Initial {
     let mut initial = Initial::default();
     spot.read(KEYS, &mut initial, log);
     base_once(&initial.q, "q", &["xyz", "rpy", "quaternion"], spot, log);
@@ -180,7 +180,7 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Initial {
 }
 
 /// A list contains the numbers of a floating base, so `base` must not give them again.
-fn base_once(coordinates: &Coordinates, key: &str, of_base: &[&str], initial: &Spot<'_>, log: &mut Diagnostics) {
+fn base_once(coordinates: &Coordinates, key: &str, of_base: &[&str], initial: &Cursor<'_>, log: &mut Diagnostics) {
     let has_base = match coordinates {
         Coordinates::Neutral => false,
         Coordinates::All { .. } => true,
@@ -192,7 +192,7 @@ fn base_once(coordinates: &Coordinates, key: &str, of_base: &[&str], initial: &S
     }
 }
 
-pub(crate) fn values(spot: &Spot<'_>, log: &mut Diagnostics) -> Coordinates {
+pub(crate) fn values(spot: &Cursor<'_>, log: &mut Diagnostics) -> Coordinates {
     match &spot.node.value {
         Value::List(_) => {
             spot.some_numbers(log, "numbers").map_or(Coordinates::Neutral, |values| Coordinates::All { values, place: spot.node.at })
@@ -216,7 +216,7 @@ fn from_rpy(rpy: [f64; 3]) -> [f64; 4] {
     [sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy]
 }
 
-fn unit(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<[f64; 4]> {
+fn unit(spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<[f64; 4]> {
     let mut quaternion: [f64; 4] = spot.numbers(log)?;
     if let Err(norm) = normalise_input(&mut quaternion) {
         spot.bad(log, format!("a quaternion of norm {norm:.4}"), "norm one, in the order x, y, z, w");

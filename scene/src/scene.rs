@@ -20,7 +20,7 @@ use crate::impact::{self, Impact};
 use crate::initial::{self, Initial};
 use crate::shaft::ShaftRequest;
 use crate::simulation::{self, Simulation};
-use crate::table::{Row, Spot};
+use crate::table::{Cursor, Row};
 use crate::tree::{Node, Value};
 
 /// A scene in the form of its file: names are not looked up yet, files not opened.
@@ -201,7 +201,7 @@ impl Scene {
     pub fn overlaid(mut self, said: &Node, own: &[&str]) -> (Self, Vec<Diagnostic>) {
         let mut log = Diagnostics::new(&self.file);
         let rows: Vec<&Row<Self>> = KEYS.iter().filter(|row| !OF_MOTION.contains(&row.name)).collect();
-        let spot = Spot::root(said);
+        let spot = Cursor::root(said);
         for entry in spot.entries(&mut log, "a table") {
             let value = spot.of(entry);
             match rows.iter().find(|row| row.name == entry.name) {
@@ -237,7 +237,7 @@ impl Scene {
     }
 
     fn fill(&mut self, root: &Node, log: &mut Diagnostics) {
-        let spot = Spot::root(root);
+        let spot = Cursor::root(root);
         spot.read(KEYS, self, log);
         self.choose_integrator();
         for [one, other] in [["robot", "urdf"], ["robot", "file"], ["urdf", "file"]] {
@@ -548,7 +548,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
 ];
 
 /// The bound is the readers' bound.
-fn snap_angles(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<f64> {
+fn snap_angles(spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<f64> {
     match spot.node.value {
         Value::Number(x) if can_snap(x) => return Some(x),
         Value::Number(x) => spot.bad(log, format!("{x:?}"), SNAP_EXPECTED),
@@ -558,7 +558,7 @@ fn snap_angles(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<f64> {
 }
 
 /// Each type once.
-fn batch(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Vec<Real>> {
+fn batch(spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<Vec<Real>> {
     let Some(list) = spot.list() else {
         spot.wrong(log, "a list of \"f64\", \"f32\"");
         return None;
@@ -573,7 +573,7 @@ fn batch(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Vec<Real>> {
     Some(reals)
 }
 
-fn left_out(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<BTreeSet<LeaveOut>> {
+fn left_out(spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<BTreeSet<LeaveOut>> {
     let Some(list) = spot.list() else {
         spot.wrong(log, "a list of \"flex\", \"composite\", \"plugin\"");
         return None;
@@ -581,7 +581,7 @@ fn left_out(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<BTreeSet<LeaveOut>
     Some(list.iter().filter_map(|item| item.word(log, &LeaveOut::WORDS)).collect())
 }
 
-fn level(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Precision> {
+fn level(spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<Precision> {
     let expected = "a level of accuracy, as \"f64\", \"f32\", \"compensated + two\", \"double_double\" or \"f64 + fast_10 + no_fma\"";
     let text = spot.text(log, expected)?;
     let level = text.split_whitespace().collect::<String>().parse::<Precision>();

@@ -4,7 +4,7 @@ use articulated_core::description::Shaft;
 use articulated_core::diagnostic::{At, Diagnostics};
 
 use crate::simulation::set;
-use crate::table::{Row, Spot};
+use crate::table::{Cursor, Row};
 
 /// Its name among the effects.
 pub(crate) const NAME: &str = "shaft";
@@ -73,7 +73,7 @@ pub(crate) const KEYS: &[Row<ShaftRequest>] = &[
 ];
 
 /// The shafts, one for each fixed joint.
-pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<ShaftRequest> {
+pub(crate) fn read(spot: &Cursor<'_>, log: &mut Diagnostics) -> Vec<ShaftRequest> {
     let mut shafts = Vec::new();
     for entry in spot.entries(log, "a table of fixed joints") {
         let value = spot.of(entry);

@@ -4,10 +4,10 @@ use articulated_core::diagnostic::{At, Code, Diagnostics};
 use std::iter;
 
 use articulated_core::algorithm::Shape;
-use articulated_core::integrator::{IntegratorId, integrators, meant};
+use articulated_core::integrator::{IntegratorId, integrators, resolve_synonym};
 use articulated_core::settings::{Output, SettingError, Settings, Stiffness};
 
-use crate::table::{Row, Spot};
+use crate::table::{Cursor, Row};
 use crate::tree::Value;
 
 /// How to simulate.
@@ -174,7 +174,7 @@ pub(crate) fn set<T>(into: &mut T, value: Option<T>) {
     }
 }
 
-pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Simulation> {
+pub(crate) fn read(spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<Simulation> {
     let mut simulation = Simulation::default();
     let before = log.count();
     spot.read(KEYS, &mut simulation, log);
@@ -189,7 +189,7 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Simulation>
 
 /// Reports invalid settings, each if all keys that it concerns are `right`: at its key, or else at
 /// a key that conflicts with it.
-fn check(settings: &Settings, spot: &Spot<'_>, right: &[&str], log: &mut Diagnostics) {
+fn check(settings: &Settings, spot: &Cursor<'_>, right: &[&str], log: &mut Diagnostics) {
     for SettingError { key, with, found, right: expected } in settings.problems(ANY_ROBOT) {
         let mut about = iter::once(&key).chain(with);
         if about.clone().all(|key| right.contains(key)) {
@@ -211,8 +211,8 @@ const A_STEP: f64 = 1e-3;
 /// Outputs of the smallest robot fit every robot.
 const ANY_ROBOT: Shape = Shape { nq: 0, nv: 0, frames: 0, links: 0 };
 
-fn integrator(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<IntegratorId> {
-    spot.word_like(log, &words(), |found| meant(found).map_or(found, |row| row.name))
+fn integrator(spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<IntegratorId> {
+    spot.word_like(log, &words(), |found| resolve_synonym(found).map_or(found, |row| row.name))
 }
 
 /// Names of the integrators in scenes.
@@ -220,7 +220,7 @@ fn words() -> Vec<(&'static str, IntegratorId)> {
     integrators().iter().map(|row| (row.name, row.id)).collect()
 }
 
-fn output(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Output> {
+fn output(spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<Output> {
     match &spot.node.value {
         Value::Text(_) => spot.word(log, &[("steps", 0), ("ends", 1)]).map(|i| [Output::Steps, Output::Ends][i].clone()),
         Value::List(_) => spot.some_numbers(log, "times, s").map(Output::At),
@@ -228,7 +228,7 @@ fn output(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Output> {
     }
 }
 
-fn events(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<EventClass> {
+fn events(spot: &Cursor<'_>, log: &mut Diagnostics) -> Vec<EventClass> {
     let Some(list) = spot.list() else {
         spot.wrong(log, "a list of events, as [\"limits\"]");
         return Vec::new();

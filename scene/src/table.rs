@@ -19,7 +19,7 @@ pub(crate) struct Row<T> {
     /// Meaning.
     pub(crate) what: &'static str,
     /// Reads the value.
-    pub(crate) read: fn(&mut T, &Spot<'_>, &mut Diagnostics),
+    pub(crate) read: fn(&mut T, &Cursor<'_>, &mut Diagnostics),
 }
 
 /// Keys that other programs have, and the one that is meant.
@@ -32,14 +32,14 @@ pub(crate) const MEANT: [(&str, &str); 5] = [
 ];
 
 /// A value and the way to it.
-pub(crate) struct Spot<'a> {
+pub(crate) struct Cursor<'a> {
     pub(crate) node: &'a Node,
     pub(crate) key: String,
     /// The place of the key.
     pub(crate) at: At,
 }
 
-impl<'a> Spot<'a> {
+impl<'a> Cursor<'a> {
     /// The whole scene.
     pub(crate) fn root(node: &'a Node) -> Self {
         Self { node, key: String::new(), at: node.at }
@@ -84,7 +84,7 @@ impl<'a> Spot<'a> {
     }
 
     /// The value of a key of a table, if it is there.
-    pub(crate) fn get(&self, name: &str) -> Option<Spot<'a>> {
+    pub(crate) fn get(&self, name: &str) -> Option<Cursor<'a>> {
         match &self.node.value {
             Value::Table(entries) => entries.iter().find(|e| e.name == name).map(|e| self.of(e)),
             _ => None,
@@ -92,7 +92,7 @@ impl<'a> Spot<'a> {
     }
 
     /// The items of a list.
-    pub(crate) fn list(&self) -> Option<Vec<Spot<'a>>> {
+    pub(crate) fn list(&self) -> Option<Vec<Cursor<'a>>> {
         match &self.node.value {
             Value::List(list) => Some(list.iter().enumerate().map(|(i, node)| self.item(node, i)).collect()),
             _ => None,
@@ -267,7 +267,7 @@ impl<'a> Spot<'a> {
 
     /// One table, or a list of tables, each by the rows.
     pub(crate) fn tables<T: Default>(&self, rows: &[Row<T>], log: &mut Diagnostics) -> Vec<T> {
-        let one = |spot: &Spot<'_>, log: &mut Diagnostics| {
+        let one = |spot: &Cursor<'_>, log: &mut Diagnostics| {
             let before = log.count();
             let mut value = T::default();
             spot.read(rows, &mut value, log);

@@ -88,7 +88,7 @@ pub(super) fn integrator(text: &str) -> Result<String, String> {
     if names().any(|name| name == text) {
         return Ok(text.to_owned());
     }
-    let elsewhere = articulated::simulate::meant(text).map(|row| row.name.to_owned());
+    let elsewhere = articulated::simulate::resolve_synonym(text).map(|row| row.name.to_owned());
     let near = elsewhere.or_else(|| articulated_codegen::nearest(text, names())).map(|n| format!("did you mean {n}? ")).unwrap_or_default();
     Err(format!("{near}there are {}", names().collect::<Vec<_>>().join(", ")))
 }

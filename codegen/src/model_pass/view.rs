@@ -1,7 +1,7 @@
 //! The generator's view of a robot.
 
 use articulated_core::Scalar;
-use articulated_core::algorithm::{Formulation, FrameRotation, Function, FunctionError, Way, Workspace};
+use articulated_core::algorithm::{Formulation, FrameRotation, Function, FunctionError, Variant, Workspace};
 use articulated_core::index::{BodyId, ById};
 use articulated_core::model::{Body, Model, ModelParts};
 use articulated_core::spatial::SpatialInertia;
@@ -29,7 +29,7 @@ impl<S: Scalar> View<S> {
     }
 
     /// Evaluates a function in one of its ways. Errors: as [`Function::call_by`].
-    pub fn call_by(&self, function: &Function<S>, way: &Way<S>, arguments: &[&[S]], out: &mut [S]) -> Result<(), FunctionError> {
+    pub fn call_by(&self, function: &Function<S>, way: &Variant<S>, arguments: &[&[S]], out: &mut [S]) -> Result<(), FunctionError> {
         function.call_by(way, &self.model, &mut self.workspace(), arguments, out)
     }
 

@@ -2,7 +2,7 @@
 
 use std::iter::once;
 
-use articulated_core::algorithm::Way;
+use articulated_core::algorithm::Variant;
 use articulated_core::model::Model;
 
 use super::forms::Form;
@@ -30,7 +30,7 @@ pub(super) struct Candidate<'a> {
 impl Candidate<'_> {
     /// The graph of a function by its cheapest strategies, or of the part before a loop, and its
     /// ledger entry.
-    pub(super) fn build(&self, spec: &FunctionSpec, unsolved: Option<&'static Way<Sym>>) -> (Graph, Entry) {
+    pub(super) fn build(&self, spec: &FunctionSpec, unsolved: Option<&'static Variant<Sym>>) -> (Graph, Entry) {
         let all = model_passes::<Sym>().len();
         let choose = |part| unsolved.map_or_else(|| cheapest(part, self, all), |way| Strategy::plain(way, all));
         let strategies = by_axes(spec, spec.parts.iter().map(choose).collect(), self);

@@ -53,7 +53,7 @@ pub(crate) fn program(spec: FunctionSpec, model: &Model<f64>, parameters: &[Para
         for width in [4, 2] {
             let Some(alike) = IsomorphicLimbs::of(model, width) else { continue };
             let other = Candidate { alike: Some(alike), ..candidate }.build(&reduced, unsolved);
-            if price(&other.0) * WORTH < price(&best.0) {
+            if price(&other.0) * MIN_GAIN < price(&best.0) {
                 best = other;
             }
         }
@@ -67,7 +67,7 @@ pub(crate) fn program(spec: FunctionSpec, model: &Model<f64>, parameters: &[Para
 
 /// Minimal gain of lanes, which have costs that no count shows (values inserted and extracted one
 /// by one).
-const WORTH: f64 = 1.15;
+const MIN_GAIN: f64 = 1.15;
 
 /// Instructions of the sines and cosines of one vector of angles.
 const SINES: f64 = 28.0;

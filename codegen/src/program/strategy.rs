@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use articulated_core::algorithm::Way;
+use articulated_core::algorithm::Variant;
 
 use crate::model_pass::FoldedRotations;
 use crate::sym::Sym;
@@ -10,7 +10,7 @@ use crate::sym::Sym;
 /// How to compute a term of a function.
 #[derive(Clone, Copy)]
 pub(crate) struct Strategy {
-    pub(crate) way: &'static Way<Sym>,
+    pub(crate) way: &'static Variant<Sym>,
     /// Number of model passes to apply.
     pub(crate) passes: usize,
     /// Bodies whose rotations are folded into constants.
@@ -27,7 +27,7 @@ pub(crate) struct Strategy {
 
 impl Strategy {
     /// A way after this number of model passes, without further transforms.
-    pub(crate) fn plain(way: &'static Way<Sym>, passes: usize) -> Self {
+    pub(crate) fn plain(way: &'static Variant<Sym>, passes: usize) -> Self {
         Self { way, passes, folded: None, unit: None, shifted: false, axes: false }
     }
 

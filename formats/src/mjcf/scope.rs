@@ -13,7 +13,7 @@ use crate::pose::{IDENTITY, scalar_last};
 /// name counts by its length.
 const MOST: usize = 250_000;
 /// Bytes of a name that count as one reference.
-const LETTERS: usize = 64;
+const BYTES_OF_A_REFERENCE: usize = 64;
 /// Maximum number of errors with hints.
 const HINTS: usize = 100;
 
@@ -130,7 +130,7 @@ impl<'a> Scope<'a> {
     ) -> Option<Vec<usize>> {
         let Part { prefix, suffix, .. } = self.part(part);
         let letters = prefix.len() + suffix.len() + element.text("name").map_or(0, str::len);
-        let cost = references.len().max(1) + letters / LETTERS;
+        let cost = references.len().max(1) + letters / BYTES_OF_A_REFERENCE;
         self.looked_up += cost;
         if self.is_full() {
             let found = "very many copies of actuators, tendons and equations";

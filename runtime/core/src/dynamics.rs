@@ -4,7 +4,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::Scalar;
-use crate::algorithm::argument::{dims, told};
+use crate::algorithm::argument::{dims, documentation};
 use crate::algorithm::table::for_each_function;
 use crate::algorithm::{Argument, FunctionError, FunctionId, Shape, Workspace};
 use crate::index::FrameId;
@@ -100,7 +100,7 @@ macro_rules! methods {
             }
 
             $(
-                #[doc = concat!($summary, ".\n\n", $("* ", told!($argument), "\n",)* "* out: ", gives!($name), ".")]
+                #[doc = concat!($summary, ".\n\n", $("* ", documentation!($argument), "\n",)* "* out: ", gives!($name), ".")]
                 #[inline]
                 fn $name(&self, ws: &mut Self::Workspace, $($argument: &[S],)* out: &mut [S]) -> Result<(), FunctionError> {
                     self.call(FunctionId::$name, ws, &[$($argument),*], out)

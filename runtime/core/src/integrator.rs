@@ -122,7 +122,7 @@ pub fn integrator(name: &str) -> Option<&'static Integrator> {
 }
 
 /// The integrator that other programs call `name`, in any case.
-pub fn meant(name: &str) -> Option<&'static Integrator> {
+pub fn resolve_synonym(name: &str) -> Option<&'static Integrator> {
     let plain: String = name.chars().filter(|c| !"_- ".contains(*c)).flat_map(char::to_lowercase).collect();
     ROWS.iter().find(|row| row.elsewhere.split(' ').any(|word| word == plain))
 }
@@ -147,7 +147,7 @@ impl fmt::Display for IntegratorId {
 
 #[cfg(test)]
 mod tests {
-    use super::{integrator, integrators, meant};
+    use super::{integrator, integrators, resolve_synonym};
 
     #[test]
     fn every_name_finds_its_own_row() {
@@ -160,13 +160,13 @@ mod tests {
 
     #[test]
     fn what_others_call_them_finds_one_for_the_same_problems() {
-        let named = |name| meant(name).map(|row| row.name);
+        let named = |name| resolve_synonym(name).map(|row| row.name);
         assert_eq!(
             ["RK45", "ode15s", "Radau", "DOP853", "midpoint", "verlet"].map(named),
             [Some("dopri5"), Some("rodas4"), Some("rodas4"), None, Some("lie_midpoint"), None]
         );
         for row in integrators() {
-            assert!(row.elsewhere.split(' ').all(|word| integrator(word).is_none() && meant(word) == Some(row)), "{}", row.name);
+            assert!(row.elsewhere.split(' ').all(|word| integrator(word).is_none() && resolve_synonym(word) == Some(row)), "{}", row.name);
         }
     }
 }

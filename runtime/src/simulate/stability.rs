@@ -23,10 +23,10 @@ pub(crate) const SUSPICIOUS: f64 = 0.6;
 
 /// Growth tolerated in a step: eigenvalues are not known well enough to distinguish slight damping
 /// from none.
-const SUFFERED: f64 = 1e-3;
+const MAX_AMPLIFICATION: f64 = 1e-3;
 
 /// Growth accepted in a step reported as stable: rounding.
-const TOLD: f64 = 1e-5;
+const MIN_GROWTH: f64 = 1e-5;
 
 /// Largest number of rounds of a check that begins anew, and of one that confirms.
 const ROUNDS: usize = 40;
@@ -126,7 +126,7 @@ impl Stability {
         // with very little growth is not reported as admissible, since the number of steps is
         // unknown.
         let mut admissible = (1.0 / pair.rate).min(h);
-        while admissible < h && excess(method, pair, 1.01 * admissible) <= TOLD {
+        while admissible < h && excess(method, pair, 1.01 * admissible) <= MIN_GROWTH {
             admissible *= 1.01;
         }
         Ok(Some((admissible, pair.rate)))
@@ -201,7 +201,7 @@ impl Stability {
 
 fn stable(method: &dyn Method, pair: Pair, h: f64) -> bool {
     // Where |hλ| < 1 accuracy decides.
-    h * pair.rate <= 1.0 || excess(method, pair, h) <= SUFFERED
+    h * pair.rate <= 1.0 || excess(method, pair, h) <= MAX_AMPLIFICATION
 }
 
 /// Relative growth of the pair in a step of length h beyond its own growth, at least −1.

@@ -7,7 +7,7 @@ use articulated_formats::world::ContactMask;
 
 use super::resolve::{Resolving, fill, missing};
 use super::{EffectRequest, FRAME, Numbers, Selector};
-use crate::table::Spot;
+use crate::table::Cursor;
 
 /// The word for it.
 pub(super) const WORD: &str = crate::report::COLLISION;
@@ -26,7 +26,7 @@ pub(crate) fn is_of_shape(row: &Effect, field: &str) -> bool {
 }
 
 /// Refuses own points of the scene combined with those of the geometry.
-pub(super) fn refuse_own_points(spot: &Spot<'_>, log: &mut Diagnostics) {
+pub(super) fn refuse_own_points(spot: &Cursor<'_>, log: &mut Diagnostics) {
     for own in [RADIUS].into_iter().chain(FRAME).filter_map(|key| spot.get(key)) {
         let name = own.key.rsplit('.').next().unwrap_or_default();
         own.clash(log, format!("{name} beside from = \"{WORD}\""), "one of both: the shapes of the robot's file give radii and places");

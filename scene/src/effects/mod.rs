@@ -25,7 +25,7 @@ use articulated_core::description::{Origin, Rotation};
 
 use crate::scene::Scene;
 use crate::shaft;
-use crate::table::Spot;
+use crate::table::Cursor;
 use crate::tree::Value;
 use articulated_core::effect::{Effect, EffectId, Field, On, effect, effects};
 
@@ -82,7 +82,7 @@ const FROM: &str = "from";
 const ALL: &str = "*";
 
 /// Reads the table `effects` into the scene.
-pub(crate) fn read(scene: &mut Scene, spot: &Spot<'_>, log: &mut Diagnostics) {
+pub(crate) fn read(scene: &mut Scene, spot: &Cursor<'_>, log: &mut Diagnostics) {
     (scene.effects, scene.shafts) = (Vec::new(), Vec::new());
     for entry in spot.entries(log, "a table of effects") {
         let value = spot.of(entry);
@@ -97,7 +97,7 @@ pub(crate) fn read(scene: &mut Scene, spot: &Spot<'_>, log: &mut Diagnostics) {
 }
 
 /// All requests of one effect.
-fn requests(row: &'static Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<EffectRequest> {
+fn requests(row: &'static Effect, spot: &Cursor<'_>, log: &mut Diagnostics) -> Vec<EffectRequest> {
     let Value::Table(entries) = &spot.node.value else { return on(row, &Selector::All, spot, log) };
     // A table with a source of numbers applies to all joints.
     if spot.get(FROM).is_some_and(|from| matches!(from.node.value, Value::Text(_))) {
@@ -108,8 +108,9 @@ fn requests(row: &'static Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Vec
 }
 
 /// The request for one joint or link: a number, a word, a table, or a list of tables for a link.
-fn on(row: &'static Effect, selector: &Selector, spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<EffectRequest> {
-    let asked = |says, spot: &Spot<'_>| EffectRequest { effect: row.id, on: selector.clone(), says, key: spot.key.clone(), place: spot.at };
+fn on(row: &'static Effect, selector: &Selector, spot: &Cursor<'_>, log: &mut Diagnostics) -> Vec<EffectRequest> {
+    let asked =
+        |says, spot: &Cursor<'_>| EffectRequest { effect: row.id, on: selector.clone(), says, key: spot.key.clone(), place: spot.at };
     let before = log.count();
     let says = match &spot.node.value {
         Value::Text(word) if word == "off" => vec![asked(None, spot)],
@@ -167,13 +168,13 @@ fn expected(row: &Effect) -> String {
     format!("{} or \"off\"", ways.join(", "))
 }
 
-fn wrong_word(row: &Effect, word: &str, spot: &Spot<'_>, log: &mut Diagnostics) {
+fn wrong_word(row: &Effect, word: &str, spot: &Cursor<'_>, log: &mut Diagnostics) {
     let words = ["off"].into_iter().chain(sources(row));
     log.unknown(((spot.node.at, &spot.key), Code::Word), (quoted_with_reason(word), word), expected(row), words);
 }
 
 /// The numbers of a table.
-fn table(row: &'static Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Numbers {
+fn table(row: &'static Effect, spot: &Cursor<'_>, log: &mut Diagnostics) -> Numbers {
     let mut numbers = empty(row);
     let before = log.count();
     for entry in spot.entries(log, &expected(row)) {
@@ -214,7 +215,7 @@ fn keys(row: &'static Effect) -> impl Iterator<Item = &'static str> {
 }
 
 /// The source of numbers that are not given.
-fn from(row: &Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<&'static str> {
+fn from(row: &Effect, spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<&'static str> {
     let expected = sources(row).next().map_or("numbers".into(), |word| format!("\"{word}\""));
     let Value::Text(word) = &spot.node.value else {
         spot.wrong(log, expected);
@@ -239,13 +240,13 @@ fn quoted_with_reason(word: &str) -> String {
 
 /// The field on a ball joint, if its length is that of the written numbers: the kind of the joint
 /// is unknown here.
-fn as_written(row: &'static Effect, field: &'static Field, spot: &Spot<'_>) -> &'static Field {
+fn as_written(row: &'static Effect, field: &'static Field, spot: &Cursor<'_>) -> &'static Field {
     let Some(count) = spot.list().map(|list| list.len()) else { return field };
     let on_ball = row.ball_fields.unwrap_or_default().iter().find(|other| other.name == field.name && other.len == count);
     on_ball.filter(|other| other.len > 1).unwrap_or(field)
 }
 
-fn field_of(field: &Field, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Vec<f64>> {
+fn field_of(field: &Field, spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<Vec<f64>> {
     if field.len == 1 {
         return number(field, spot, log).map(|x| vec![x]);
     }
@@ -258,13 +259,13 @@ fn field_of(field: &Field, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Vec
     items.iter().map(|item| number(field, item, log)).collect()
 }
 
-fn number(field: &Field, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<f64> {
+fn number(field: &Field, spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<f64> {
     spot.within(log, field.range)
 }
 
 /// Checks the joint constraint of the numbers. If a number comes from the file or from `*`, the
 /// model checks it.
-fn check(row: &'static Effect, numbers: &Numbers, spot: &Spot<'_>, log: &mut Diagnostics) {
+fn check(row: &'static Effect, numbers: &Numbers, spot: &Cursor<'_>, log: &mut Diagnostics) {
     let default = |field: &Field| resolve::default_of(row, field, std::iter::once(numbers));
     let given = |(i, field): (usize, &'static Field)| numbers.fields[i].clone().or_else(|| default(field));
     let Some(all) = row.fields.iter().enumerate().map(given).collect::<Option<Vec<Vec<f64>>>>().filter(|_| !numbers.from_urdf) else {
@@ -274,7 +275,7 @@ fn check(row: &'static Effect, numbers: &Numbers, spot: &Spot<'_>, log: &mut Dia
     let Some((broken, _)) = row.broken(&all) else { return };
     let expected = broken.rule.map_or("", |rule| rule.expected);
     for (field, own) in blamed(row, numbers, broken, &all) {
-        let at = spot.get(field.name).unwrap_or(Spot { node: spot.node, key: spot.key.clone(), at: spot.at });
+        let at = spot.get(field.name).unwrap_or(Cursor { node: spot.node, key: spot.key.clone(), at: spot.at });
         let found = own.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(", ");
         // The rule names its own field; the message names this one.
         at.clash(log, found, expected.replace(field.name, broken.name));

@@ -5,7 +5,7 @@ use articulated_core::effect::{Effect, EffectId};
 use articulated_formats::world::{ContactMask, Plane};
 
 use super::{EffectRequest, Numbers};
-use crate::table::Spot;
+use crate::table::Cursor;
 use crate::tree::Value;
 
 /// The key `plane` of a contact.
@@ -23,7 +23,7 @@ pub(super) fn offers(row: &Effect) -> bool {
 }
 
 /// Whether the value of the key is the word for the planes of the file.
-pub(super) fn is_of_file(spot: &Spot<'_>, log: &mut Diagnostics) -> bool {
+pub(super) fn is_of_file(spot: &Cursor<'_>, log: &mut Diagnostics) -> bool {
     match &spot.node.value {
         Value::Text(word) if word == FILE => return true,
         Value::Text(word) => log.error((spot.node.at, &spot.key), Code::Word, quote(word), format!("\"{FILE}\"")),
@@ -33,7 +33,7 @@ pub(super) fn is_of_file(spot: &Spot<'_>, log: &mut Diagnostics) -> bool {
 }
 
 /// Reports `normal` or `height` combined with `plane = "file"`.
-pub(super) fn refuse_own_plane(spot: &Spot<'_>, log: &mut Diagnostics) {
+pub(super) fn refuse_own_plane(spot: &Cursor<'_>, log: &mut Diagnostics) {
     for own in OWN.into_iter().filter_map(|key| spot.get(key)) {
         let name = own.key.rsplit('.').next().unwrap_or_default();
         own.clash(log, format!("{name} beside plane = \"{FILE}\""), "one of both: the robot's file gives the planes");

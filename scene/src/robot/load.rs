@@ -238,7 +238,7 @@ impl Loader<'_> {
             [] => "urdf: no robot is known by name here".to_owned(),
             names => format!("one of {}", names.join(", ")),
         };
-        scene.without_robot(&format!("{name:?}, no such robot"), &expected).meant(nearest(name, names))
+        scene.without_robot(&format!("{name:?}, no such robot"), &expected).with_nearest(nearest(name, names))
     }
 }
 

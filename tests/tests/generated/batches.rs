@@ -60,7 +60,7 @@ fn robots(forbid_unsafe: bool) -> Vec<Robot> {
 static ROBOTS: LazyLock<[Vec<Robot>; 2]> = LazyLock::new(|| [robots(false), robots(true)]);
 
 /// A program of one instruction set, if this processor has that.
-struct Way {
+struct Variant {
     set: &'static str,
     /// Whether a·b + c has one rounding.
     fused: bool,
@@ -68,7 +68,7 @@ struct Way {
     program: BatchProgram,
 }
 
-static WAYS: LazyLock<Vec<Way>> = LazyLock::new(|| {
+static WAYS: LazyLock<Vec<Variant>> = LazyLock::new(|| {
     #[cfg(target_arch = "x86_64")]
     let (avx2, avx512) = {
         let avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
@@ -93,13 +93,13 @@ static WAYS: LazyLock<Vec<Way>> = LazyLock::new(|| {
         // As for any machine of this kind.
         let program = BatchProgram::build(&named, set, &["-C", "opt-level=0", "-C", "debug-assertions=on"]);
         println!("compiled {} robots in {set} in {:.1?}", named.len(), program.time());
-        Some(Way { set, fused, robots, program })
+        Some(Variant { set, fused, robots, program })
     };
     sets.into_iter().filter_map(way).collect()
 });
 
 /// The results of a program.
-fn run(way: &Way, robot: &Robot, name: &str, real: Real, states: &[State]) -> Vec<Vec<f64>> {
+fn run(way: &Variant, robot: &Robot, name: &str, real: Real, states: &[State]) -> Vec<Vec<f64>> {
     let given: Vec<Vec<&[f64]>> = states.iter().map(|s| arguments(name, s)).collect();
     way.program.run(&robot.name, name, real, &given)
 }
@@ -151,7 +151,7 @@ fn sparse_and_symmetric_results_are_computed_state_by_state_in_doubles() {
 
 #[test]
 fn instruction_sets_that_round_alike_agree_to_the_bit() {
-    let [fused, split]: [Vec<&Way>; 2] = [true, false].map(|fused| WAYS.iter().filter(|w| w.fused == fused).collect());
+    let [fused, split]: [Vec<&Variant>; 2] = [true, false].map(|fused| WAYS.iter().filter(|w| w.fused == fused).collect());
     for pair in fused.windows(2).chain(split.windows(2)) {
         for (robot, real) in pair[0].robots.iter().flat_map(|r| [(r, Real::F64), (r, Real::F32)]) {
             let states = single_states(robot, STATES);

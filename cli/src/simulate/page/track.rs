@@ -61,12 +61,12 @@ pub(crate) fn placement(row: &[f64]) -> Placement<f64> {
 
 /// Bytes as text.
 pub(super) fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for part in bytes.chunks(3) {
         let word = part.iter().fold(0_u32, |w, b| w << 8 | u32::from(*b)) << (8 * (3 - part.len()));
         for k in 0..4 {
-            out.push(if k > part.len() { '=' } else { char::from(LETTERS[(word >> (18 - 6 * k) & 63) as usize]) });
+            out.push(if k > part.len() { '=' } else { char::from(DIGITS[(word >> (18 - 6 * k) & 63) as usize]) });
         }
     }
     out

@@ -102,7 +102,7 @@ macro_rules! arguments {
         }
 
         /// An argument with its dimensions and unit, for documentation.
-        macro_rules! told {
+        macro_rules! documentation {
             $(($name) => { concat!(stringify!($name), ": `", dims!($($dim $(($n))?),*), "` ", $unit) };)*
         }
     };
@@ -133,7 +133,7 @@ arguments! {
 }
 
 pub(super) use argument;
-pub(crate) use told;
+pub(crate) use documentation;
 
 impl Argument {
     /// All that functions of the table take.

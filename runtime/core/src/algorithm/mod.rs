@@ -54,7 +54,7 @@ pub use momentum::{
     centroidal_momentum_matrix, centroidal_momentum_rate,
 };
 pub use operational_space::{operational_space_inertia, operational_space_inertia_inverse};
-pub use registry::{Function, Group, Needs, Shape, Way};
+pub use registry::{Function, Group, Needs, Shape, Variant};
 pub use regressor::{PARAMETERS, kinetic_energy_regressor, potential_energy_regressor, torque_regressor};
 pub use rnea::{inverse_dynamics_with_wrenches, joint_wrenches};
 pub use table::presets::*;

@@ -62,7 +62,7 @@ impl<'a, S> Inputs<'a, S> {
 pub(super) type Run<S> = fn(&Model<S>, &mut Workspace<S>, &Inputs<'_, S>, &mut [S]);
 
 /// One way to compute a function.
-pub struct Way<S: 'static> {
+pub struct Variant<S: 'static> {
     /// Its name in the ledger.
     pub name: &'static str,
     /// Whether it is defined for a model.
@@ -179,11 +179,11 @@ pub struct Function<S: 'static> {
     pub regrouped: bool,
     /// Ways to compute it. The generator takes the cheapest, [`Function::call`] the first that
     /// applies.
-    pub ways: &'static [Way<S>],
+    pub ways: &'static [Variant<S>],
     /// All of it but the solution of M X = −B for all columns of `[3][nv][nv]` numbers: two
     /// matrices B, and the factors of M = Lᵀ D L in the third, L below the diagonal and D⁻¹ on it;
     /// the third X is M⁻¹. For callers that solve column by column by themselves.
-    pub unsolved: Option<Way<S>>,
+    pub unsolved: Option<Variant<S>>,
 }
 
 impl<S: Scalar> Function<S> {
@@ -229,7 +229,7 @@ impl<S: Scalar> Function<S> {
     /// Evaluates the function in one of its ways.
     pub fn call_by(
         &self,
-        way: &Way<S>,
+        way: &Variant<S>,
         model: &Model<S>,
         ws: &mut Workspace<S>,
         arguments: &[&[S]],

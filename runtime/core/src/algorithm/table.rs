@@ -21,7 +21,7 @@
 
 use core::marker::PhantomData;
 
-use super::argument::{argument, dims, told};
+use super::argument::{argument, dims, documentation};
 use super::registry::Inputs;
 use super::workspace::near_the_middle;
 #[allow(clippy::wildcard_imports)]
@@ -180,7 +180,7 @@ macro_rules! ways {
         &[$(ways!(one $way, $applies, $least, $run, $arguments $(, in $axes)?)),+]
     };
     (one $way:literal, $applies:ident, $least:ident, $run:ident, $arguments:tt $(, in $axes:ident)?) => {
-        Way { name: $way, applies: $applies, least: $least, run: ways!(run $run, $arguments $(, in $axes)?) }
+        Variant { name: $way, applies: $applies, least: $least, run: ways!(run $run, $arguments $(, in $axes)?) }
     };
     (run $run:ident, ($($argument:ident),*)) => {
         |model, ws, inputs, out| $run(model, ws, $(inputs.0[argument!($argument) as usize],)* out)
@@ -246,7 +246,7 @@ macro_rules! by_inputs {
 macro_rules! preset {
     ($name:ident, $arguments:tt, $summary:literal, -> $row:ident) => {};
     ($name:ident, ($($argument:ident),*), $summary:literal, = $general:ident) => {
-        #[doc = concat!($summary, ".\n\n[`", stringify!($general), "`] with zeros for what is not taken.\n\n", $("* ", told!($argument), "\n",)*)]
+        #[doc = concat!($summary, ".\n\n[`", stringify!($general), "`] with zeros for what is not taken.\n\n", $("* ", documentation!($argument), "\n",)*)]
         ///
         /// # Panics
         /// If a slice is shorter than stated; [`Function::call`] and [`crate::dynamics::Dynamics`]

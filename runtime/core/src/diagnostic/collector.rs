@@ -113,7 +113,7 @@ impl Diagnostics {
         names: impl IntoIterator<Item = &'n str>,
     ) {
         let nearest = self.suggester.nearest(name, names).map(str::to_string);
-        self.push(self.finding(place, code, found, expected).meant(nearest));
+        self.push(self.finding(place, code, found, expected).with_nearest(nearest));
     }
 
     /// Reports a number that was replaced, as requested.

@@ -228,7 +228,7 @@ impl Diagnostic {
 
     /// The same finding with the intended name, if there is one.
     #[must_use]
-    pub fn meant(self, nearest: Option<impl AsRef<str>>) -> Self {
+    pub fn with_nearest(self, nearest: Option<impl AsRef<str>>) -> Self {
         self.with_hint(nearest.map(|name| format!("did you mean {:?}?", name.as_ref())))
     }
 

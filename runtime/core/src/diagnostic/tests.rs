@@ -11,7 +11,7 @@ fn at(line: u32) -> At {
 fn a_finding_says_place_subject_field_found_expected_and_hint() {
     let subject = Subject::Link("arm".into());
     let place = Place { at: at(7), subject: &subject, field: "mass" };
-    let error = Diagnostic::error("r.urdf", place, Code::NegativeMass, "-1 kg", "at least 0").meant(Some("1"));
+    let error = Diagnostic::error("r.urdf", place, Code::NegativeMass, "-1 kg", "at least 0").with_nearest(Some("1"));
     assert_eq!(error.to_string(), "r.urdf:7: link \"arm\": mass: found -1 kg, expected at least 0; did you mean \"1\"?");
     assert_eq!((error.line(), error.span.at.column(), error.code.name()), (Some(7), Some(3), "negative_mass"));
     let refusal = Diagnostic::refusal("", (At::Word(2), "lock"), Code::Edit, "joint \"a\" is fixed");

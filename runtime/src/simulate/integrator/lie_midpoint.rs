@@ -23,7 +23,7 @@ use std::f64::consts::PI;
 use super::hermite::{Hermite, hand_on_to_hermite};
 use super::{Method, Start};
 use crate::simulate::step_control::{Error, Norm};
-use crate::simulate::system::System;
+use crate::simulate::system::{AT_REST, System};
 use crate::simulate::{Control, SimulateError};
 
 /// Largest number of rounds of a step.
@@ -66,9 +66,8 @@ impl LieMidpoint {
             let change = h * largest(found.iter().zip(&self.acceleration).map(|(a, b)| a - b));
             let size = largest(v.iter().copied()).max(h * largest(found.iter().copied()));
             self.acceleration.copy_from_slice(found);
-            // Down to rounding, or as near as possible; for numbers below the least normal number,
-            // rounding is no small part.
-            if change <= (f64::EPSILON * size).max(f64::MIN_POSITIVE) || (change >= before && change <= 64.0 * f64::EPSILON * size) {
+            // Down to rounding, or as near as possible, or to rest.
+            if change <= (f64::EPSILON * size).max(AT_REST) || (change >= before && change <= 64.0 * f64::EPSILON * size) {
                 self.place_middle(system, v, h);
                 return Ok(());
             }

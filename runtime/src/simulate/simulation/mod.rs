@@ -21,7 +21,7 @@ use crate::simulate::integrator::{Method, Start, method};
 use crate::simulate::output::{Known, Times};
 use crate::simulate::stability::Stability;
 use crate::simulate::step_control::{Controller, Error, Norm, first_step, rounding};
-use crate::simulate::system::System;
+use crate::simulate::system::{AT_REST, System};
 use crate::simulate::{Control, Counts, Ended, Event, Output, Recording, Settings, SimulateError, StateError, Stiffness};
 
 /// A robot and all the memory that its simulation needs; a step allocates nothing.
@@ -544,6 +544,7 @@ impl<'r> Simulation<'r> {
         self.system.move_origin(&self.end[..nv])?;
         self.y.copy_from_slice(&self.end);
         self.y[..nv].fill(0.0);
+        self.y[nv..2 * nv].iter_mut().for_each(|rate| *rate = if rate.abs() < AT_REST { 0.0 } else { *rate });
         self.t = t;
         self.system.no_torque = None;
         if self.progress.period.is_some() && t >= until && until < self.settings.end {

@@ -14,11 +14,11 @@ use crate::native::{Kernel, PeerKernel};
 /// One way to compute a function. A run through all states is timed, so that contenders that
 /// compute several at once have a time per state too.
 pub struct Contender<'a> {
-    way: Way<'a>,
+    way: Variant<'a>,
     out: usize,
 }
 
-enum Way<'a> {
+enum Variant<'a> {
     Generated(Kernel),
     Peer(PeerKernel),
     Generic { function: &'static Function<f64>, model: &'a Model<f64>, workspace: Box<RefCell<Workspace<f64>>> },
@@ -27,32 +27,32 @@ enum Way<'a> {
 impl<'a> Contender<'a> {
     /// Code of another library.
     pub(crate) fn peer(kernel: PeerKernel, out: usize) -> Self {
-        Self { way: Way::Peer(kernel), out }
+        Self { way: Variant::Peer(kernel), out }
     }
 
     /// The compiled function.
     pub fn generated(compiled: &Compiled, function: &Function<f64>) -> Self {
         let kernel = compiled.kernel(function.name).expect("every function of a ledger was loaded");
-        Self { way: Way::Generated(kernel.clone()), out: function.len(compiled.shape()) }
+        Self { way: Variant::Generated(kernel.clone()), out: function.len(compiled.shape()) }
     }
 
     /// The same algorithm at run time.
     pub fn generic(model: &'a Model<f64>, function: &'static Function<f64>) -> Self {
         let workspace = Box::new(RefCell::new(Workspace::new(model)));
-        Self { way: Way::Generic { function, model, workspace }, out: function.len(model.shape()) }
+        Self { way: Variant::Generic { function, model, workspace }, out: function.len(model.shape()) }
     }
 
     /// The result in one state; empty if a peer does not return it.
     pub fn call(&self, arguments: &[&[f64]]) -> Vec<f64> {
         let mut out = vec![0.0; self.out];
         match &self.way {
-            Way::Generated(kernel) => kernel.call(arguments, &mut out),
-            Way::Peer(kernel) => {
+            Variant::Generated(kernel) => kernel.call(arguments, &mut out),
+            Variant::Peer(kernel) => {
                 if !kernel.call(arguments, &mut out) {
                     out.clear();
                 }
             }
-            Way::Generic { function, model, workspace } => {
+            Variant::Generic { function, model, workspace } => {
                 let called = function.call(model, &mut workspace.borrow_mut(), arguments, &mut out);
                 debug_assert!(called.is_ok(), "arguments were made to measure");
             }
@@ -64,8 +64,8 @@ impl<'a> Contender<'a> {
     pub fn can_wait(&self) -> bool {
         self.out > 0
             && match &self.way {
-                Way::Generated(_) | Way::Generic { .. } => true,
-                Way::Peer(kernel) => kernel.writes(),
+                Variant::Generated(_) | Variant::Generic { .. } => true,
+                Variant::Peer(kernel) => kernel.writes(),
             }
     }
 
@@ -85,13 +85,13 @@ impl<'a> Contender<'a> {
         Run::new(states.len(), move |rounds| {
             let out = black_box(room.next());
             match (&self.way, calls) {
-                (Way::Generated(kernel), Calls::Independent) => clock(|| kernel.repeat(rounds, states, out)),
-                (Way::Generated(kernel), Calls::Dependent) => clock(|| kernel.repeat_waiting(rounds, states, out)),
-                (Way::Peer(kernel), Calls::Independent) => clock(|| kernel.repeat(rounds, states, out)),
-                (Way::Peer(kernel), Calls::Dependent) => clock(|| kernel.repeat_waiting(rounds, states, out)),
+                (Variant::Generated(kernel), Calls::Independent) => clock(|| kernel.repeat(rounds, states, out)),
+                (Variant::Generated(kernel), Calls::Dependent) => clock(|| kernel.repeat_waiting(rounds, states, out)),
+                (Variant::Peer(kernel), Calls::Independent) => clock(|| kernel.repeat(rounds, states, out)),
+                (Variant::Peer(kernel), Calls::Dependent) => clock(|| kernel.repeat_waiting(rounds, states, out)),
                 // A generic call is a hundred times as long as the work that a processor starts
                 // early.
-                (Way::Generic { function, model, workspace }, _) => {
+                (Variant::Generic { function, model, workspace }, _) => {
                     let workspace = &mut workspace.borrow_mut();
                     clock(|| {
                         for state in std::iter::repeat_n(states, rounds).flatten() {

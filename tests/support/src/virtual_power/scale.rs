@@ -10,7 +10,7 @@ use super::{Motions, second_moments};
 
 /// The terms of a link's quantities, along the path from the base: the scales of rounding errors.
 #[derive(Clone, Copy, Debug, Default)]
-struct Way {
+struct Variant {
     /// Length of the way through the origins of the links, m.
     length: f64,
     /// Largest acceleration of an origin, m/s².
@@ -51,14 +51,14 @@ fn elementary(kind: JointKind) -> f64 {
 
 impl Motions<'_> {
     /// The way to each link.
-    fn ways(&self, poses: &ById<LinkId, Option<Pose<f64>>>) -> ById<LinkId, Way> {
-        let mut ways: ById<LinkId, Way> = vec![Way::default(); poses.len()].into();
+    fn ways(&self, poses: &ById<LinkId, Option<Pose<f64>>>) -> ById<LinkId, Variant> {
+        let mut ways: ById<LinkId, Variant> = vec![Variant::default(); poses.len()].into();
         for link in self.outward() {
             let parent = self.description.joints.iter().find(|j| j.child == link).map(|j| j.parent);
-            let before = parent.map_or_else(Way::default, |p| ways[p]);
+            let before = parent.map_or_else(Variant::default, |p| ways[p]);
             let (Some((r, p)), from) = (poses[link], parent.and_then(|p| poses[p])) else { continue };
             let step = p.map(|c| c.0) - from.map_or_else(Vector3::zeros, |(_, p)| p.map(|c| c.0));
-            ways[link] = Way {
+            ways[link] = Variant {
                 length: before.length + step.norm(),
                 acceleration: before.acceleration.max(p.map(|c| c.2).norm()),
                 spin: before.spin.max(r.map(|c| c.2).norm()),
@@ -101,7 +101,7 @@ impl Motions<'_> {
 
     /// Adds the moment and the force, each with its share of every rate from `at` on, for
     /// everything that `top` carries.
-    fn add_scale(&self, top: LinkId, ways: &ById<LinkId, Way>, g: f64, shares: &[Share], (at, from): (usize, f64), scale: &mut [f64]) {
+    fn add_scale(&self, top: LinkId, ways: &ById<LinkId, Variant>, g: f64, shares: &[Share], (at, from): (usize, f64), scale: &mut [f64]) {
         let mut waiting = vec![top];
         while let Some(link) = waiting.pop() {
             waiting.extend(self.description.joints.iter().filter(|j| j.parent == link).map(|j| j.child));
@@ -141,7 +141,7 @@ impl Motions<'_> {
                 depth[joint.child] = depth[link] + elementary(joint.kind);
             }
         }
-        let one = |(way, depth): (&Way, &f64)| [[*depth; 9].as_slice(), &[depth * way.length; 3]].concat();
+        let one = |(way, depth): (&Variant, &f64)| [[*depth; 9].as_slice(), &[depth * way.length; 3]].concat();
         ways.iter().zip(&depth).flat_map(one).collect()
     }
 }

@@ -22,7 +22,7 @@ use articulated_core::lanes::{Real, Set, source, tiles};
 
 use self::arrays::{Array, each, inputs, results};
 use self::text::{PUBLIC, SUPPORT};
-use self::ways::{SAFE, WAYS, Way};
+use self::ways::{SAFE, Variant, WAYS};
 use crate::Precision;
 use crate::lir::Body;
 use crate::lir::function::{Function, States};
@@ -63,7 +63,7 @@ pub(crate) fn batches(out: &mut String, functions: &[Batch], reals: &[Real], rus
     }
 }
 
-fn module(out: &mut String, functions: &[Batch], real: Real, ways: &[Way], helpers: (bool, &Requirements)) {
+fn module(out: &mut String, functions: &[Batch], real: Real, ways: &[Variant], helpers: (bool, &Requirements)) {
     let (real_name, n) = (real.name(), states_of_block(real));
     let lint = if ways.len() == 1 { "" } else { "unsafe_code, unused_unsafe, " };
     let _ = writeln!(
@@ -82,7 +82,7 @@ fn module(out: &mut String, functions: &[Batch], real: Real, ways: &[Way], helpe
     let _ = writeln!(out, "}}\n");
 }
 
-impl Way {
+impl Variant {
     fn module(&self, out: &mut String, functions: &[Batch], real: Real, (no_std, calls): (bool, &Requirements)) {
         let (features, width) = (self.set.features(), self.bytes / real.bytes());
         let attribute = if features.is_empty() { String::new() } else { format!("#[target_feature(enable = \"{features}\")]") };

@@ -6,11 +6,11 @@ use articulated_core::lanes::{Real, Set};
 
 use super::Batch;
 use super::arrays::{Array, inputs, results};
-use super::ways::Way;
+use super::ways::Variant;
 
 impl Batch<'_> {
     /// The function for states one after the other, and the one for blocks.
-    pub(super) fn public(&self, out: &mut String, real: Real, ways: &[Way]) {
+    pub(super) fn public(&self, out: &mut String, real: Real, ways: &[Variant]) {
         let name = self.name();
         for (suffix, inner, of, what) in [("", "states", real.name(), "states"), ("_blocks", "blocks", "Lanes", "blocks")] {
             self.document(out, what);
@@ -72,11 +72,11 @@ impl Batch<'_> {
     }
 
     /// The call in the first available instruction set.
-    fn calls(&self, out: &mut String, inner: &str, ways: &[Way]) {
+    fn calls(&self, out: &mut String, inner: &str, ways: &[Variant]) {
         let inputs: String = self.inputs().iter().map(|a| a.flat(false) + ", ").collect();
         let results: Vec<String> = self.results().iter().map(|a| a.flat(true)).collect();
         let call = format!("{inner}({inputs}{})", results.join(", "));
-        for Way { module, cfg, asked, set, .. } in ways {
+        for Variant { module, cfg, asked, set, .. } in ways {
             let call = if *set == Set::Portable {
                 format!("{module}::{call};")
             } else {

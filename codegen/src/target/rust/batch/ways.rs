@@ -5,7 +5,7 @@ use articulated_core::lanes::Set;
 use crate::target::rust::instructions::HAS_AVX2;
 
 /// An instruction set as batches use it.
-pub(super) struct Way {
+pub(super) struct Variant {
     pub(super) module: &'static str,
     pub(super) set: Set,
     /// Bytes of a vector.
@@ -29,18 +29,24 @@ macro_rules! avx2 {
 }
 
 /// The widest first.
-pub(super) const WAYS: [Way; 5] = [
-    Way {
+pub(super) const WAYS: [Variant; 5] = [
+    Variant {
         module: "avx512",
         set: Set::Avx512,
         bytes: 64,
         cfg: "target_arch = \"x86_64\"",
         asked: "::std::is_x86_feature_detected!(\"avx512f\") && ::std::is_x86_feature_detected!(\"avx512dq\") && ::std::is_x86_feature_detected!(\"avx2\") && ::std::is_x86_feature_detected!(\"fma\")",
     },
-    Way { module: "avx2", set: Set::Avx2, bytes: 32, cfg: concat!("all(target_arch = \"x86_64\", not(", avx512!(), "))"), asked: HAS_AVX2 },
-    Way { module: "sse2", set: Set::Sse2, bytes: 16, cfg: concat!("all(target_arch = \"x86_64\", not(", avx2!(), "))"), asked: "true" },
-    Way { module: "neon", set: Set::Neon, bytes: 16, cfg: "target_arch = \"aarch64\"", asked: "true" },
-    Way {
+    Variant {
+        module: "avx2",
+        set: Set::Avx2,
+        bytes: 32,
+        cfg: concat!("all(target_arch = \"x86_64\", not(", avx512!(), "))"),
+        asked: HAS_AVX2,
+    },
+    Variant { module: "sse2", set: Set::Sse2, bytes: 16, cfg: concat!("all(target_arch = \"x86_64\", not(", avx2!(), "))"), asked: "true" },
+    Variant { module: "neon", set: Set::Neon, bytes: 16, cfg: "target_arch = \"aarch64\"", asked: "true" },
+    Variant {
         module: "portable",
         set: Set::Portable,
         bytes: 64,
@@ -50,4 +56,4 @@ pub(super) const WAYS: [Way; 5] = [
 ];
 
 /// Without `unsafe`.
-pub(super) const SAFE: [Way; 1] = [Way { module: "portable", set: Set::Portable, bytes: 64, cfg: "all()", asked: "true" }];
+pub(super) const SAFE: [Variant; 1] = [Variant { module: "portable", set: Set::Portable, bytes: 64, cfg: "all()", asked: "true" }];
