@@ -8,7 +8,7 @@ use articulated_core::model::{FLOATING_BASE, Model};
 use crate::edits::{name, places};
 use crate::initial::{Coordinates, Named, counted, fill, neutral, no_joint, normalise, values};
 use crate::scene::Scene;
-use crate::series::{Reader, Source, unreadable};
+use crate::series::{Between, Reader, Source, unreadable};
 use crate::simulation::set;
 use crate::slots::{Side, Slots};
 use crate::table::{Cursor, Row};
@@ -243,10 +243,13 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
     Row {
         name: "interpolation",
         required: false,
-        value: "`\"linear\"` or `\"hold\"`",
+        value: "`\"linear\"`, `\"hold\"` or `\"cubic\"`",
         default: "`\"linear\"`",
-        what: "`table`, `pd`, `actuators`: between rows (a quaternion by the shortest rotation, at one rate); before the first and after the last the nearest row holds",
-        read: |x, s, log| set(&mut x.source.hold, s.word(log, &[("linear", false), ("hold", true)])),
+        what: "`table`, `pd`, `actuators`: between rows: linear (a quaternion by the shortest rotation, at one rate), the row before, or a cubic spline without kinks, at rest at its ends (targets without quaternions); before the first and after the last the nearest row holds",
+        read: |x, s, log| {
+            x.source.between_place = s.at;
+            set(&mut x.source.between, s.word(log, &[("linear", Between::Linear), ("hold", Between::Hold), ("cubic", Between::Cubic)]));
+        },
     },
     Row {
         name: "period",
@@ -396,6 +399,11 @@ impl Scene {
                         fill(target, "control.target", model, Side::Q, &mut q, log);
                         normalise(model, &mut q, ("control.target", &|joint| target.place(joint)), log);
                         Aim::Still(q)
+                    }
+                    Target::Moving(source) if source.between == Between::Cubic && model.nq() != model.nv() => {
+                        let found = format!("\"cubic\" for targets of {} coordinates with quaternions", model.nq());
+                        log.error((source.between_place, "control.interpolation"), Code::Word, found, "\"linear\" or \"hold\"");
+                        Aim::Still(neutral(model))
                     }
                     Target::Moving(source) => Aim::Moving(source.series(&Slots::of_joints(model, Side::Q), read, log)),
                 },

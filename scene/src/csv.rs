@@ -30,11 +30,11 @@ const MOST: Most = Most { rows: 10_000_000, numbers: 1 << 28, line: 1 << 20, lin
 
 /// The table of a CSV for a robot; missing columns are neutral. Errors are reported at their lines
 /// and quote only the wrong number or name; the table is then empty.
-pub(crate) fn read(from: Box<dyn BufRead>, hold: bool, slots: &Slots<'_>, log: &mut Diagnostics) -> Series {
-    read_at_most(MOST, from, hold, slots, log)
+pub(crate) fn read(from: Box<dyn BufRead>, slots: &Slots<'_>, log: &mut Diagnostics) -> Series {
+    read_at_most(MOST, from, slots, log)
 }
 
-fn read_at_most(most: Most, from: Box<dyn BufRead>, hold: bool, slots: &Slots<'_>, log: &mut Diagnostics) -> Series {
+fn read_at_most(most: Most, from: Box<dyn BufRead>, slots: &Slots<'_>, log: &mut Diagnostics) -> Series {
     let mut lines = Lines { from, count: 0, most };
     let Some((at, head)) = lines.next(log) else {
         if log.count() == 0 {
@@ -46,7 +46,7 @@ fn read_at_most(most: Most, from: Box<dyn BufRead>, hold: bool, slots: &Slots<'_
     let source = Source { column_places: vec![at; columns.len()], columns, ..Source::default() };
     source.check_columns(&|_| String::new(), log);
     let places = source.places(slots, &|_| String::new(), log);
-    let mut table = Table { columns: &source.columns, places: &places, slots, series: Series { hold, ..Series::default() }, last: None };
+    let mut table = Table { columns: &source.columns, places: &places, slots, series: Series::default(), last: None };
     table.fill(&mut lines, most, log);
     if table.last.is_none() && log.count() == 0 {
         log.error((At::Nowhere, ""), Code::Syntax, "no rows", format!("lines of numbers: {ROW}"));
@@ -241,7 +241,7 @@ mod tests {
     /// Reads within bounds: the table, or all reported errors.
     fn read_within(most: Most, from: impl BufRead + 'static) -> Result<Series, String> {
         let mut log = Diagnostics::new("t.csv");
-        let series = read_at_most(most, Box::new(from), false, &Slots::of_joints(&arm(), Side::V), &mut log);
+        let series = read_at_most(most, Box::new(from), &Slots::of_joints(&arm(), Side::V), &mut log);
         log.result(series).map_err(|e| e.to_string())
     }
 

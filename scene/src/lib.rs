@@ -69,7 +69,7 @@ pub use robot::{
     open_in_into, open_into,
 };
 pub use scene::{CodeOptions, Places, Robot, Scene};
-pub use series::{Reader, Source, open_table};
+pub use series::{Between, Reader, Source, open_table};
 pub use shaft::ShaftRequest;
 pub use simulation::{EventClass, Simulation};
 pub use tree::{Entry, Node, Value};

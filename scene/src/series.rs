@@ -5,12 +5,37 @@ use std::collections::{HashMap, HashSet};
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use articulated_core::control::Series;
+use articulated_core::control::{Interpolation, Series};
 use articulated_formats::{nearest_file, open_file};
 
 use crate::csv;
 use crate::initial::counted;
 use crate::slots::Slots;
+
+/// The numbers between two rows of a table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Between {
+    /// Linear; a quaternion by the shortest rotation, at one rate.
+    #[default]
+    Linear,
+    /// Each row holds until the next.
+    Hold,
+    /// A cubic spline, at rest at its ends.
+    Cubic,
+}
+
+impl Between {
+    /// The table with these numbers between its rows.
+    fn of(self, series: Series) -> Series {
+        let Series { times, rows, .. } = series;
+        let between = match self {
+            Self::Linear => Interpolation::Linear,
+            Self::Hold => Interpolation::Hold,
+            Self::Cubic => Interpolation::cubic(&times, &rows),
+        };
+        Series { times, rows, between }
+    }
+}
 
 /// Source of a table over time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,8 +46,10 @@ pub struct Source {
     pub columns: Vec<String>,
     /// The time, s, and a number for each column.
     pub rows: Vec<Vec<f64>>,
-    /// Each row holds until the next; otherwise linear between them.
-    pub hold: bool,
+    /// The numbers between two rows.
+    pub between: Between,
+    /// Where the scene says what is between rows.
+    pub between_place: At,
     /// Place of the file, or of the columns, in the scene.
     pub place: At,
     /// Where each column is named.
@@ -125,9 +152,9 @@ impl Source {
     fn parsed(&self, file: &str, from: Box<dyn BufRead>, slots: &Slots<'_>, log: &mut Diagnostics) -> Series {
         let folder = Path::new(log.file()).parent().unwrap_or(Path::new(""));
         let mut own = Diagnostics::new(&folder.join(file).display().to_string());
-        let series = csv::read(from, self.hold, slots, &mut own);
+        let series = csv::read(from, slots, &mut own);
         log.take(own);
-        series
+        self.between.of(series)
     }
 
     /// Where the numbers of each column go: each to a place of its own.
@@ -165,7 +192,8 @@ impl Source {
             let place = |i: usize| at(&self.row_places, i);
             rows.iter_mut().enumerate().for_each(|(i, row)| slots.normalise(row, (&key(i), &|_| place(i)), log));
         }
-        Series { times: self.rows.iter().map(|r| r[0]).collect(), rows, hold: self.hold }
+        let times = self.rows.iter().map(|r| r[0]).collect();
+        self.between.of(Series { times, rows, ..Series::default() })
     }
 }
 

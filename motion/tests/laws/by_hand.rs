@@ -4,6 +4,7 @@ use articulated::Dynamics;
 use articulated::simulate::{Constant, Control, Dependence, Event, IntegratorId, Output, Settings, Simulation, TorqueTable};
 use articulated_core::algorithm::Workspace;
 
+use articulated_core::control::Interpolation;
 use articulated_motion::{Detectors, Drive, InitialState};
 use articulated_scene::{Aim, Controller, Series};
 
@@ -82,7 +83,7 @@ fn a_table_out_of_order_is_refused() {
     let session = session("simulation = { end = 1.0 }", CART);
     let mut motion = session.motion(&session.model, &session.frame_names(), session.settings().unwrap()).unwrap();
     let mut told = |times: &[f64], rows: &[f64]| {
-        let series = Series { times: times.to_vec(), rows: rows.iter().map(|x| vec![*x]).collect(), hold: false };
+        let series = Series { times: times.to_vec(), rows: rows.iter().map(|x| vec![*x]).collect(), between: Interpolation::Linear };
         let initial = InitialState { controller: Controller::Table(series), ..session.initial_state().unwrap() };
         motion.run(&initial, &mut |_, _| true).map(drop).map_err(|e| e.to_string())
     };
@@ -104,7 +105,7 @@ fn a_table_out_of_order_is_refused() {
 #[test]
 fn every_row_of_a_table_is_a_kink() {
     let session = session("", CART);
-    let series = Series { times: vec![0.25, 0.5, 1.0], rows: vec![vec![0.0], vec![1.0], vec![0.5]], hold: false };
+    let series = Series { times: vec![0.25, 0.5, 1.0], rows: vec![vec![0.0], vec![1.0], vec![0.5]], between: Interpolation::Linear };
     let one = || vec![1.0];
     for controller in
         [Controller::Table(series.clone()), Controller::Pd { target: Aim::Moving(series), kp: one(), kd: one(), torque: one() }]
@@ -118,7 +119,8 @@ fn every_row_of_a_table_is_a_kink() {
 #[test]
 fn torques_depend_on_what_their_kind_says_and_on_nothing_while_they_are_held() {
     let session = session("", CART);
-    let (one, series) = (|| vec![1.0], || Series { times: vec![0.0, 1.0], rows: vec![vec![0.0], vec![1.0]], hold: false });
+    let (one, series) =
+        (|| vec![1.0], || Series { times: vec![0.0, 1.0], rows: vec![vec![0.0], vec![1.0]], between: Interpolation::Linear });
     let pd = |target| Controller::Pd { target, kp: one(), kd: one(), torque: one() };
     for (controller, time, state) in [
         (Controller::None, false, false),

@@ -2,6 +2,7 @@
 
 use articulated::simulate::{Settings, StateError, TableError};
 use articulated::{Dynamics, FunctionError};
+use articulated_core::control::Interpolation;
 use articulated_models::panda_like;
 use articulated_motion::{Controller, Fault, InitialState, MotionErrors, Scene, Session};
 use articulated_scene::{Aim, Series};
@@ -243,7 +244,7 @@ fn a_begin_that_does_not_fit_the_robot_is_refused() {
     let torque = InitialState { controller: Controller::Torque(vec![]), ..initial.clone() };
     assert_eq!(told(&torque), [length("control.torque", 0, 5)]);
     let table = |wrong| Fault::State(StateError::Table { table: "control.rows", wrong });
-    let series = Series { times: vec![0.0, 1.0], rows: vec![vec![0.0; 2]], hold: false };
+    let series = Series { times: vec![0.0, 1.0], rows: vec![vec![0.0; 2]], between: Interpolation::Linear };
     let pd = Controller::Pd { target: Aim::Moving(series), kp: vec![], kd: vec![0.0; 5], torque: vec![0.0; 5] };
     let expected = [
         table(TableError::Rows { found: 1, expected: 2 }),

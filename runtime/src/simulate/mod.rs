@@ -37,7 +37,7 @@ mod stability;
 mod step_control;
 mod system;
 
-pub use articulated_core::control::{Aim, Controller, Series, TableError};
+pub use articulated_core::control::{Aim, Controller, Interpolation, Series, TableError};
 pub use articulated_core::integrator::{Integrator, IntegratorId, integrator, integrators, resolve_synonym};
 pub use articulated_core::settings::{Output, SettingError, Settings, Stiffness};
 pub use control::{Constant, Control, Dependence, Drive, Hold, NoTorque, Pd, TorqueTable};

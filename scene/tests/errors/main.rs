@@ -168,7 +168,7 @@ fn one_mistake_of_a_table_does_not_hide_another() {
     assert_eq!(told("[simulation]\nend = 'x'\nrtol = 0\natol = 0\nmin_step = 2\nmax_step = 1\nevents = 3"), 4);
     assert_eq!(told("[simulation]\nend = 1\nrtol = 2\nmax_step = 1e-300\noutput = [0.5, 0.2]"), 3);
     assert_eq!(
-        told("[control]\nkind = 'table'\ninterpolation = 'cubic'\nperiod = 0\nkp = 1\ncolumns = ['a', 'a']\nrows = [[0, 1, 2], [0, 1]]"),
+        told("[control]\nkind = 'table'\ninterpolation = 'square'\nperiod = 0\nkp = 1\ncolumns = ['a', 'a']\nrows = [[0, 1, 2], [0, 1]]"),
         6
     );
     assert_eq!(told("[control]\nkind = 'pd'\nkp = 'x'\nfile = 'a.csv'\nrows = [[0]]\ntarget = [1]"), 3);

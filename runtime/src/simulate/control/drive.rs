@@ -89,6 +89,9 @@ impl<'r, R: Dynamics<f64>> Pursuit<'r, R> {
     /// Target and rate at time t.
     fn follow(&mut self, series: &Series, t: f64) -> Result<(), FunctionError> {
         series.at(t, &mut self.target);
+        if self.is_flat() && series.rates(t, &mut self.rate) {
+            return Ok(());
+        }
         let Some(([since, span], [from, to])) = series.between(t) else {
             self.rate.fill(0.0);
             return Ok(());

@@ -1,6 +1,6 @@
 //! Torques from a table.
 
-use articulated_core::control::Series;
+use articulated_core::control::{Interpolation, Series};
 
 use super::{Control, Dependence};
 use crate::simulate::{SimulateError, StateError};
@@ -17,7 +17,7 @@ impl TorqueTable {
     /// mistakes.
     pub fn new(times: Vec<f64>, rows: &[f64], nv: usize) -> Result<Self, SimulateError> {
         let rows = rows.chunks(nv.max(1)).map(<[f64]>::to_vec).collect();
-        let series = Series { times, rows, hold: false };
+        let series = Series { times, rows, between: Interpolation::Linear };
         StateError::none(StateError::of_table("torques", &series, nv))?;
         Ok(Self { series, nv })
     }

@@ -81,6 +81,7 @@ impl Subject {
 
 #[cfg(test)]
 mod tests {
+    use articulated_core::control::Interpolation;
     use articulated_scene::Series;
 
     use super::*;
@@ -90,7 +91,7 @@ mod tests {
         let mut subject = super::subject(&crate::session::bundled("pendulum")).expect("a scene without a blow");
         (subject.start, subject.seconds) = (0.0, 2.0);
         let times = vec![-1.0, 0.0, 0.31, 0.777, 2.0];
-        let table = Controller::Table(Series { rows: vec![vec![1.0]; times.len()], times, hold: true });
+        let table = Controller::Table(Series { rows: vec![vec![1.0]; times.len()], times, between: Interpolation::Hold });
         subject.control = (table.clone(), None);
         let rows = "the controller follows a table of 5 rows";
         let kinks = "a step ends at each of these, so that no integrator meets a kink, and none takes fewer steps than that";
