@@ -70,3 +70,4 @@ pub use leave_out::{LeaveOut, NoKind};
 pub use mass::beyond_any_mass;
 pub use reading::{Options, Reading, included, read, read_with};
 pub use snap::{MOST_SNAPPED, SNAP_EXPECTED, can_snap, nearly_right_angles};
+pub use xacro::declares_package;

@@ -20,30 +20,51 @@ X, Y, Z = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 NO_TURN = (0, 0, 0)
 
 
-# ---------------------------------------------------------------- solids: (mass, centre, (ixx, iyy, izz, ixy, ixz, iyz))
+# ---------------------------------------------------------------- solids: (mass, centre, (ixx, iyy, izz, ixy, ixz, iyz), shapes)
 
-def solid(m, com, ixx, iyy, izz, ixy=0.0, ixz=0.0, iyz=0.0):
-    return (m, tuple(com), (ixx, iyy, izz, ixy, ixz, iyz))
+# A shape to draw is (tag and attributes, centre, roll pitch yaw).
+
+def shape(tag, center, axis=Z):
+    """A shape along an axis of the link; a URDF's cylinders and capsules are along z."""
+    return (tag, tuple(center), (0, pi / 2, 0) if axis[0] else (pi / 2, 0, 0) if axis[1] else NO_TURN)
+
+
+def rod(start, offset, r):
+    """Cylinders from a point along x, y and z to another one, and a ball where they begin."""
+    shapes, at = [shape(f'sphere radius="{num(r)}"', start)], list(start)
+    for k, axis in enumerate((X, Y, Z)):
+        if offset[k]:
+            center = [c + (offset[k] / 2 if i == k else 0) for i, c in enumerate(at)]
+            shapes.append(shape(f'cylinder radius="{num(r)}" length="{num(abs(offset[k]))}"', center, axis))
+            at[k] += offset[k]
+    return shapes
+
+
+def solid(m, com, ixx, iyy, izz, ixy=0.0, ixz=0.0, iyz=0.0, shapes=()):
+    return (m, tuple(com), (ixx, iyy, izz, ixy, ixz, iyz), tuple(shapes))
 
 
 def box(m, com, x, y, z):
     """I_xx = m (y^2 + z^2) / 12, and so on round."""
-    return solid(m, com, m * (y * y + z * z) / 12, m * (x * x + z * z) / 12, m * (x * x + y * y) / 12)
+    shapes = [shape(f'box size="{vec((x, y, z))}"', com)]
+    return solid(m, com, m * (y * y + z * z) / 12, m * (x * x + z * z) / 12, m * (x * x + y * y) / 12, shapes=shapes)
 
 
 def cylinder(m, com, axis, r, h):
     """Along its axis m r^2 / 2, across it m (3 r^2 + h^2) / 12."""
     along, across = m * r * r / 2, m * (3 * r * r + h * h) / 12
-    return solid(m, com, *(along if a else across for a in axis))
+    shapes = [shape(f'cylinder radius="{num(r)}" length="{num(h)}"', com, axis)]
+    return solid(m, com, *(along if a else across for a in axis), shapes=shapes)
 
 
 def sphere(m, com, r):
-    return solid(m, com, *[2 * m * r * r / 5] * 3)
+    return solid(m, com, *[2 * m * r * r / 5] * 3, shapes=[shape(f'sphere radius="{num(r)}"', com)])
 
 
 def hollow_ellipsoid(m, com, a, b, c):
-    """Skin between two similar ellipsoids: I_xx = m (b^2 + c^2) / 3, and so on round."""
-    return solid(m, com, m * (b * b + c * c) / 3, m * (a * a + c * c) / 3, m * (a * a + b * b) / 3)
+    """Skin between two similar ellipsoids: I_xx = m (b^2 + c^2) / 3, and so on round. Drawn as a box of its size."""
+    shapes = [shape(f'box size="{vec((2 * a, 2 * b, 2 * c))}"', com)]
+    return solid(m, com, m * (b * b + c * c) / 3, m * (a * a + c * c) / 3, m * (a * a + b * b) / 3, shapes=shapes)
 
 
 def lump(parts):
@@ -51,11 +72,11 @@ def lump(parts):
     m = sum(p[0] for p in parts)
     c = tuple(sum(p[0] * p[1][i] for p in parts) / m for i in range(3))
     total = [0.0] * 6
-    for mk, ck, ik in parts:
+    for mk, ck, ik, _ in parts:
         x, y, z = (ck[i] - c[i] for i in range(3))
         shift = (y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z)
         total = [t + i + mk * s for t, i, s in zip(total, ik, shift)]
-    return solid(m, c, *total)
+    return solid(m, c, *total, shapes=[shape for part in parts for shape in part[3]])
 
 
 # ---------------------------------------------------------------- writing
@@ -93,11 +114,13 @@ class Robot:
             return self.raw(f'  <link name="{name}"/>')
         self.raw(f'  <link name="{name}">')
         if body:
-            m, com, i = body
+            m, com, i, shapes = body
             names = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
             entries = " ".join(f'{n}="{num(v)}"' for n, v in sorted(zip(names, i)))
             self.raw(f'    <inertial>\n      <origin xyz="{vec(com)}" rpy="0 0 0"/>\n      <mass value="{num(m)}"/>\n'
                      f"      <inertia {entries}/>\n    </inertial>")
+            for tag, center, rpy in shapes if "<visual>" not in inside else ():
+                self.raw(f'    <visual><origin xyz="{vec(center)}" rpy="{vec(rpy)}"/><geometry><{tag}/></geometry></visual>')
         self.raw(inside + "  </link>")
 
     def joint(self, name, kind, parent, child, xyz=NO_TURN, axis=None, limit=None, rpy=NO_TURN, note="", inside=""):
@@ -132,7 +155,9 @@ def simple_pendulum():
               "energy: 0.5005 v^2 + 9.81 (1 - cos q)")
     r.link("support")
     r.joint("swing", "revolute", "support", "bob", axis=Y, limit=(-2 * pi, 2 * pi, 50, 50))
-    r.link("bob", sphere(1, (0, 0, -1), 0.05), "solid ball: I = 2/5 m R^2")
+    rod_and_ball = solid(*sphere(1, (0, 0, -1), 0.05)[:2], 0.001, 0.001, 0.001,
+                         shapes=[*rod(NO_TURN, (0, 0, -1), 0.01), *sphere(1, (0, 0, -1), 0.05)[3]])
+    r.link("bob", rod_and_ball, "solid ball: I = 2/5 m R^2")
     return r
 
 
@@ -245,18 +270,23 @@ def panda_like():
               "4147-4154, supplementary tables VIII and IX. The identification fits torques, not shapes: parameters that no",
               "joint can feel on a fixed base (link 1: all but I_zz; in part links 2 and 3) are feasible, not physical.",
               "Base: what is missing to the 18 kg of the data sheet, as a box (own). Hand: maker's manual.")
-    r.link("base_link", box(1.937868, (-0.04, 0, 0.06), 0.2, 0.18, 0.12), "18 - 16.062132 kg; box 0.2 x 0.18 x 0.12 (own)")
+    m, c, inertia, foot = box(1.937868, (-0.04, 0, 0.06), 0.2, 0.18, 0.12)
+    base = (m, c, inertia, (*foot, *rod(NO_TURN, (0, 0, 0.333), 0.055)))
+    r.link("base_link", base, "18 - 16.062132 kg; box 0.2 x 0.18 x 0.12 (own)")
     parent = "base_link"
     for i, (a, alpha, d, lower, upper, velocity, effort, m, c, inertia) in enumerate(PANDA, 1):
         s, k = (alpha > 0) - (alpha < 0), 0 if alpha else 1      # sin and cos of alpha, exactly
         r.joint(f"joint_{i}", "revolute", parent, f"link_{i}", (a, -s * d, k * d), Z, (lower, upper, effort, velocity),
                 (alpha, 0, 0), f"FCI: a_{i - 1} = {num(a)}, alpha_{i - 1} = {num(alpha)}, d_{i} = {num(d)}; limits FCI")
-        r.link(f"link_{i}", solid(m, c, *inertia), "m, c, I: Gaz et al. 2019")
+        # Drawn: rods to the next joint, or to the flange (own).
+        a, alpha, d = PANDA[i][:3] if i < len(PANDA) else (0, 0, 0.107)
+        s, k = (alpha > 0) - (alpha < 0), 0 if alpha else 1
+        r.link(f"link_{i}", solid(m, c, *inertia, shapes=rod(NO_TURN, (a, -s * d, k * d), 0.055)), "m, c, I: Gaz et al. 2019")
         parent = f"link_{i}"
     r.joint("flange_joint", "fixed", parent, "flange", (0, 0, 0.107), note="FCI: d_flange = 0.107")
     r.link("flange")
     r.joint("hand_joint", "fixed", "flange", "hand")
-    r.link("hand", solid(0.73, (-0.01, 0, 0.03), 0.001, 0.0025, 0.0017),
+    r.link("hand", solid(0.73, (-0.01, 0, 0.03), 0.001, 0.0025, 0.0017, shapes=[shape('box size="0.06 0.2 0.06"', (0, 0, 0.03))]),
            "Franka manual, mechanical data of the hand: m, c and I in the flange's frame")
     r.joint("hand_tcp_joint", "fixed", "hand", "hand_tcp", (0, 0, 0.1034), rpy=(0, 0, -pi / 4),
             note="Franka manual: flange to the middle of the closed finger tips")
@@ -423,7 +453,19 @@ def segment(name, top, along=(0, 0, -1), order="stl"):
     mass, length, centre, s, t, l = DE_LEVA[name]
     m, h = BODY_MASS * mass / 10000, length / 10000
     com = tuple(p + a * h * centre / 10000 for p, a in zip(top, along))
-    return solid(m, com, *(m * (dict(s=s, t=t, l=l)[k] * h / 1000) ** 2 for k in order))
+    # Drawn: a capsule of the segment's length and density, 1000 kg/m^3 or so: pi r^2 h = m / 1000, with the ends inside.
+    middle = tuple(p + a * h / 2 for p, a in zip(top, along))
+    r = root(m / 1000 / pi / h)
+    shapes = [shape(f'cylinder radius="{num(r)}" length="{num(h)}"', middle, along)]
+    return solid(m, com, *(m * (dict(s=s, t=t, l=l)[k] * h / 1000) ** 2 for k in order), shapes=shapes)
+
+
+def root(x):
+    """The square root to a millimetre, by Newton's steps."""
+    r = 1.0
+    for _ in range(40):
+        r = (r + x / r) / 2
+    return round(r, 3)
 
 
 def span(name):

@@ -32,6 +32,7 @@ fn targets_may_be_a_cubic_spline() {
 fn targets_with_quaternions_may_not() {
     let floating = model(articulated_core::description::Base::Floating);
     let told = scene("elbow").controller(&floating, &mut |_| Err(String::new())).unwrap_err().to_string();
-    let expected = "s.toml:4: control.interpolation: found \"cubic\" for targets of 8 coordinates with quaternions, expected \"linear\" or \"hold\"";
+    let expected =
+        "s.toml:4: control.interpolation: found \"cubic\" for targets of 8 coordinates with quaternions, expected \"linear\" or \"hold\"";
     assert_eq!(told, expected);
 }

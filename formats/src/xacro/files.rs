@@ -100,7 +100,7 @@ fn around(name: &str, beside: &Path, input: &Input<'_>) -> Option<PathBuf> {
     let above = (1..=MOST_ABOVE).filter(|_| beside.is_relative()).map(|count| PathBuf::from(vec![".."; count].join("/")));
     for folder in beside.ancestors().map(Path::to_owned).chain(above) {
         if let Ok(bytes) = input.sources.read(&folder.join("package.xml"))
-            && declares(&bytes, name)
+            && declares_package(&bytes, name)
         {
             return Some(folder);
         }
@@ -112,8 +112,8 @@ fn around(name: &str, beside: &Path, input: &Input<'_>) -> Option<PathBuf> {
     None
 }
 
-/// Whether a `package.xml` declares the package of this name.
-fn declares(bytes: &[u8], name: &str) -> bool {
+/// Whether a `package.xml` of ROS declares the package of this name.
+pub fn declares_package(bytes: &[u8], name: &str) -> bool {
     let text = String::from_utf8_lossy(bytes);
     let own = text.split_once("<name>").and_then(|(_, rest)| rest.split_once("</name>"));
     own.is_some_and(|(own, _)| own.trim() == name)

@@ -50,6 +50,7 @@ mod yaml;
 use articulated_core::diagnostic::Diagnostics;
 use roxmltree::{Document, Node};
 
+pub use files::declares_package;
 pub(crate) use source::Expanded;
 
 use crate::Input;

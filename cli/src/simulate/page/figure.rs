@@ -26,6 +26,8 @@ pub(super) struct Figure {
     pub(super) frames: Vec<String>,
     /// The body that is followed.
     pub(super) root: usize,
+    /// Whether a visual shape is a mesh.
+    has_meshes: bool,
     pub(super) sticks: Vec<Stick>,
     pub(super) joints: Vec<Mark>,
     pub(super) boxes: Vec<Box>,
@@ -125,6 +127,16 @@ impl Figure {
         if let Some(meshes) = meshes {
             figure.shapes(description, &links, meshes);
         }
+        // From the last joint of a limb to the centre of mass that it moves.
+        for (link, place) in description.links.iter().zip(&links) {
+            let (Some(place), Some(inertial)) = (place, &link.inertial) else { continue };
+            let center = place.place.transform(Vector3::from(inertial.origin.xyz));
+            let is_last = place.body != 0 && !figure.sticks.iter().any(|stick| stick.from == place.body);
+            if is_last && inertial.mass > 0.0 && center != place.place.position {
+                let (start, end) = (place.place.position.into(), center.into());
+                figure.sticks.push(Stick { from: place.body, start, to: place.body, end });
+            }
+        }
         for (link, place) in description.links.iter().zip(&links) {
             let (Some(place), Some(inertial)) = (place, &link.inertial) else { continue };
             if inertial.mass > 0.0 {
@@ -137,21 +149,23 @@ impl Figure {
 
     /// Adds the visual and the collision shapes of all links.
     fn shapes(&mut self, description: &Description, links: &[Option<Linked>], meshes: &Meshes<'_>) {
-        let is_mesh = |shape: &CollisionShape| usize::from(matches!(shape, CollisionShape::Mesh { .. }));
-        let of_link = |link: &Link| -> usize {
-            link.visual.iter().map(|v| is_mesh(&v.shape)).sum::<usize>() + link.collision.iter().map(|c| is_mesh(&c.shape)).sum::<usize>()
-        };
-        let pieces: usize = description.links.iter().map(of_link).sum();
+        let drawn = description.links.iter().zip(links).filter(|(_, place)| place.is_some());
+        let all = drawn.flat_map(|(link, _)| link.visual.iter().map(|v| &v.shape).chain(link.collision.iter().map(|c| &c.shape)));
+        let share = meshes.share(all.filter_map(|shape| match shape {
+            CollisionShape::Mesh { file, .. } => Some(file.as_str()),
+            _ => None,
+        }));
         let mut known: HashMap<String, Option<usize>> = HashMap::new();
         for (link, place) in description.links.iter().zip(links) {
             let Some(place) = place else { continue };
             for visual in &link.visual {
-                let Some(geometry) = self.geometry(&link.name, &visual.shape, pieces, meshes, &mut known) else { continue };
+                let Some(geometry) = self.geometry(&link.name, &visual.shape, share, meshes, &mut known) else { continue };
                 let solid = solid(link, place, Kind::Visual, geometry, &visual.origin);
+                self.has_meshes |= matches!(visual.shape, CollisionShape::Mesh { .. });
                 self.solids.push(Solid { material: visual.material.clone(), color: visual.color, ..solid });
             }
             for piece in &link.collision {
-                let Some(geometry) = self.geometry(&link.name, &piece.shape, pieces, meshes, &mut known) else { continue };
+                let Some(geometry) = self.geometry(&link.name, &piece.shape, share, meshes, &mut known) else { continue };
                 self.solids.push(solid(link, place, Kind::Collision, geometry, &piece.origin));
             }
         }
@@ -162,7 +176,7 @@ impl Figure {
         &mut self,
         link: &str,
         shape: &CollisionShape,
-        pieces: usize,
+        share: f64,
         meshes: &Meshes<'_>,
         known: &mut HashMap<String, Option<usize>>,
     ) -> Option<usize> {
@@ -173,7 +187,7 @@ impl Figure {
             return *index;
         }
         let geometry = match shape {
-            CollisionShape::Mesh { file, scale } => meshes.mesh(link, file, pieces).map(|mesh| mesh.scaled(*scale)),
+            CollisionShape::Mesh { file, scale } => meshes.mesh(link, file, share).map(|mesh| mesh.scaled(*scale)),
             other => Geometry::of(other),
         };
         let index = geometry.map(|geometry| {

@@ -1,21 +1,20 @@
 //! Meshes of a robot's file: their paths, and their contents.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use articulated_core::diagnostic::{Code, Diagnostics, Place, Subject};
-use articulated_formats::{Disk, Sources};
+use articulated_formats::{Disk, Environment, Sources, declares_package};
 
 use crate::arguments::Package;
 use mesh_loader::Loader;
 
 use super::geometry::Geometry;
 
-/// Triangles of one mesh, and of all meshes together, at most.
-const MOST: usize = 20_000;
-const MOST_OF_ALL: usize = 120_000;
+/// Triangles of all meshes together, at most: with 24 bytes each a page has 5 MB.
+const MOST_OF_ALL: usize = 200_000;
 /// Minimum number of triangles of a mesh in a large robot.
 const LEAST: usize = 200;
 
@@ -39,9 +38,16 @@ impl<'a> Meshes<'a> {
         self.log.into_inner()
     }
 
-    /// The mesh of a link, with at most this share of all triangles; a warning if there is none.
-    pub(super) fn mesh(&self, link: &str, name: &str, pieces: usize) -> Option<Geometry> {
-        let most = (MOST_OF_ALL / pieces.max(1)).clamp(LEAST, MOST);
+    /// The part of their triangles that meshes of these names may keep: all of them, unless they are
+    /// too many together.
+    pub(super) fn share<'n>(&self, names: impl Iterator<Item = &'n str>) -> f64 {
+        let distinct: BTreeSet<PathBuf> = names.filter_map(|name| self.find(name).ok()).collect();
+        let all: usize = distinct.iter().filter_map(|path| Some(self.read(path).ok()?.triangles.len())).sum();
+        (MOST_OF_ALL as f64 / all.max(1) as f64).min(1.0)
+    }
+
+    /// The mesh of a link, with this part of its triangles; a warning if there is none.
+    pub(super) fn mesh(&self, link: &str, name: &str, share: f64) -> Option<Geometry> {
         let found = self.find(name).and_then(|path| self.read(&path).map_err(|why| (format!("{}: {why}", path.display()), EXPECTED)));
         let mesh = match found {
             Ok(mesh) => mesh,
@@ -50,7 +56,9 @@ impl<'a> Meshes<'a> {
                 return None;
             }
         };
-        let (count, drawn) = (mesh.triangles.len(), Geometry::clone(&mesh).decimated(most));
+        let count = mesh.triangles.len();
+        let most = ((share * count as f64).round() as usize).max(LEAST);
+        let drawn = Geometry::clone(&mesh).decimated(most);
         if drawn.triangles.len() < count {
             let found = format!("{name}: a mesh of {count} triangles");
             self.warn(link, &found, &format!("at most {most}: drawn with {}", drawn.triangles.len()));
@@ -73,7 +81,8 @@ impl<'a> Meshes<'a> {
         if let Some((package, rest)) = ["package://", "model://"].iter().find_map(|scheme| name.strip_prefix(scheme)?.split_once('/')) {
             let own = self.packages.iter().filter(|known| known.name == package).map(|known| known.folder.join(rest));
             let around = self.folders.iter().flat_map(|folder| upward(folder, package)).map(|folder| folder.join(rest));
-            return own.chain(around).find(|path| path.is_file()).map_or_else(|| none(IN_PACKAGE), Ok);
+            let of_environment = Environment.package(package).map(|folder| folder.join(rest));
+            return own.chain(around).chain(of_environment).find(|path| path.is_file()).map_or_else(|| none(IN_PACKAGE), Ok);
         }
         let path = Path::new(name.strip_prefix("file://").unwrap_or(name));
         let mut places = self.folders.iter().map(|folder| folder.join(path));
@@ -94,10 +103,13 @@ const EXPECTED: &str = "a mesh in STL, OBJ or COLLADA (.dae)";
 const BESIDE: &str = "one relative to the robot's file";
 const IN_PACKAGE: &str = "one in the folder of its package: --package NAME=FOLDER, or `packages` of the scene, says where that is";
 
-/// Folders of a package that contain this folder, or that are in a surrounding folder.
+/// Folders of a package that contain this folder, or that are in a surrounding folder: by their name,
+/// or by the name in their `package.xml`.
 fn upward(folder: &Path, package: &str) -> Vec<PathBuf> {
     let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
-    let own = |around: &Path| around.file_name().is_some_and(|name| name == package).then(|| around.to_owned());
+    let is_declared = |around: &Path| Disk.read(&around.join("package.xml")).is_ok_and(|bytes| declares_package(&bytes, package));
+    let is_named = |around: &Path| around.file_name().is_some_and(|name| name == package);
+    let own = |around: &Path| (is_named(around) || is_declared(around)).then(|| around.to_owned());
     let folders = whole.ancestors().flat_map(|around| own(around).into_iter().chain([around.join(package)]));
     folders.filter(|found| found.is_dir()).collect()
 }

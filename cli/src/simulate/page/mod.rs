@@ -3,6 +3,7 @@
 
 mod animation;
 mod clock;
+mod collapse;
 mod figure;
 mod geometry;
 mod mesh;

@@ -142,7 +142,8 @@
   // At the start the whole motion, unless the robot would be small in it: then the robot, which is followed.
   function begin() {
     whole();
-    const far = eye.distance > 2.5 * sized([pose(first)]).distance;
+    // A robot on a fixed base stays where it is.
+    const far = motion.root > 0 && eye.distance > 2.5 * sized([pose(first)]).distance;
     $('follow').checked = far;
     if (far) near();
   }
@@ -363,15 +364,16 @@
   const ENERGY = ['#1b6ca8', '#d9822b', '#3f8f5b'];
   function series(kind, k) { return kind < 2 ? energies[KINDS * k + kind] : energies[KINDS * k] + energies[KINDS * k + 1]; }
 
-  // The strip under the picture: T, U and T + U, events, and where we are.
+  // The strip under the picture: T, U and T + U, events, and where we are. Its numbers are beside the curves.
+  const MARGIN = 76;
   function strip(ctx, w, h, t) {
     let low = Infinity, high = -Infinity;
     for (let k = 0; k < frames; k++) for (let kind = 0; kind < 3; kind++) { const x = series(kind, k); if (x < low) low = x; if (x > high) high = x; }
     const ends = [low, high];
     const span = high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high)) ? high - low : 1;
-    const X = s => (s - first) / (last - first || 1) * (w - 2) + 1, Y = e => h - 4 - (e - low) / span * (h - 8);
+    const X = s => MARGIN + (s - first) / (last - first || 1) * (w - MARGIN - 2) + 1, Y = e => h - 4 - (e - low) / span * (h - 8);
     ctx.clearRect(0, 0, w, h);
-    if (low <= 0 && high >= 0) { ctx.strokeStyle = '#aab'; ctx.lineWidth = 1; ctx.beginPath(); ctx.moveTo(0, Y(0)); ctx.lineTo(w, Y(0)); ctx.stroke(); }
+    if (low <= 0 && high >= 0) { ctx.strokeStyle = '#aab'; ctx.lineWidth = 1; ctx.beginPath(); ctx.moveTo(MARGIN, Y(0)); ctx.lineTo(w, Y(0)); ctx.stroke(); }
     // Of events that are nearer than three points to one another the first is drawn; many are pale.
     ctx.strokeStyle = `rgba(160, 40, 40, ${events.length > 20 ? 0.25 : 0.6})`; ctx.lineWidth = 1;
     let drawn = -Infinity;
@@ -413,6 +415,8 @@
   const shown = () => Object.fromEntries(TOGGLES.map(name => [name, $(name).checked]));
   // What is not there has no toggle; boxes are for robots without a look of their own.
   $('boxes').checked = !isThere('visual');
+  // Sticks and names would be inside meshes, and in front of them.
+  for (const name of ['sticks', 'names']) $(name).checked = !motion.hasMeshes;
   for (const [name, kind] of [['looks', 'visual'], ['collision', 'collision'], ['boxes', 'inertia']]) $(name).parentElement.hidden = !isThere(kind);
   const panels = () => ['head', 'numbers', 'legend'].map($).filter(panel => !panel.hidden).map(panel => panel.getBoundingClientRect()).map(b => [b.left, b.top, b.right, b.bottom]);
   // The legend of what is shown: materials by their names, and all else by its kind.
@@ -513,7 +517,7 @@
     recorder.start(1000);
   };
   scrub.oninput = () => { state.playing = false; go(Number(scrub.value)); };
-  const strike = e => { const box = stripCanvas.getBoundingClientRect(); state.playing = false; go(first + (e.clientX - box.left) / box.width * (last - first)); };
+  const strike = e => { const box = stripCanvas.getBoundingClientRect(); state.playing = false; go(first + (e.clientX - box.left - MARGIN) / (box.width - MARGIN) * (last - first)); };
   stripCanvas.onpointerdown = e => { stripCanvas.setPointerCapture(e.pointerId); strike(e); };
   stripCanvas.onpointermove = e => { if (e.buttons) strike(e); };
   document.addEventListener('keydown', e => {
