@@ -29,7 +29,9 @@ REPOSITORY = HERE.parent.parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
 PLACE = TARGET / "browser"
 SIZE = (1280, 800)
-SCENES = [("arm", 0.5), ("golf_swing", None), ("humanoid_float", 0.2), ("quadruped_drop", 0.3)]
+# All bundled scenes, and the ends of those that take long.
+SCENES = [("arm", 0.5), ("golf_swing", None), ("humanoid_float", 0.2), ("quadruped_drop", 0.3), ("pendulum", None), ("double_pendulum", 1), ("cart_pole", 1),
+          ("chain", 0.2), ("spinning_top", 0.5), ("t_handle", 1), ("underwater_arm", 0.5)]
 STARTED = time.monotonic()
 FIRST = b"\x1aE\xdf\xa3"  # of a WebM file
 
@@ -111,10 +113,11 @@ def plays(browser, keep):
     seek(browser, 0.0)
     first = browser.screenshot()
     keep("start", first)
-    assert drawn(first) > 2000, f"{drawn(first)} pixels are drawn"
     seek(browser, 0.7)
     later = browser.screenshot()
     keep("later", later)
+    for image in [first, later]:
+        assert drawn(image) > 1000, f"{drawn(image)} pixels are drawn"
     assert differing(first, later) > 500, "the picture does not change"
     return first
 
@@ -204,7 +207,8 @@ def check(browser, articulated, folder):
     saved = folder / "saved"
     for scene, end in SCENES:
         page = folder / f"{scene}.html"
-        write(articulated, scene, page, *(["--end", str(end)] if end else []))
+        # The chain records its ends alone.
+        write(articulated, scene, page, *(["--end", str(end)] if end else []), *(["--every", "0.01"] if scene == "chain" else []))
         assert "http" not in page.read_text()
         browser.open(page)
         plays(browser, lambda name, image: image.save(folder / f"{scene}_{name}.png"))
@@ -241,6 +245,26 @@ def check_shapes(browser, articulated, folder):
     finish(browser, "shapes")
 
 
+def check_silhouettes(browser, articulated, folder):
+    """A mesh of very many triangles is drawn with fewer, and covers the pixels that a mesh of few triangles of the same surface covers."""
+    seen = []
+    for name, fine in [("fine", True), ("coarse", False)]:
+        scene = shapes.write_ring(folder / name, fine)
+        told = write(articulated, scene, folder / f"{name}.html")
+        assert ("expected at most 200000: drawn with" in told) == fine, told
+        browser.open(folder / f"{name}.html")
+        browser.click("play")
+        seek(browser, 0.0)
+        image = browser.screenshot().crop(MIDDLE)
+        image.save(folder / f"{name}.png")
+        seen.append(image.convert("RGB"))
+    covered = [[max(pixel) - min(pixel) > 30 for pixel in image.get_flattened_data()] for image in seen]
+    counts = [sum(mask) for mask in covered]
+    apart = sum(a != b for a, b in zip(*covered))
+    assert min(counts) > 5000 and apart < 0.01 * counts[1], f"{apart} of {counts} pixels differ"
+    finish(browser, "silhouettes")
+
+
 def check_without_webgl(path, folder):
     """The same pictures where the browser has no WebGL."""
     with opened(path, webgl=False) as browser:
@@ -275,6 +299,7 @@ def main():
         with opened(path) as browser:
             check(browser, articulated, folder)
             check_shapes(browser, articulated, folder)
+            check_silhouettes(browser, articulated, folder)
         check_without_webgl(path, folder)
 
 

@@ -1,5 +1,6 @@
 """A robot whose links have shapes of every kind: meshes in each format, primitives, materials, and meshes that are missing."""
 
+import math
 import struct
 
 # A box: its corners, and its faces counterclockwise from outside.
@@ -76,3 +77,28 @@ def write(folder):
     (folder / "shapes.urdf").write_text("".join(parts) + "</robot>\n")
     (folder / "shapes.toml").write_text(SCENE)
     return folder / "shapes.toml"
+
+
+def write_ring(folder, fine):
+    """A pendulum that is a ring, a torus of 0.5 m and a tube of 0.06 m: of 240 000 triangles, or of 9600. The path of its scene."""
+    folder.mkdir(parents=True, exist_ok=True)
+    long, short = (1000, 120) if fine else (160, 30)
+    corner = lambda i, k: i % long * short + k % short + 1
+    lines = []
+    for i in range(long):
+        a = 2 * math.pi * i / long
+        for k in range(short):
+            b = 2 * math.pi * k / short
+            r = 0.5 + 0.06 * math.cos(b)
+            lines.append(f"v {r * math.cos(a):.6f} {0.06 * math.sin(b):.6f} {r * math.sin(a):.6f}")
+    for i in range(long):
+        for k in range(short):
+            p, q, r, s = corner(i, k), corner(i + 1, k), corner(i + 1, k + 1), corner(i, k + 1)
+            lines += [f"f {p} {r} {q}", f"f {p} {s} {r}"]
+    (folder / "ring.obj").write_text("\n".join(lines) + "\n")
+    body = '<inertial><mass value="1"/><inertia ixx="0.1" iyy="0.2" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    look = f'<visual><geometry><mesh filename="ring.obj"/></geometry>{RED}</visual>'
+    joint = '<joint name="axle" type="continuous"><parent link="base"/><child link="ring"/><axis xyz="0 1 0"/></joint>'
+    (folder / "ring.urdf").write_text(f'<robot name="ring"><link name="base"/><link name="ring">{body}{look}</link>{joint}</robot>')
+    (folder / "ring.toml").write_text('urdf = "ring.urdf"\n[initial.v]\naxle = 1.0\n[simulation]\nend = 0.5\noutput = 0.01\n')
+    return folder / "ring.toml"
