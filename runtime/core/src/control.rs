@@ -252,9 +252,8 @@ impl Interpolation {
             }
         }
         for i in (1..n.saturating_sub(1)).rev() {
-            for k in 0..width {
-                slopes[i][k] = (slopes[i][k] - slopes[i + 1][k] / h(i)) / pivots[i];
-            }
+            let (head, tail) = slopes.split_at_mut(i + 1);
+            head[i].iter_mut().zip(&tail[0]).for_each(|(slope, next)| *slope = (*slope - next / h(i)) / pivots[i]);
         }
         Self::Cubic(slopes)
     }

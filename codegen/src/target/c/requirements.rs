@@ -58,10 +58,7 @@ impl Requirements {
     fn add_numbers(&mut self, body: &Body, is_single: bool, own_math: bool) {
         for statement in body.pieces.iter().flatten() {
             match statement {
-                Stmt::Let(_, Expr::Op(op, _)) => match function(*op) {
-                    Some(name) => self.add_math([name], is_single),
-                    None => {}
-                },
+                Stmt::Let(_, Expr::Op(op, _)) => function(*op).into_iter().for_each(|name| self.add_math([name], is_single)),
                 Stmt::SinCos { angles, alone: false } if !is_single && angles.len() > 2 => self.sines_of_four = true,
                 Stmt::SinCos { angles, .. } => angles.iter().for_each(|angle| match angle {
                     Angle { sin: Some(_), cos: Some(_), .. } if own_math => self.add_math(["sin_cos"], is_single),
