@@ -92,7 +92,7 @@ impl Resting {
 }
 
 /// A text of TOML.
-fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     let mut out = String::from("\"");
     for c in text.chars() {
         match c {

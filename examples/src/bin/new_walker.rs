@@ -1,4 +1,4 @@
-//! The robot `robot.urdf` under a controller at 1 kHz. Run it with `cargo run --release`.
+//! A robot under a controller at 1 kHz. Run it with `cargo run --release`.
 
 use std::fmt::Write;
 

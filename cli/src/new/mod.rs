@@ -1,5 +1,8 @@
 //! `articulated new`: a crate with a robot, a controller, a simulation and a plot.
 
+mod drop;
+mod robot_toml;
+
 use std::path::{Path, PathBuf};
 
 use articulated_codegen::{Request, generate};
@@ -16,16 +19,13 @@ use crate::robot::Robot;
 
 /// What `new` takes.
 #[derive(Debug, Args)]
+#[command(mut_arg("robot", |robot| robot.long("file")))]
 pub(crate) struct NewArguments {
     /// The folder of the new crate; its last part is the crate's name
     #[arg(value_name = "FOLDER")]
     folder: PathBuf,
-    /// The robot: a file (URDF, xacro, MJCF or SDF), or the name of a bundled robot
-    #[arg(long, value_name = "ROBOT")]
-    file: PathBuf,
-    /// The root link moves freely (bundled robots know their own base)
-    #[arg(long)]
-    floating: bool,
+    #[command(flatten)]
+    robot: RobotArguments,
     /// The controller of the program
     /// [default: computed-torque on a fixed base, pd on a floating one]
     #[arg(long, value_enum)]
@@ -47,11 +47,9 @@ enum Controller {
 #[derive(Serialize)]
 struct Report {
     folder: String,
-    files: Vec<&'static str>,
+    files: Vec<String>,
     run: Vec<String>,
 }
-
-const FILES: [&str; 4] = ["Cargo.toml", "robot.urdf", "src/main.rs", ".gitignore"];
 
 /// Writes the crate. Nothing is written if the robot cannot be used, or if the folder exists and is
 /// not empty.
@@ -62,11 +60,7 @@ pub(crate) fn run(arguments: &NewArguments, format: Format) -> Result<(), Failur
         let expected = "the path of a new folder, or of an empty one";
         return Err(Failure::input([format!("{}: found a file or a folder with files, expected {expected}", folder.display())]));
     }
-    let robot = Robot::find(&RobotArguments::plain(&arguments.file, arguments.floating))?;
-    if robot.scene.is_some() {
-        let expected = "the path of a robot file or the name of a bundled robot";
-        return Err(Failure::usage(format!("--file {}: found a scene, expected {expected}", arguments.file.display())));
-    }
+    let robot = Robot::find(&arguments.robot)?;
     let base = robot.options.robot.base;
     let controller = match (arguments.controller, base) {
         (Some(Controller::ComputedTorque), Base::Floating) => {
@@ -85,19 +79,84 @@ pub(crate) fn run(arguments: &NewArguments, format: Format) -> Result<(), Failur
     if generated.model.nv() == 0 {
         return Err(Failure::input([format!("{}: found no joint that moves, expected one at least", robot.file)]));
     }
-    let texts = [
-        cargo_toml(&name, arguments.library.as_deref())?,
-        String::from_utf8_lossy(&robot.document).into_owned(),
-        main_rs(&name, base, controller, &generated.model),
-        "target\nmotion.svg\n".to_owned(),
+    let source = Source::of(arguments, &robot)?;
+    let mut files = vec![
+        ("Cargo.toml".to_owned(), cargo_toml(&name, arguments.library.as_deref())?),
+        ("src/main.rs".to_owned(), main_rs(&name, &source.keys, base, controller, &generated.model)),
+        (".gitignore".to_owned(), "target\nmotion*\n".to_owned()),
     ];
+    let drop = source.lines.as_ref().filter(|_| base == Base::Floating).and_then(|lines| drop::text(lines, &generated.model));
+    let mut run = vec![format!("cd {}", folder.display()), "cargo run --release".to_owned()];
+    if let Some(text) = drop {
+        files.push(("drop.toml".to_owned(), text));
+        run.push("articulated simulate drop.toml -o motion.html".to_owned());
+    }
+    files.extend(source.files);
     output::folder("FOLDER", &folder.join("src"))?;
-    for (file, text) in FILES.iter().zip(texts) {
+    for (file, text) in &files {
         output::write(&folder.join(file), text)?;
     }
-    let run = vec![format!("cd {}", folder.display()), "cargo run --release".to_owned()];
-    let text = || format!("{}: {}\n\nNext:\n  {}\n", folder.display(), FILES.join(", "), run.join("\n  "));
-    console::report(format, text, || crate::json(&Report { folder: folder.display().to_string(), files: FILES.to_vec(), run: run.clone() }))
+    let files: Vec<String> = files.into_iter().map(|(file, _)| file).collect();
+    let text = || format!("{}: {}\n\nNext:\n  {}\n", folder.display(), files.join(", "), run.join("\n  "));
+    console::report(format, text, || crate::json(&Report { folder: folder.display().to_string(), files: files.clone(), run: run.clone() }))
+}
+
+/// Where the crate has its robot from.
+struct Source {
+    /// Keys of the macro.
+    keys: String,
+    /// Files of the robot in the crate.
+    files: Vec<(String, String)>,
+    /// Lines of a scene with the robot; `None` for the robot of a scene.
+    lines: Option<String>,
+}
+
+impl Source {
+    /// A scene is used where it is. A robot's file is copied, unless it includes other files: then
+    /// it is used where it is, too.
+    fn of(arguments: &NewArguments, robot: &Robot) -> Result<Self, Failure> {
+        let given = &arguments.robot;
+        let edits = &given.edits;
+        let is_plain = given.gravity.is_none()
+            && !(given.allow_unphysical_inertia || given.first_of_duplicates || given.allow_unknown_version)
+            && given.leave_out.is_empty()
+            && given.snap_angles.is_none()
+            && given.max_code_size.is_none()
+            && given.arg.is_empty()
+            && given.package.is_empty()
+            && given.rename.is_empty()
+            && edits.append.is_empty()
+            && edits.payload.is_empty()
+            && edits.lock.is_empty()
+            && edits.coupling.is_empty();
+        if robot.scene.is_some() {
+            if !is_plain {
+                let expected = "these options in the scene, or --file with the robot's file";
+                return Err(Failure::usage(format!(
+                    "--file {}: found a scene beside options of a robot, expected {expected}",
+                    given.robot.display()
+                )));
+            }
+            if !given.robot.is_file() {
+                let expected = "the path of a scene or of a robot file, or the name of a bundled robot";
+                return Err(Failure::usage(format!("--file {}: found a bundled scene, expected {expected}", given.robot.display())));
+            }
+            let keys = format!("scene = {:?},", robot_toml::absolute(&given.robot));
+            return Ok(Self { keys, files: Vec::new(), lines: None });
+        }
+        let is_alone = robot.options.robot.included.files().next().is_none();
+        let (file, mut files) = match is_alone {
+            true => ("robot.urdf".to_owned(), vec![("robot.urdf".to_owned(), String::from_utf8_lossy(&robot.document).into_owned())]),
+            false => (robot_toml::absolute(&given.robot), Vec::new()),
+        };
+        let lines = robot_toml::text(&file, given, &robot.options);
+        if is_plain && is_alone {
+            let base = if robot.options.robot.base == Base::Floating { "\n        base = floating," } else { "" };
+            return Ok(Self { keys: format!("urdf = \"robot.urdf\",{base}"), files, lines: Some(lines) });
+        }
+        files.push(("robot.toml".to_owned(), lines.clone()));
+        Ok(Self { keys: "scene = \"robot.toml\",".to_owned(), files, lines: Some(lines) })
+    }
 }
 
 /// The crate's name: the last part of the folder.
@@ -158,8 +217,7 @@ debug = true
 }
 
 /// The program.
-fn main_rs(name: &str, base: Base, controller: Controller, model: &Model) -> String {
-    let key = if base == Base::Floating { "\n        base = floating," } else { "" };
+fn main_rs(name: &str, keys: &str, base: Base, controller: Controller, model: &Model) -> String {
     let first = if base == Base::Floating { 6 } else { 0 };
     let functions = functions(controller).join(", ");
     let law = match controller {
@@ -183,13 +241,13 @@ fn controller(target: &[f64; robot::NQ], q: &[f64; robot::NQ], v: &[f64; robot::
     TEMPLATE
         .replace("@NAME@", name)
         .replace("@DOC@", &doc.replace(char::is_control, " "))
-        .replace("@BASE@", key)
+        .replace("@KEYS@", keys)
         .replace("@FUNCTIONS@", &functions)
         .replace("@LAW@", law)
         .replace("@FIRST@", &first.to_string())
 }
 
-const TEMPLATE: &str = r##"//! The robot `robot.urdf` under a controller at 1 kHz. Run it with `cargo run --release`.
+const TEMPLATE: &str = r##"//! A robot under a controller at 1 kHz. Run it with `cargo run --release`.
 
 use std::fmt::Write;
 
@@ -199,7 +257,7 @@ use articulated::simulate::{Output, Settings, Simulation};
 articulated::robot! {
     /// @DOC@
     pub mod robot {
-        urdf = "robot.urdf",@BASE@
+        @KEYS@
         functions = [@FUNCTIONS@],
     }
 }
