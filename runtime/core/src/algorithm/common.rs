@@ -37,25 +37,50 @@ pub(super) fn positions<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes
         from_the_center(model, ws);
     }
     for i in model.outward() {
-        let body = &model.bodies[i];
-        let parent = if body.parent == BodyId::BASE {
-            CommonState { rotation: ws.common[i].base, ..ws.common[BodyId::BASE] }
-        } else {
-            ws.common[body.parent]
-        };
-        with_pose!(ws.bodies[i].pose, p => {
-            let state = &mut ws.common[i];
-            if axes == Axes::Base || !ws.centers.inside[i] {
-                state.rotation = turned(body, &p, &parent.rotation);
-            }
-            state.shift = rotate(&parent.rotation, p.origin(&body.placement));
-            state.position = parent.position + state.shift;
-            for (k, c) in ws.columns_of(i).enumerate() {
-                let axis = p.subspace(&ws.common[i].rotation, k);
-                ws.columns[c].axis = body.coordinates.rate_of_one().map_or(axis, |m| axis.times(m));
-            }
-        });
+        position(model, ws, axes, i);
     }
+}
+
+/// The same in axes of the base, of the bodies alone that are on the way from a frame to the base.
+pub(super) fn positions_of_frames<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]) {
+    let mut is_needed = core::mem::take(&mut ws.is_needed);
+    is_needed.fill(false);
+    for frame in model.frames.iter() {
+        let mut i = frame.body;
+        while i != BodyId::BASE && !is_needed[i] {
+            is_needed[i] = true;
+            i = model.bodies[i].parent;
+        }
+    }
+    for i in model.outward().filter(|i| is_needed[*i]) {
+        ws.bodies[i].pose = ws.pose(&model.bodies[i], i, q);
+        ws.common[i].base = Matrix3::identity();
+        position(model, ws, Axes::Base, i);
+    }
+    ws.is_needed = is_needed;
+}
+
+/// Rotation and origin of a body, and its columns of S, from those of its parent.
+#[inline(always)]
+fn position<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes: Axes, i: BodyId) {
+    let body = &model.bodies[i];
+    let parent = if body.parent == BodyId::BASE {
+        CommonState { rotation: ws.common[i].base, ..ws.common[BodyId::BASE] }
+    } else {
+        ws.common[body.parent]
+    };
+    with_pose!(ws.bodies[i].pose, p => {
+        let state = &mut ws.common[i];
+        if axes == Axes::Base || !ws.centers.inside[i] {
+            state.rotation = turned(body, &p, &parent.rotation);
+        }
+        state.shift = rotate(&parent.rotation, p.origin(&body.placement));
+        state.position = parent.position + state.shift;
+        for (k, c) in ws.columns_of(i).enumerate() {
+            let axis = p.subspace(&ws.common[i].rotation, k);
+            ws.columns[c].axis = body.coordinates.rate_of_one().map_or(axis, |m| axis.times(m));
+        }
+    });
 }
 
 /// Rotations of the bodies between the center of each tree and the base, and the base's as its

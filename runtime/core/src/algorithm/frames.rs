@@ -5,7 +5,7 @@
 //! point and turned. Lynch & Park 2017, §5.1; Featherstone 2008, §2.9 and §2.11.
 
 use super::Workspace;
-use super::common::{Axes, accelerations, on_the_way, positions, twists};
+use super::common::{Axes, accelerations, on_the_way, positions, positions_of_frames, twists};
 use super::workspace::Column;
 use crate::Scalar;
 use crate::index::BodyId;
@@ -129,13 +129,13 @@ fn frame_accelerations<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, refer
 }
 
 fn frame_jacobians<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, reference: Reference, q: &[S], out: &mut [S]) {
-    positions(model, ws, Axes::Base, q);
+    positions_of_frames(model, ws, q);
     for (frame, out) in model.frames.iter().zip(out.chunks_exact_mut((6 * model.nv).max(1))) {
         jacobian(model, ws, frame, reference, out);
     }
 }
 
-/// The Jacobian of one frame, `[6][nv]`; after [`positions`] in world axes.
+/// The Jacobian of one frame, `[6][nv]`; after [`positions`] in world axes, or [`positions_of_frames`].
 pub(super) fn jacobian<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, frame: &Frame<S>, reference: Reference, out: &mut [S]) {
     let place = Place::new(ws, frame);
     columns(model, ws, frame.body, out, |c, d| place.refer(c.axis.at(d + place.offset), reference));
@@ -187,7 +187,7 @@ fn columns<S: Scalar>(
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`]
 /// check and return an error.
 pub fn placement_derivatives<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
-    positions(model, ws, Axes::Base, q);
+    positions_of_frames(model, ws, q);
     let nv = model.nv;
     out.fill(S::zero());
     for (frame, out) in model.frames.iter().zip(out.chunks_exact_mut((12 * nv).max(1))) {

@@ -40,6 +40,8 @@ pub struct Workspace<S> {
     first: Vec<usize>,
     /// End of the columns of each body and all that it carries.
     end: ById<BodyId, usize>,
+    /// Room to mark bodies.
+    pub(super) is_needed: ById<BodyId, bool>,
     /// The bodies in the middle of their trees.
     pub(super) centers: Centers,
     /// The first bodies of all trees.
@@ -147,6 +149,7 @@ impl<S: Scalar> Workspace<S> {
         Self {
             shape: model.shape(),
             tree: model.bodies.iter().map(|b| (b.parent, b.link.is_some())).collect(),
+            is_needed: vec![false; n].into(),
             centers: Centers::of(model, middles(model)),
             firsts: Centers::of(model, firsts(model).collect()),
             bodies: vec![BodyState::zero(); n].into(),
