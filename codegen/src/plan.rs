@@ -29,8 +29,8 @@ pub(crate) struct Plan {
 /// A readable entry of the list of functions, with its index.
 pub(crate) type Entry = (usize, FunctionSpec);
 
-/// Checks the request before programs are built. `None`: there is an error. `members`: the functions
-/// that the request has through a group, with its name.
+/// Checks the request before programs are built. `None`: there is an error. `members`: the
+/// functions that the request has through a group, with its name.
 pub(crate) fn plan(request: &Request, members: &BTreeMap<String, String>, log: &mut Diagnostics) -> Option<Plan> {
     let options = &request.options;
     // Checks without the robot come first: they also run if the robot cannot be read.

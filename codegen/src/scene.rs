@@ -216,9 +216,10 @@ mod tests {
                 .map(|list| list.iter().filter(|u| u.tag == "collision").count())
         };
         assert_eq!((unused(""), unused(&shape)), ([1, 1], [0, 0]));
-        // All generated code gets the warnings about links that make no contact.
+        // All generated code gets the warnings about links that make no contact beside others.
         let mesh = ARM.replace("<sphere radius=\"1\"/>", "<mesh filename=\"fore.stl\"/>");
-        let scene = Scene::read("s.toml", &shape).unwrap();
+        let beside = shape.replace("{ '*'", &format!("{{ upper = {{ radius = 1, {law} }}, '*'"));
+        let scene = Scene::read("s.toml", &beside).unwrap();
         let prepared = prepare(scene.clone(), "arm.urdf", mesh.clone().into(), Base::Fixed, Vec::new()).unwrap();
         let mut request = Request::new("arm.urdf", mesh);
         fill(&mut request.options, &scene);

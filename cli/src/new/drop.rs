@@ -1,4 +1,5 @@
-//! `drop.toml` of a new crate with a floating base: the robot falls by a hand's breadth on its tips.
+//! `drop.toml` of a new crate with a floating base: the robot falls by a hand's breadth on its
+//! tips.
 
 use std::fmt::Write;
 

@@ -301,8 +301,8 @@ impl Series {
         Some(Piece { part: (t - begin) / (end - begin), span: end - begin, rows, slopes })
     }
 
-    /// The first of the times after `t` at which the numbers or their first two derivatives jump, s:
-    /// infinite after the last. A cubic spline has its ends alone.
+    /// The first of the times after `t` at which the numbers or their first two derivatives jump,
+    /// s: infinite after the last. A cubic spline has its ends alone.
     pub fn next(&self, t: f64) -> f64 {
         let next = self.after(t);
         let next = match self.between {

@@ -3,10 +3,11 @@
 //!
 //! Each point has a quadric, the sum over its triangles of the squared distance from their planes,
 //! weighted by area. Open edges have planes of their own, across their triangle, so that a rim
-//! keeps its place. An edge becomes its end or its middle, whichever has the least distance.
+//! keeps its place. An edge becomes its end, its middle or the point of least distance.
 //! Collapses that turn a triangle over, or that pinch the surface, are left out.
 //!
-//! M. Garland & P. S. Heckbert, "Surface simplification using quadric error metrics", SIGGRAPH 1997.
+//! M. Garland & P. S. Heckbert, "Surface simplification using quadric error metrics", SIGGRAPH
+//! 1997.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap, HashMap};
@@ -59,8 +60,14 @@ struct Surface {
     heap: BinaryHeap<Candidate>,
 }
 
-/// The mesh with at most this many triangles, or as few as it can have.
-pub(super) fn collapsed(mesh: &Geometry, most: usize) -> Geometry {
+impl Geometry {
+    /// With at most this many triangles, or as few as the surface can have without tearing.
+    pub(super) fn decimated(self, most: usize) -> Self {
+        if self.triangles.len() <= most { self } else { collapsed(&self, most) }
+    }
+}
+
+fn collapsed(mesh: &Geometry, most: usize) -> Geometry {
     let mut surface = Surface::of(mesh);
     let mut left = mesh.triangles.len();
     while left > most

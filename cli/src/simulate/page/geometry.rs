@@ -7,7 +7,6 @@ use articulated_core::description::CollisionShape;
 use nalgebra::Vector3;
 use serde::{Serialize, Serializer};
 
-use super::collapse::collapsed;
 use super::track::base64;
 
 /// Corners of a circle.
@@ -78,11 +77,6 @@ impl Geometry {
     pub(super) fn welded(&self) -> Self {
         // −0 is 0.
         self.clustered(|point| point.map(|x| (x + 0.0).to_bits()))
-    }
-
-    /// With at most this many triangles, or as few as the surface can have without tearing.
-    pub(super) fn decimated(self, most: usize) -> Self {
-        if self.triangles.len() <= most { self } else { collapsed(&self, most) }
     }
 
     /// With one point for each key, the mean of its points.

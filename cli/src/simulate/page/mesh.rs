@@ -38,8 +38,8 @@ impl<'a> Meshes<'a> {
         self.log.into_inner()
     }
 
-    /// The part of their triangles that meshes of these names may keep: all of them, unless they are
-    /// too many together.
+    /// The part of their triangles that meshes of these names may keep: all of them, unless they
+    /// are too many together.
     pub(super) fn share<'n>(&self, names: impl Iterator<Item = &'n str>) -> f64 {
         let distinct: BTreeSet<PathBuf> = names.filter_map(|name| self.find(name).ok()).collect();
         let all: usize = distinct.iter().filter_map(|path| Some(self.read(path).ok()?.triangles.len())).sum();
@@ -103,8 +103,8 @@ const EXPECTED: &str = "a mesh in STL, OBJ or COLLADA (.dae)";
 const BESIDE: &str = "one relative to the robot's file";
 const IN_PACKAGE: &str = "one in the folder of its package: --package NAME=FOLDER, or `packages` of the scene, says where that is";
 
-/// Folders of a package that contain this folder, or that are in a surrounding folder: by their name,
-/// or by the name in their `package.xml`.
+/// Folders of a package that contain this folder, or that are in a surrounding folder: by their
+/// name, or by the name in their `package.xml`.
 fn upward(folder: &Path, package: &str) -> Vec<PathBuf> {
     let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let is_declared = |around: &Path| Disk.read(&around.join("package.xml")).is_ok_and(|bytes| declares_package(&bytes, package));
