@@ -2,10 +2,12 @@
 //! functions.
 //!
 //! ```text
-//! CARGO_PROFILE_RELEASE_LTO=false cargo run --release --target-dir target/user -p articulated-models --example step_cost
+//! CARGO_PROFILE_RELEASE_LTO=false cargo run --release --target-dir target/user \
+//!     -p articulated-models --example step_cost
 //! ```
 //!
-//! The variable builds it as a crate of a user is built: this repository's profile says `lto = "off"`.
+//! The variable builds it as a crate of a user is built: the profile of this repository has
+//! `lto = "off"`.
 //!
 //! Each row times four loops in turn, over the same robot, control and steps: `by hand` calls the
 //! generated functions directly, `step` is [`Simulation::step`], `run` is [`Simulation::run_into`]

@@ -199,8 +199,8 @@ pub(crate) struct Keywords<'py> {
     pub(crate) out: Option<Bound<'py, PyAny>>,
 }
 
-/// The arguments and the keywords of any other call. Python itself reads keywords, so that its errors
-/// are those of a Python function.
+/// The arguments and the keywords of any other call. Python itself reads keywords, so that its
+/// errors are those of a Python function.
 fn read<'py>(
     py: Python<'py>,
     index: usize,

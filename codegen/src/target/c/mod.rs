@@ -207,8 +207,8 @@ impl Source<'_> {
         };
     }
 
-    /// The helpers that the functions call: mathematical functions of the module's own, vectors, and
-    /// the loop over columns.
+    /// The helpers that the functions call: mathematical functions of the module's own, vectors,
+    /// and the loop over columns.
     fn helpers(&self) -> String {
         let Module { functions, request, .. } = self.module;
         let (prefix, batch) = (&self.prefix, &request.options.batch);

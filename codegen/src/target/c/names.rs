@@ -48,7 +48,8 @@ fn words_after(mark: &str, text: &str) -> impl Iterator<Item = String> {
 /// Types that batches may have.
 const TYPES: [Real; 2] = [Real::F64, Real::F32];
 
-/// Functions of C's headers `math.h`, `stdlib.h`, `string.h` and `stdio.h` that are plain words, and keywords.
+/// Functions of C's headers `math.h`, `stdlib.h`, `string.h` and `stdio.h` that are plain words,
+/// and keywords.
 const OF_THE_LIBRARY: &str = "abs acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cos cosh div erf erfc exp exp2 expm1 fabs fdim \
     floor fma fmax fmin fmod frexp gamma hypot ilogb j0 j1 jn labs ldexp ldiv lgamma llabs lldiv llrint llround log log10 log1p log2 logb \
     lrint lround main modf nan nearbyint nextafter nexttoward pow remainder remquo rint round scalbln scalbn sin sinh sqrt tan tanh tgamma \

@@ -135,7 +135,8 @@ fn frame_jacobians<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, reference
     }
 }
 
-/// The Jacobian of one frame, `[6][nv]`; after [`positions`] in world axes, or [`positions_of_frames`].
+/// The Jacobian of one frame, `[6][nv]`; after [`positions`] in world axes, or
+/// [`positions_of_frames`].
 pub(super) fn jacobian<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, frame: &Frame<S>, reference: Reference, out: &mut [S]) {
     let place = Place::new(ws, frame);
     columns(model, ws, frame.body, out, |c, d| place.refer(c.axis.at(d + place.offset), reference));
