@@ -75,8 +75,7 @@ const SINKS: f64 = 1e-4;
 const POINTS: usize = 4;
 
 impl Resting {
-    /// For the mass of the whole robot, of which each point carries an equal part m:
-    /// k = m g/x, T = 2 √(m/k).
+    /// For the mass of the whole robot.
     fn of(reading: &Reading) -> Self {
         let links = &reading.description.links;
         let mass: f64 = links.iter().filter_map(|link| link.inertial).map(|inertial| inertial.mass).sum();
@@ -85,10 +84,17 @@ impl Resting {
         let gravity = if gravity > 0.0 && gravity.is_finite() { gravity } else { -GRAVITY[2] };
         let points: usize = links.iter().flat_map(|link| &link.collision).map(|piece| piece.contact_spheres().len()).sum();
         let points = points.clamp(1, POINTS);
-        let stiffness = mass * gravity / (points as f64 * SINKS);
+        let (stiffness, damping_time) = resting(mass, gravity, points, SINKS);
         let on = format!("{} kg at rest on {points} point{}", number(mass), if points == 1 { "" } else { "s" });
-        Self { stiffness, damping_time: 2.0 * (SINKS / gravity).sqrt(), on }
+        Self { stiffness, damping_time, on }
     }
+}
+
+/// Stiffness, N/m, and damping time, s, of each of some points on which a robot rests. It sinks in
+/// by a depth x, m, under its mass, kg, and gravity g, m/s². Each point carries an equal part m:
+/// k = m g/x, T = 2 √(m/k) = 2 √(x/g).
+pub(crate) fn resting(mass: f64, gravity: f64, points: usize, depth: f64) -> (f64, f64) {
+    (mass * gravity / (points as f64 * depth), 2.0 * (depth / gravity).sqrt())
 }
 
 /// A text of TOML.

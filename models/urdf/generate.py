@@ -20,7 +20,8 @@ X, Y, Z = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 NO_TURN = (0, 0, 0)
 
 
-# ---------------------------------------------------------------- solids: (mass, centre, (ixx, iyy, izz, ixy, ixz, iyz), shapes)
+# ---------------------------------------------------------------- solids:
+# (mass, centre, (ixx, iyy, izz, ixy, ixz, iyz), shapes)
 
 # A shape to draw is (tag and attributes, centre, roll pitch yaw).
 
@@ -453,7 +454,7 @@ def segment(name, top, along=(0, 0, -1), order="stl"):
     mass, length, centre, s, t, l = DE_LEVA[name]
     m, h = BODY_MASS * mass / 10000, length / 10000
     com = tuple(p + a * h * centre / 10000 for p, a in zip(top, along))
-    # Drawn: a capsule of the segment's length and density, 1000 kg/m^3 or so: pi r^2 h = m / 1000, with the ends inside.
+    # Drawn: a cylinder of the segment's length and of 1000 kg/m^3: pi r^2 h = m / 1000.
     middle = tuple(p + a * h / 2 for p, a in zip(top, along))
     r = root(m / 1000 / pi / h)
     shapes = [shape(f'cylinder radius="{num(r)}" length="{num(h)}"', middle, along)]

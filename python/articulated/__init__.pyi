@@ -115,76 +115,7 @@ def bundled(
     wrenches_in: _Reference = "body",
 ) -> Robot: ...
 
-class Robot:
-    @property
-    def name(self) -> str: ...
-    @property
-    def base(self) -> _Base: ...
-    @property
-    def nq(self) -> int: ...
-    @property
-    def nv(self) -> int: ...
-    @property
-    def joints(self) -> tuple[Joint, ...]: ...
-    @property
-    def frames(self) -> tuple[str, ...]: ...
-    @property
-    def links(self) -> tuple[str, ...]: ...
-    @property
-    def lower(self) -> NDArray[np.float64]: ...
-    @property
-    def upper(self) -> NDArray[np.float64]: ...
-    @property
-    def velocity_limit(self) -> NDArray[np.float64]: ...
-    @property
-    def effort_limit(self) -> NDArray[np.float64]: ...
-    @property
-    def gravity(self) -> NDArray[np.float64]: ...
-    @property
-    def moving_mass(self) -> float: ...
-    @property
-    def neutral(self) -> NDArray[np.float64]: ...
-    @property
-    def wrenches_in(self) -> _Reference: ...
-    @property
-    def unused(self) -> tuple[str, ...]: ...
-    def with_gravity(self, gravity: ArrayLike) -> Robot: ...
-    def with_frames(self, frames: Iterable[str]) -> Robot: ...
-    def with_wrenches_in(self, reference: _Reference) -> Robot: ...
-    def lock(self, joint: Union[str, Mapping[str, ArrayLike]], at: ArrayLike = 0.0) -> Robot: ...
-    def couple(self, joint: str, leaders: Mapping[str, float], offset: float = 0.0) -> Robot: ...
-    def payload(
-        self, link: str, mass: float, center_of_mass: ArrayLike = ..., inertia: Optional[ArrayLike] = None
-    ) -> Robot: ...
-    def append(
-        self,
-        other: Union[Robot, str, bytes, PathLike[str], PathLike[bytes]],
-        at: str,
-        prefix: str = "",
-        position: ArrayLike = ...,
-        rpy: ArrayLike = ...,
-    ) -> Robot: ...
-    def call(self, name: str, *arguments: ArrayLike, threads: Optional[int] = None, out: Optional[_Array] = None) -> Any: ...
-    def compile(self, functions: Iterable[str], *, flags: Iterable[str] = ..., batch: bool = False) -> CompiledRobot: ...
-    def wheel(
-        self,
-        folder: Union[str, PathLike[str]],
-        functions: Iterable[str] = ...,
-        *,
-        name: Optional[str] = None,
-        version: str = "0.1.0",
-        flags: Iterable[str] = ...,
-        batch: bool = False,
-    ) -> Path: ...
-    def placements_matrices(self, q: ArrayLike, *, threads: Optional[int] = None) -> NDArray[np.float64]: ...
-    def random_configuration(
-        self,
-        rng: Union[np.random.Generator, int, Sequence[int], None] = None,
-        size: Union[int, Sequence[int], None] = None,
-        *,
-        uniform: Optional[ArrayLike] = None,
-        threads: Optional[int] = None,
-    ) -> NDArray[np.float64]: ...
+class _Functions:
     def placements(self, q: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
         """placements of all frames in the world frame. [frames, 12] rotation row by row, then position in m, in the world frame."""
     def twists_body(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
@@ -296,119 +227,80 @@ class Robot:
     def difference_derivatives(self, q: ArrayLike, target: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
         """∂(target ⊖ q)/∂q, ∂(target ⊖ q)/∂target; both in the tangent space. [2, nv, nv] 1|m, rows the difference."""
 
-class CompiledRobot:
+class Robot(_Functions):
+    @property
+    def name(self) -> str: ...
+    @property
+    def base(self) -> _Base: ...
+    @property
+    def nq(self) -> int: ...
+    @property
+    def nv(self) -> int: ...
+    @property
+    def joints(self) -> tuple[Joint, ...]: ...
+    @property
+    def frames(self) -> tuple[str, ...]: ...
+    @property
+    def links(self) -> tuple[str, ...]: ...
+    @property
+    def lower(self) -> NDArray[np.float64]: ...
+    @property
+    def upper(self) -> NDArray[np.float64]: ...
+    @property
+    def velocity_limit(self) -> NDArray[np.float64]: ...
+    @property
+    def effort_limit(self) -> NDArray[np.float64]: ...
+    @property
+    def gravity(self) -> NDArray[np.float64]: ...
+    @property
+    def moving_mass(self) -> float: ...
+    @property
+    def neutral(self) -> NDArray[np.float64]: ...
+    @property
+    def wrenches_in(self) -> _Reference: ...
+    @property
+    def unused(self) -> tuple[str, ...]: ...
+    def with_gravity(self, gravity: ArrayLike) -> Robot: ...
+    def with_frames(self, frames: Iterable[str]) -> Robot: ...
+    def with_wrenches_in(self, reference: _Reference) -> Robot: ...
+    def lock(self, joint: Union[str, Mapping[str, ArrayLike]], at: ArrayLike = 0.0) -> Robot: ...
+    def couple(self, joint: str, leaders: Mapping[str, float], offset: float = 0.0) -> Robot: ...
+    def payload(
+        self, link: str, mass: float, center_of_mass: ArrayLike = ..., inertia: Optional[ArrayLike] = None
+    ) -> Robot: ...
+    def append(
+        self,
+        other: Union[Robot, str, bytes, PathLike[str], PathLike[bytes]],
+        at: str,
+        prefix: str = "",
+        position: ArrayLike = ...,
+        rpy: ArrayLike = ...,
+    ) -> Robot: ...
+    def call(self, name: str, *arguments: ArrayLike, threads: Optional[int] = None, out: Optional[_Array] = None) -> Any: ...
+    def compile(self, functions: Iterable[str], *, flags: Iterable[str] = ..., batch: bool = False) -> CompiledRobot: ...
+    def wheel(
+        self,
+        folder: Union[str, PathLike[str]],
+        functions: Iterable[str] = ...,
+        *,
+        name: Optional[str] = None,
+        version: str = "0.1.0",
+        flags: Iterable[str] = ...,
+        batch: bool = False,
+    ) -> Path: ...
+    def placements_matrices(self, q: ArrayLike, *, threads: Optional[int] = None) -> NDArray[np.float64]: ...
+    def random_configuration(
+        self,
+        rng: Union[np.random.Generator, int, Sequence[int], None] = None,
+        size: Union[int, Sequence[int], None] = None,
+        *,
+        uniform: Optional[ArrayLike] = None,
+        threads: Optional[int] = None,
+    ) -> NDArray[np.float64]: ...
+
+class CompiledRobot(_Functions):
     robot: Robot
     functions: tuple[str, ...]
     path: PathLike[str]
-    def placements(self, q: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """placements of all frames in the world frame. [frames, 12] rotation row by row, then position in m, in the world frame."""
-    def twists_body(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """twists of all frames, in their own axes about their own origins. [frames, 6] [ω; v], rad/s and m/s."""
-    def twists_world(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """twists of all frames, in world axes about the world frame's origin. [frames, 6] [ω; v], rad/s and m/s."""
-    def twists_world_aligned(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """twists of all frames, in world axes about their own origins. [frames, 6] [ω; ṗ], rad/s and m/s."""
-    def accelerations_body(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """time derivatives of twists_body: spatial accelerations in body axes, gravity not added. [frames, 6] rad/s² and m/s²."""
-    def accelerations_world(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """time derivatives of twists_world: spatial accelerations in world axes, gravity not added. [frames, 6] rad/s² and m/s²."""
-    def accelerations_world_aligned(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """time derivatives of twists_world_aligned: the true accelerations of the origins, gravity not added. [frames, 6] [ω̇; p̈], rad/s² and m/s²."""
-    def jacobians_body(self, q: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """Jacobians of all frames: twists_body = J v. [frames, 6, nv] rows [ω; v]."""
-    def jacobians_world(self, q: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """Jacobians of all frames: twists_world = J v. [frames, 6, nv] rows [ω; v]."""
-    def jacobians_world_aligned(self, q: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """Jacobians of all frames: twists_world_aligned = J v. [frames, 6, nv] rows [ω; ṗ]."""
-    def jacobian_rates_body(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """dJ/dt of jacobians_body. [frames, 6, nv] 1/s and m/s."""
-    def jacobian_rates_world(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """dJ/dt of jacobians_world. [frames, 6, nv] 1/s and m/s."""
-    def jacobian_rates_world_aligned(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """dJ/dt of jacobians_world_aligned. [frames, 6, nv] 1/s and m/s."""
-    def bias_accelerations_body(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """dJ/dt·v of jacobians_body: accelerations at a = 0. [frames, 6] rad/s² and m/s²."""
-    def bias_accelerations_world(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """dJ/dt·v of jacobians_world: accelerations at a = 0. [frames, 6] rad/s² and m/s²."""
-    def bias_accelerations_world_aligned(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """dJ/dt·v of jacobians_world_aligned: accelerations at a = 0. [frames, 6] [ω̇; p̈], rad/s² and m/s²."""
-    def placement_derivatives(self, q: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """∂(placements)/∂q in the tangent space. [frames, 12, nv] of rotation row by row, then position; 1 and m a unit step."""
-    def inverse_dynamics(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """τ = M(q)·a + h(q, v), gravity included. [nv] N·m|N."""
-    def inverse_dynamics_with_wrenches(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, wrenches: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """τ = M(q)·a + h(q, v) − Σ Jᵀw, with external wrenches w on the frames. [nv] N·m|N."""
-    def joint_wrenches(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """the wrench that each joint passes to its child link. [links, 6] [m; f], N·m and N, in axes of the link about its origin."""
-    def bias_forces(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """h(q, v) = τ at a = 0: Coriolis, centrifugal and gravity forces. [nv] N·m|N."""
-    def gravity_torque(self, q: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """g(q) = τ at v = a = 0: what holds the robot still. [nv] N·m|N."""
-    def static_torque(self, q: ArrayLike, wrenches: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """g(q) − Σ Jᵀw: what holds the robot still under external wrenches w on the frames. [nv] N·m|N."""
-    def mass_matrix(self, q: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """M(q). [nv, nv] kg·m²|kg·m|kg, symmetric."""
-    def coriolis_matrix(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """C(q, v) of the links alone, with C v + g = h without effects, and Ṁ − 2C skew: that of the Christoffel symbols. [nv, nv] N·m·s|N·s|N·s/m."""
-    def forward_dynamics(self, q: ArrayLike, v: ArrayLike, tau: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """a = M(q)⁻¹·(τ − h(q, v)). [nv] rad/s²|m/s²."""
-    def forward_dynamics_with_wrenches(self, q: ArrayLike, v: ArrayLike, tau: ArrayLike, wrenches: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """a = M(q)⁻¹·(τ + Σ Jᵀw − h(q, v)), with external wrenches w on the frames. [nv] rad/s²|m/s²."""
-    def mass_matrix_inverse(self, q: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """M(q)⁻¹. [nv, nv] 1/(kg·m²)|…, symmetric."""
-    def solve_mass_matrix(self, q: ArrayLike, tau: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """M(q)⁻¹·τ, without M⁻¹. [nv] rad/s²|m/s²."""
-    def kinetic_energy(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> Any:
-        """T = ½ Σ Vᵀ G V = ½ vᵀ M v of the moving links. [one number] J."""
-    def potential_energy(self, q: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> Any:
-        """U = −Σ m gᵀc of the moving links. [one number] J, zero at the world frame's origin."""
-    def center_of_mass(self, q: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """centre of mass of the moving links. [3] m, world axes."""
-    def center_of_mass_velocity(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """velocity of the centre of mass of the moving links. [3] m/s, world axes."""
-    def center_of_mass_acceleration(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """acceleration of the centre of mass of the moving links, gravity not added. [3] m/s², world axes."""
-    def center_of_mass_jacobian(self, q: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """J with center_of_mass_velocity = J v. [3, nv] m|1, world axes."""
-    def centroidal_momentum(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """momentum of the moving links about their centre of mass. [6] [k; l], N·m·s and N·s, world axes."""
-    def centroidal_momentum_matrix(self, q: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """A with centroidal_momentum = A v. [6, nv] world axes."""
-    def centroidal_momentum_rate(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """d/dt of centroidal_momentum = A a + Ȧ v. [6] [k̇; l̇], N·m and N, world axes."""
-    def inverse_dynamics_derivatives(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """first derivatives of inverse_dynamics; q in the tangent space. [3, nv, nv] ∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ."""
-    def inverse_dynamics_derivatives_with_wrenches(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, wrenches: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """first derivatives of inverse_dynamics_with_wrenches; q in the tangent space, wrenches constant in their reference. [3, nv, nv] ∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ."""
-    def forward_dynamics_derivatives(self, q: ArrayLike, v: ArrayLike, tau: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """first derivatives of forward_dynamics; q in the tangent space. [3, nv, nv] ∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a."""
-    def forward_dynamics_derivatives_with_wrenches(self, q: ArrayLike, v: ArrayLike, tau: ArrayLike, wrenches: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """first derivatives of forward_dynamics_with_wrenches; q in the tangent space, wrenches constant in their reference. [3, nv, nv] ∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a."""
-    def static_torque_derivative(self, q: ArrayLike, wrenches: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """∂(static_torque)/∂q in the tangent space, wrenches constant in their reference. [nv, nv] N·m|N per unit step, rows τ."""
-    def torque_regressor(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """Y with inverse_dynamics = Y π without effects, π the inertial parameters of the moving links in their axes. [nv, links, 10] per m, m c, I_xx I_xy I_xz I_yy I_yz I_zz about the link's origin."""
-    def kinetic_energy_regressor(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """y with kinetic_energy = yᵀπ without effects. [links, 10] per m, m c, I_xx I_xy I_xz I_yy I_yz I_zz about the link's origin."""
-    def potential_energy_regressor(self, q: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """y with potential_energy = yᵀπ without effects. [links, 10] per m, m c, I_xx I_xy I_xz I_yy I_yz I_zz about the link's origin."""
-    def operational_space_inertia(self, q: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """Λ = (J M⁻¹ Jᵀ)⁻¹ of each frame by itself, J that of jacobians_world_aligned. [frames, 6, 6] kg·m²|kg·m|kg, symmetric."""
-    def operational_space_inertia_inverse(self, q: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """Λ⁻¹ = J M⁻¹ Jᵀ of each frame by itself, J that of jacobians_world_aligned. [frames, 6, 6] 1/(kg·m²)|…, symmetric."""
-    def effect_forces(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """generalised forces of all effects but gravity, inertia and motors; zero without a scene. [nv] N·m|N."""
-    def dissipation(self, q: ArrayLike, v: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> Any:
-        """power of the effects that are not conservative: d(T + U)/dt = vᵀτ + this. [one number] W."""
-    def motor_torques(self, v: ArrayLike, tau: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """the torques that motors deliver when commanded tau; forward dynamics applies this itself. [nv] N·m|N."""
-    def integrate(self, q: ArrayLike, step: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """q ⊕ step: along the step for a unit of time, on the manifold. [nq] rad|m|unit quaternion."""
-    def difference(self, q: ArrayLike, target: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """target ⊖ q: the step with q ⊕ step = target. [nv] rad|m."""
-    def integrate_derivatives(self, step: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """∂(q ⊕ step)/∂q, ∂(q ⊕ step)/∂step, the same for every q; q in the tangent space. [2, nv, nv] 1|m, rows: the step where it ends."""
-    def difference_derivatives(self, q: ArrayLike, target: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
-        """∂(target ⊖ q)/∂q, ∂(target ⊖ q)/∂target; both in the tangent space. [2, nv, nv] 1|m, rows the difference."""
     def random_configuration(self, uniform: ArrayLike, *, threads: Optional[int] = None, out: Optional[_Array] = None) -> _Array:
         """a configuration at random within limits, ±π rad and ±1 m where there are none, rotations uniform. [nq] rad|m|unit quaternion."""

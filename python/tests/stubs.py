@@ -131,7 +131,8 @@ def bundled(
     wrenches_in: _Reference = "body",
 ) -> Robot: ...
 
-class Robot:
+@@FUNCTIONS@@
+class Robot(_Functions):
     @property
     def name(self) -> str: ...
     @property
@@ -215,10 +216,20 @@ def method(function):
     )
 
 
-def compiled(rows):
-    """The type of compiled robots: the functions that a call of `compile` lists are there."""
-    head = "\nclass CompiledRobot:\n    robot: Robot\n    functions: tuple[str, ...]\n    path: PathLike[str]\n"
-    return head + "".join(method(function) for function in rows)
+# A compiled robot has the functions that the call of `compile` lists.
+COMPILED = """
+class CompiledRobot(_Functions):
+    robot: Robot
+    functions: tuple[str, ...]
+    path: PathLike[str]
+"""
+
+
+def package(rows):
+    """The types of the package. Robots and compiled robots share their functions; random_configuration has two signatures."""
+    shared = "class _Functions:\n" + "".join(method(f) for f in rows if f.name != "random_configuration") + "\n"
+    own = "".join(method(f) for f in rows if f.name == "random_configuration")
+    return HEAD.replace("@@FUNCTIONS@@\n", shared) + COMPILED + own
 
 
 def derivatives(library, array, imported):
@@ -237,7 +248,7 @@ def derivatives(library, array, imported):
 def main():
     rows = articulated.functions()
     texts = {
-        "__init__.pyi": HEAD + "".join(method(f) for f in rows if f.name != "random_configuration") + compiled(rows),
+        "__init__.pyi": package(rows),
         "torch.pyi": derivatives("PyTorch", "Tensor", "from torch import Tensor"),
         "jax.pyi": derivatives("JAX", "ArrayLike", "from numpy.typing import ArrayLike"),
     }

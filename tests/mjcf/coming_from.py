@@ -127,7 +127,8 @@ def main():
             compare("`mj_solveM`", np.linalg.solve(T, found["mass_matrix_inverse"] @ np.linalg.solve(T.T, y)), solved[0])
             compare("`mj_forward`", found["forward_dynamics"], T @ data.qacc + drift)
             compare("`qfrc_bias`", T.T @ bias, data.qfrc_bias)
-            # J̇ u of theirs, and of ours at the same motion: J̇ v + J (a of the base at their acceleration 0).
+            # J̇ u of theirs, and of ours at the same motion: J̇ v + J a, with a of the base at their
+            # acceleration 0.
             compare("`mj_jacDot` times v", found["bias_accelerations_world_aligned"].reshape(-1, 6)[-len(jac):] + J @ drift, rate @ u)
             total = data.subtree_com[1]
             compare("`subtree_com`, `mj_jacSubtreeCom`", found["center_of_mass"], total)

@@ -101,7 +101,7 @@ pub(crate) fn run(arguments: &NewArguments, format: Format) -> Result<(), Failur
     console::report(format, text, || crate::json(&Report { folder: folder.display().to_string(), files: files.clone(), run: run.clone() }))
 }
 
-/// Where the crate has its robot from.
+/// Source of the crate's robot.
 struct Source {
     /// Keys of the macro.
     keys: String,
@@ -112,8 +112,8 @@ struct Source {
 }
 
 impl Source {
-    /// A scene is used where it is. A robot's file is copied, unless it includes other files: then
-    /// it is used where it is, too.
+    /// Copies a robot's file that includes no other file. Refers to scenes and to other robot files
+    /// by their absolute path.
     fn of(arguments: &NewArguments, robot: &Robot) -> Result<Self, Failure> {
         let given = &arguments.robot;
         let edits = &given.edits;

@@ -99,7 +99,7 @@ impl Geometry {
         let triangle = |t: &[u32; 3]| Some([corner(t[0])?, corner(t[1])?, corner(t[2])?]);
         let is_flat = |[a, b, c]: &[u32; 3]| a == b || b == c || c == a;
         let mut triangles: Vec<[u32; 3]> = self.triangles.iter().filter_map(triangle).filter(|t| !is_flat(t)).collect();
-        // Many triangles of a decimated mesh coincide.
+        // Triangles of merged points may coincide.
         let smallest_first = |t: &[u32; 3]| (0..3).map(|k| [t[k], t[(k + 1) % 3], t[(k + 2) % 3]]).min().unwrap_or(*t);
         triangles.iter_mut().for_each(|t| *t = smallest_first(t));
         triangles.sort_unstable();

@@ -364,7 +364,8 @@
   const ENERGY = ['#1b6ca8', '#d9822b', '#3f8f5b'];
   function series(kind, k) { return kind < 2 ? energies[KINDS * k + kind] : energies[KINDS * k] + energies[KINDS * k + 1]; }
 
-  // The strip under the picture: T, U and T + U, events, and where we are. Its numbers are beside the curves.
+  // The strip under the picture: T, U and T + U, events, and the present time. Its numbers are
+  // beside the curves.
   const MARGIN = 76;
   function strip(ctx, w, h, t) {
     let low = Infinity, high = -Infinity;

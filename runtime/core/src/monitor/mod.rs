@@ -5,10 +5,10 @@
 //! |---|---|---|
 //! | [`orthonormality`], [`placement_orthonormality`] | how far RᵀR is from 1: grows as the number of turns that were composed | that a placement is right |
 //! | [`quaternion_norms`] | how far the quaternions of q are from norm one, which functions take for granted | |
-//! | [`wrench_growth`] | how much larger the wrench of a joint is than that of any one body beyond: the reference for errors of a torque | |
+//! | [`wrench_growth`] | a joint's wrench over the largest one of a body beyond | |
 //! | [`adjoint_condition`] | the condition number of Ad, which depends on the units of length alone | anything about a configuration |
 //! | [`scaled_condition`] | how far accelerations move for a small change of the robot | how large their own error is |
-//! | [`pivot_cancellation`] | the remaining part of each joint's inertia after elimination: it flags a configuration | |
+//! | [`pivot_cancellation`] | the part of each joint's inertia that elimination leaves | |
 
 mod chain;
 mod matrix;
