@@ -10,7 +10,7 @@ use super::manifold::Manifold;
 use super::{Control, Counts, SimulateError};
 
 /// Rates below are zero after a step, rad/s or m/s. A damper brings a joint to rest through numbers
-/// whose squares are subnormal; processors take 50 to 250 times as long for those.
+/// whose squares are subnormal, which are slow on many processors.
 pub(crate) const AT_REST: f64 = 1e-140;
 
 /// A robot with all the room that an evaluation of its equations needs.

@@ -50,7 +50,7 @@ fn implicit_steps_of_any_length_decay_without_a_change_of_sign() {
 }
 
 /// A damper brings a joint to rest without subnormal numbers, or numbers whose squares are, in any
-/// method: they cost a processor 50 to 250 times as long.
+/// method: many processors are slow with them.
 #[test]
 fn a_damper_brings_a_joint_to_rest_without_subnormal_numbers() {
     let robot = with(EffectId::damping, vec![50.0]);
