@@ -226,7 +226,9 @@ mod tests {
         request.scene = Some(scene);
         for request in [prepared.request, request] {
             let warnings = crate::generate(&request).unwrap().warnings;
-            let told = warnings.iter().filter(|w| w.to_string().contains("link \"fore\": effects.contact.\"*\": found only meshes"));
+            let told = warnings
+                .iter()
+                .filter(|w| w.to_string().contains("link \"fore\": effects.contact.\"*\": found a mesh that makes no contact"));
             assert_eq!(told.count(), 1, "{warnings:?}");
         }
     }

@@ -43,11 +43,13 @@
 //! * A reader reports all findings to one [`Diagnostics`] and continues as far as it can.
 //! * Only [`Sources`] open files. [`read`] opens none.
 
+mod contact_points;
 mod cycles;
 mod files;
 mod format;
 mod leave_out;
 mod mass;
+mod mesh_file;
 pub mod mjcf;
 mod pose;
 mod reading;

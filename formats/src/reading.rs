@@ -8,6 +8,7 @@ use articulated_core::description::{Base, Description};
 use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Subject, Unused, quote};
 use articulated_core::suggest::nearest;
 
+use crate::contact_points;
 use crate::files::Recorder;
 use crate::world::{Document, World};
 use crate::{Format, Formats, Included, Input, LeaveOut, NoFiles, Sources, snap};
@@ -43,6 +44,8 @@ pub struct Options {
     pub arguments: BTreeMap<String, String>,
     /// Folders of packages, for files that the file includes from them.
     pub packages: BTreeMap<String, PathBuf>,
+    /// Reads the meshes of collision geometry, for contact on points of their hulls.
+    pub contact_meshes: bool,
 }
 
 impl Default for Options {
@@ -58,6 +61,7 @@ impl Default for Options {
             formats: Formats::default(),
             arguments: BTreeMap::new(),
             packages: BTreeMap::new(),
+            contact_meshes: false,
         }
     }
 }
@@ -115,7 +119,7 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Reading, Diagnostics> {
 /// built from the document and `options.file`; `root` is the folder that they are relative to.
 pub fn included(sources: &dyn Sources, root: &Path, bytes: &[u8], options: &Options) -> Included {
     let recorder = Recorder { sources, root, known: RefCell::default() };
-    if options.formats.of(&options.file, bytes).is_some_and(Format::includes_files) {
+    if options.contact_meshes || options.formats.of(&options.file, bytes).is_some_and(Format::includes_files) {
         // Errors of the document are reported when it is read.
         drop(read_with(&recorder, bytes, options));
     }
@@ -133,8 +137,12 @@ pub fn read_with(sources: &dyn Sources, bytes: &[u8], options: &Options) -> Resu
         log.error(Place::DOCUMENT, Code::Unsupported, quote(&options.file), "a robot; there are no formats to read it in");
         return Err(log);
     };
-    match format.read(&Input { bytes, options, sources }, &mut log) {
-        Some(Document { description, world }) if log.is_ok() => {
+    let input = Input { bytes, options, sources };
+    match format.read(&input, &mut log) {
+        Some(Document { mut description, world }) if log.is_ok() => {
+            if options.contact_meshes {
+                contact_points::read(&mut description, &input);
+            }
             let Diagnostics { warnings, notes, unused, .. } = log.finished();
             Ok(Reading { description, world, warnings, unused, snapped: notes })
         }

@@ -4,7 +4,9 @@ mod corpus;
 
 use std::f64::consts::FRAC_PI_2;
 
-use articulated_core::description::{Collision, CollisionShape, JointDynamics, JointId, JointKind, Limit, LinkId, Mimic, Origin, Visual};
+use articulated_core::description::{
+    Collision, CollisionShape, Hull, JointDynamics, JointId, JointKind, Limit, LinkId, Mimic, Origin, Visual,
+};
 use articulated_core::diagnostic::{Code, Subject};
 use articulated_formats::{Options, read};
 use corpus::{CRANE, accepted, crane, described, joint, options};
@@ -274,7 +276,7 @@ fn expressions_of_xacro_in_names_of_files_play_no_part() {
     let mut description = reading.description;
     // Only the names of meshes are kept.
     let named = std::mem::take(&mut description.links[LinkId(3)].collision);
-    let shape = CollisionShape::Mesh { file: "$(arg folder)/hook.stl".into(), scale: [1.0; 3] };
+    let shape = CollisionShape::Mesh { file: "$(arg folder)/hook.stl".into(), scale: [1.0; 3], hull: Hull::NotRead };
     assert_eq!(named, [Collision { origin: Origin::default(), shape }]);
     let seen = std::mem::take(&mut description.links[LinkId(3)].visual);
     assert!(matches!(&seen[..], [Visual { shape: CollisionShape::Mesh { file, .. }, .. }] if file.ends_with("${name}.stl")), "{seen:?}");

@@ -5,7 +5,7 @@ mod corpus;
 
 use std::f64::consts::FRAC_PI_2;
 
-use articulated_core::description::{Collision, CollisionShape, LinkId, Origin};
+use articulated_core::description::{Collision, CollisionShape, Hull, LinkId, Origin};
 use articulated_core::diagnostic::{Code, Subject};
 use articulated_formats::{Reading, read};
 use corpus::{CRANE, accepted, crane, described, options};
@@ -40,7 +40,7 @@ fn shapes_are_read_with_their_places_in_the_order_of_the_file() {
         (at([0.0; 3]), CollisionShape::Box { size: [1.0, 2.5, 0.0] }),
         (at([0.0, 0.0, -1.0]), CollisionShape::Cylinder { radius: 0.5, length: 2.0 }),
         (at([0.0; 3]), CollisionShape::Capsule { radius: 0.1, length: 3.0 }),
-        (at([0.0; 3]), CollisionShape::Mesh { file: "package://crane/hook.stl".into(), scale: [1.0, 2.0, 0.001] }),
+        (at([0.0; 3]), CollisionShape::Mesh { file: "package://crane/hook.stl".into(), scale: [1.0, 2.0, 0.001], hull: Hull::NotRead }),
         (at([0.0; 3]), CollisionShape::Capsule { radius: 0.2, length: 4.0 }),
     ];
     assert_eq!(of_hook(&reading), expected.map(|(origin, shape)| Collision { origin, shape }));
@@ -131,7 +131,7 @@ fn appearance_is_read_with_the_colours_of_materials_and_is_never_a_finding() {
     let [boxed, mesh, cone] = &reading.description.links[LinkId(3)].visual[..] else { panic!("three pieces") };
     assert_eq!((boxed.origin, &boxed.shape), (Origin::at([0.0, 0.0, 1.0]), &CollisionShape::Box { size: [1.0, 2.0, 3.0] }));
     assert_eq!((boxed.material.as_str(), boxed.color), ("steel", Some([0.5, 0.5, 1.0, 1.0])));
-    assert_eq!(mesh.shape, CollisionShape::Mesh { file: "hook.dae".into(), scale: [1.0; 3] });
+    assert_eq!(mesh.shape, CollisionShape::Mesh { file: "hook.dae".into(), scale: [1.0; 3], hull: Hull::NotRead });
     assert_eq!((mesh.material.as_str(), mesh.color), ("", Some([1.0, 0.0, 0.0, 0.5])));
     assert!(matches!(&cone.shape, CollisionShape::Unread { why } if why.contains("cone")), "{cone:?}");
     assert_eq!(cone.color, None);

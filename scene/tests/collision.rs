@@ -81,7 +81,7 @@ fn all_links_with_shapes_get_a_contact_for_each_of_their_points() {
     let [hand, palm] = ["hand", "palm"].map(|name| Subject::Link(name.into()));
     assert_eq!(told, [(Code::NoContact, &hand, Some(1)), (Code::PartOfContact, &palm, Some(1))]);
     assert!(
-        resolved.warnings[0].to_string().starts_with("s.toml:1: link \"hand\": effects.contact: found only meshes"),
+        resolved.warnings[0].to_string().starts_with("s.toml:1: link \"hand\": effects.contact: found a mesh that makes no contact"),
         "{:?}",
         resolved.warnings
     );
@@ -168,10 +168,11 @@ fn words_that_an_effect_does_not_have_are_refused() {
 
 #[test]
 fn a_link_that_is_named_and_has_no_shape_is_an_error() {
-    for (link, what) in [("hand", "with only meshes as collision geometry, which make no contact"), ("bare", "with no collision geometry")]
+    for (link, what) in
+        [("hand", "with no mesh that can be read: files of meshes are not read here"), ("bare", "with no collision geometry")]
     {
         let told = refused(&format!("[effects.contact.{link}]\nfrom = 'collision'\n{LAW}"));
-        let expected = "expected a box, cylinder, sphere or capsule in <collision>, or contact with `radius`";
+        let expected = "expected a mesh that can be read, a box, cylinder, sphere or capsule in <collision>, or contact with `radius`";
         assert_eq!(told, format!("s.toml:1: effects.contact.{link}: found link \"{link}\" {what}, {expected}"));
     }
     let told = refused("[effects.contact.shin]\nfrom = 'collision'\ndamping = 1\nfriction = 1");
@@ -205,7 +206,10 @@ fn contact_where_nothing_can_touch_is_an_error() {
         |shape: &str| format!("<robot name='r'><link name='b'>{BODY}</link>{}{}</robot>", leg("left", shape), leg("right foot", shape));
     let scene = |lines: &str| format!("[effects.contact]\n{lines}\n[effects.contact.'*']\nfrom = 'collision'\n{LAW}");
     let mesh = "<collision><geometry><mesh filename='a.stl'/></geometry></collision>";
-    for (shape, found) in [("", "without collision geometry"), (mesh, "with meshes alone as collision geometry, which make no contact")] {
+    for (shape, found) in [
+        ("", "without collision geometry"),
+        (mesh, "with meshes alone as collision geometry, and none that can be read: files of meshes are not read here"),
+    ] {
         let told = resolve_on(&robot(shape), &scene(""), Base::Floating).map(|_| ()).unwrap_err().to_string();
         let (before, lines) = told.split_once(" with the lines ").unwrap_or_else(|| panic!("{told}"));
         let expected = "expected <collision> of boxes, cylinders, spheres or capsules, or spheres of the scene, such as [effects.contact]";

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use articulated_core::description::CollisionShape;
+use articulated_core::description::{CollisionShape, Hull};
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
 use super::axes;
@@ -309,10 +309,13 @@ impl Geom<'_> {
             return CollisionShape::Unread { why: "a mesh without a file".to_owned() };
         };
         let scale = values.exactly::<3>("scale", &mut Diagnostics::default()).unwrap_or([1.0; 3]);
+        // A mesh that the file moves is drawn where it was.
+        let is_moved = values.has("refpos") || values.has("refquat");
+        let hull = if is_moved { Hull::Unreadable { why: format!("{file}: a mesh with `refpos` or `refquat`") } } else { Hull::NotRead };
         let [path, ..] = mesh::paths(mesh, file, settings);
         // From the folder of the document, as in other formats.
         let path = path.strip_prefix(&settings.folder).unwrap_or(&path).to_owned();
-        CollisionShape::Mesh { file: path.to_string_lossy().into_owned(), scale }
+        CollisionShape::Mesh { file: path.to_string_lossy().into_owned(), scale, hull }
     }
 }
 

@@ -109,7 +109,7 @@ impl Maker<'_> {
             CollisionShape::Sphere { radius } => self.tag("sphere", &[], vec![numbers("radius", &[*radius])]),
             CollisionShape::Cylinder { radius, length } => self.tag("cylinder", &[], round(*radius, *length)),
             CollisionShape::Capsule { radius, length } => self.tag("capsule", &[], round(*radius, *length)),
-            CollisionShape::Mesh { file, scale } => self.tag("mesh", &[], vec![self.text("uri", file), numbers("scale", scale)]),
+            CollisionShape::Mesh { file, scale, .. } => self.tag("mesh", &[], vec![self.text("uri", file), numbers("scale", scale)]),
             CollisionShape::Unread { why } => self.text("unread", why),
         };
         self.tag("geometry", &[], vec![inner])

@@ -1,6 +1,6 @@
 //! Shapes of links, for contact and drawings.
 
-use articulated_core::description::{Collision, CollisionShape, Visual};
+use articulated_core::description::{Collision, CollisionShape, Hull, Visual};
 use articulated_core::diagnostic::{At, Code, Diagnostics, Subject};
 use articulated_core::effect::unit;
 
@@ -158,7 +158,7 @@ fn shape(geometry: &Element, about: &Subject, log: &mut Diagnostics) -> Option<C
         "mesh" => {
             let (_, file) = values::name(tag, "uri", about, log)?;
             let scale = only(tag, "scale", about, log).and_then(|scale| exactly::<3>(scale, about, &mut log.apart()));
-            Some(CollisionShape::Mesh { file: file.to_owned(), scale: scale.unwrap_or([1.0; 3]) })
+            Some(CollisionShape::Mesh { file: file.to_owned(), scale: scale.unwrap_or([1.0; 3]), hull: Hull::NotRead })
         }
         _ if tag.file.converted => {
             tag.error((about, "geometry"), Code::Unsupported, values::text(tag), EXPECTED, log);

@@ -1,7 +1,7 @@
 //! The tag `<collision>`: the dynamics do not use it, so its errors are warnings here, and errors
 //! if a scene requests contact of it.
 
-use articulated_core::description::{Collision, CollisionShape};
+use articulated_core::description::{Collision, CollisionShape, Hull};
 use articulated_core::diagnostic::{Code, Diagnostics, quote};
 
 use super::robot::Context;
@@ -63,11 +63,15 @@ pub(crate) fn shape(geometry: &Tag<'_>, log: &mut Diagnostics) -> Option<Collisi
     unused::rest(&tag, &[], attributes, log);
     match name.as_str() {
         "box" => Some(CollisionShape::Box { size: sizes(&tag, "size", log)? }),
-        "mesh" => Some(CollisionShape::Mesh {
-            file: tag.required_attribute("filename", log)?.0.to_owned(),
-            // Contact does not use meshes: errors of their scale have no effect.
-            scale: number::silently(&tag, "scale").unwrap_or([1.0; 3]),
-        }),
+        "mesh" => {
+            let file = tag.required_attribute("filename", log)?.0.to_owned();
+            // A wrong scale is of concern to contact alone.
+            let scale = number::silently(&tag, "scale");
+            let is_wrong = scale.is_none() && tag.attribute("scale").is_some();
+            let hull =
+                if is_wrong { Hull::Unreadable { why: format!("{file}: a `scale` that is not three numbers") } } else { Hull::NotRead };
+            Some(CollisionShape::Mesh { file, scale: scale.unwrap_or([1.0; 3]), hull })
+        }
         "sphere" => sizes(&tag, "radius", log).map(|[radius]| CollisionShape::Sphere { radius }),
         _ => {
             let (radius, length) = (sizes(&tag, "radius", log), sizes(&tag, "length", log));

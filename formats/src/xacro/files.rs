@@ -19,7 +19,7 @@ const MOST_ABOVE: usize = 6;
 
 /// The packages that were found.
 #[derive(Default)]
-pub(super) struct Packages {
+pub(crate) struct Packages {
     found: BTreeMap<String, Option<PathBuf>>,
 }
 
@@ -63,7 +63,7 @@ fn split(text: &str) -> Option<(&str, &str, &str)> {
 
 impl Packages {
     /// The path of a file that a file in `beside` names; otherwise the missing package.
-    pub(super) fn path(&mut self, name: &str, beside: &Path, input: &Input<'_>) -> Result<PathBuf, String> {
+    pub(crate) fn path(&mut self, name: &str, beside: &Path, input: &Input<'_>) -> Result<PathBuf, String> {
         let name = name.strip_prefix("file://").unwrap_or(name);
         if let Some(("", inner, rest)) = split(name) {
             let rest = rest.trim_start_matches('/');

@@ -50,6 +50,7 @@ mod yaml;
 use articulated_core::diagnostic::Diagnostics;
 use roxmltree::{Document, Node};
 
+pub(crate) use files::Packages;
 pub use files::declares_package;
 pub(crate) use source::Expanded;
 

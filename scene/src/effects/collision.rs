@@ -1,12 +1,13 @@
 //! Contact of the collision geometry of a robot's file.
 
-use articulated_core::description::{Collision, CollisionShape, Link, LinkId, Origin};
+use articulated_core::description::{Collision, CollisionShape, Hull, Link, LinkId, Origin};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Subject};
 use articulated_core::effect::{Effect, EffectId};
 use articulated_formats::world::ContactMask;
 
 use super::resolve::{Resolving, fill, missing};
 use super::{EffectRequest, FRAME, Numbers, Selector};
+use crate::scene::Scene;
 use crate::table::Cursor;
 
 /// The word for it.
@@ -33,6 +34,13 @@ pub(super) fn refuse_own_points(spot: &Cursor<'_>, log: &mut Diagnostics) {
     }
 }
 
+impl Scene {
+    /// Whether contact uses collision geometry.
+    pub(crate) fn touches_with_geometry(&self) -> bool {
+        self.effects.iter().any(is_requested)
+    }
+}
+
 /// Whether the geometry is requested.
 pub(super) fn is_requested(one: &EffectRequest) -> bool {
     one.says.as_ref().is_some_and(|says| says.from_collision)
@@ -49,6 +57,15 @@ pub(super) fn is_taken(row: &Effect, says: &Numbers, rest: Option<&Numbers>) -> 
 fn toml_key(name: &str) -> String {
     let is_bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-'));
     if is_bare { name.to_owned() } else { format!("{name:?}") }
+}
+
+/// Why a mesh makes no contact.
+fn why_unread(shape: &CollisionShape) -> Option<&str> {
+    match shape {
+        CollisionShape::Mesh { hull: Hull::Unreadable { why }, .. } => Some(why),
+        CollisionShape::Mesh { hull: Hull::NotRead, .. } => Some("files of meshes are not read here"),
+        _ => None,
+    }
 }
 
 impl<'a> Resolving<'a> {
@@ -84,16 +101,28 @@ impl<'a> Resolving<'a> {
             return;
         }
         let spheres: Vec<_> = pieces.iter().flat_map(|piece| piece.contact_spheres()).collect();
-        let meshes = pieces.iter().filter(|piece| matches!(piece.shape, CollisionShape::Mesh { .. })).count();
-        match (&one.on, spheres.is_empty()) {
-            (Selector::Named(name), true) => {
-                let what = if meshes > 0 { "only meshes as collision geometry, which make no contact" } else { "no collision geometry" };
-                let expected = "a box, cylinder, sphere or capsule in <collision>, or contact with `radius`";
+        let unread = pieces.iter().find_map(|piece| why_unread(&piece.shape));
+        match (&one.on, unread) {
+            (Selector::Named(name), why) if spheres.is_empty() => {
+                let what = why.map_or_else(|| "no collision geometry".to_owned(), |why| format!("no mesh that can be read: {why}"));
+                let expected = "a mesh that can be read, a box, cylinder, sphere or capsule in <collision>, or contact with `radius`";
                 return log.error((one.place, &one.key), Code::Robot, format!("link {name:?} with {what}"), expected);
             }
-            (Selector::All, true) => self.warn_of_contact(one, link, Code::NoContact, "only meshes as collision geometry"),
-            (_, false) if meshes > 0 => self.warn_of_contact(one, link, Code::PartOfContact, "a mesh beside other collision geometry"),
+            (_, Some(why)) => {
+                let kind = if spheres.is_empty() { Code::NoContact } else { Code::PartOfContact };
+                let found = format!("a mesh that makes no contact: {why}");
+                self.warn_of_contact(one, link, kind, &found, "a mesh that can be read, or a box, cylinder, sphere or capsule");
+            }
             _ => {}
+        }
+        for shape in pieces.iter().map(|piece| &piece.shape) {
+            if let CollisionShape::Mesh { file, hull: Hull::Points { points, missing, vertices }, .. } = shape
+                && *missing > 0.0
+            {
+                let found = format!("{file}: a mesh of {vertices} vertices");
+                let expected = format!("{} points, which touch for it: it reaches up to {missing:.2e} m farther", points.len());
+                self.warn_of_contact(one, link, Code::PartOfContact, &found, &expected);
+            }
         }
         let radius = row.fields.iter().position(|field| field.name == RADIUS);
         for sphere in spheres {
@@ -110,8 +139,7 @@ impl<'a> Resolving<'a> {
         }
     }
 
-    fn warn_of_contact(&mut self, one: &EffectRequest, link: &Link, kind: Code, found: &str) {
-        let expected = "a box, cylinder, sphere or capsule: meshes are not read and make no contact";
+    fn warn_of_contact(&mut self, one: &EffectRequest, link: &Link, kind: Code, found: &str, expected: &str) {
         self.warn(one, &Subject::Link(link.name.clone()), kind, found, expected);
     }
 
@@ -124,8 +152,12 @@ impl<'a> Resolving<'a> {
         }
         let links = &self.robot.description.links;
         let found = match links.iter().any(|link| !link.collision.is_empty()) {
-            false => "a robot without collision geometry",
-            true if self.touches_by_masks() => "a robot with meshes alone as collision geometry, which make no contact",
+            false => "a robot without collision geometry".to_owned(),
+            true if self.touches_by_masks() => {
+                let mut shapes = links.iter().flat_map(|link| &link.collision).map(|piece| &piece.shape);
+                let why = shapes.find_map(why_unread).map_or_else(String::new, |why| format!(": {why}"));
+                format!("a robot with meshes alone as collision geometry, and none that can be read{why}")
+            }
             // The file lets its geometry pass through the planes.
             true => return,
         };
@@ -141,7 +173,7 @@ impl<'a> Resolving<'a> {
                 lines.join(" and ")
             ),
         };
-        log.error((one.place, &one.key), Code::NoContact, found.to_owned(), &expected);
+        log.error((one.place, &one.key), Code::NoContact, found, &expected);
     }
 
     /// Whether a link has geometry that no mask keeps from contact.

@@ -235,6 +235,7 @@ impl RobotRequest<'_> {
             formats: self.options.formats,
             arguments: self.options.arguments.clone(),
             packages: self.options.packages.clone(),
+            contact_meshes: self.options.contact_meshes,
         }
     }
 }

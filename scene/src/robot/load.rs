@@ -155,9 +155,10 @@ impl Loader<'_> {
     /// Reads the files that a robot's document includes; `name`: the document's, `robot`: the
     /// arguments and packages for reading it later.
     pub fn include(&mut self, name: &str, document: &[u8], robot: &RobotOptions) {
-        let RobotOptions { formats, arguments, packages, .. } = robot;
+        let RobotOptions { formats, arguments, packages, contact_meshes, .. } = robot;
         let (arguments, packages) = (arguments.clone(), packages.clone());
-        let options = Options { file: name.to_owned(), formats: *formats, arguments, packages, ..Options::default() };
+        let (formats, contact_meshes) = (*formats, *contact_meshes);
+        let options = Options { file: name.to_owned(), formats, arguments, packages, contact_meshes, ..Options::default() };
         let found = included(self.sources, &self.root, document, &options);
         self.files.extend(found.files().map(|(path, _)| self.root.join(path)));
         self.included.extend(found);
@@ -326,6 +327,7 @@ impl Scene {
             (name, seen_from(at, folder, &path))
         });
         options.packages.extend(packages);
+        options.contact_meshes |= self.touches_with_geometry();
     }
 
     /// A value with its place in the scene.

@@ -67,6 +67,8 @@ pub struct RobotOptions {
     pub arguments: BTreeMap<String, String>,
     /// Folders of packages that documents include files from, by their names.
     pub packages: BTreeMap<String, PathBuf>,
+    /// Reads meshes of collision geometry, for contact.
+    pub contact_meshes: bool,
 }
 
 /// Another robot, such as a gripper, to be fixed to a link or frame. Its links, joints, frames and
@@ -125,6 +127,7 @@ impl Default for RobotOptions {
             included: Included::default(),
             arguments: BTreeMap::new(),
             packages: BTreeMap::new(),
+            contact_meshes: false,
         }
     }
 }

@@ -187,7 +187,7 @@ impl Figure {
             return *index;
         }
         let geometry = match shape {
-            CollisionShape::Mesh { file, scale } => meshes.mesh(link, file, share).map(|mesh| mesh.scaled(*scale)),
+            CollisionShape::Mesh { file, scale, .. } => meshes.mesh(link, file, share).map(|mesh| mesh.scaled(*scale)),
             other => Geometry::of(other),
         };
         let index = geometry.map(|geometry| {

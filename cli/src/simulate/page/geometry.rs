@@ -172,7 +172,7 @@ mod tests {
             assert_eq!(all.len(), 3 * mesh.triangles.len(), "{kind:?}");
             assert!(all.iter().all(|[a, b]| all.contains(&[*b, *a])), "{kind:?}");
         }
-        let mesh = CollisionShape::Mesh { file: String::new(), scale: [1.0; 3] };
+        let mesh = CollisionShape::Mesh { file: String::new(), scale: [1.0; 3], hull: articulated_core::description::Hull::NotRead };
         assert!(Geometry::of(&mesh).is_none());
     }
 

@@ -56,17 +56,41 @@ pub enum CollisionShape {
         /// Of the cylinder alone, m.
         length: f64,
     },
-    /// A mesh in a file that is not read.
+    /// A mesh in a file.
     Mesh {
         /// The file's name, as it is written.
         file: String,
         /// Factors of the mesh's coordinates along x, y and z.
         scale: [f64; 3],
+        /// Its points that touch the ground, if the file was read for them.
+        hull: Hull,
     },
     /// A shape that could not be read.
     Unread {
         /// Why, in a sentence.
         why: String,
+    },
+}
+
+/// Points of the convex hull of a mesh, on which it touches the ground.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Hull {
+    /// Nobody asked for them.
+    #[default]
+    NotRead,
+    /// The file has none.
+    Unreadable {
+        /// Why, in a sentence.
+        why: String,
+    },
+    /// Some vertices of the mesh.
+    Points {
+        /// In the frame of the shape, with the mesh's scale, m.
+        points: Vec<[f64; 3]>,
+        /// The mesh reaches at most about this much farther than the points, m.
+        missing: f64,
+        /// Vertices in the file.
+        vertices: usize,
     },
 }
 
@@ -85,14 +109,15 @@ pub const RIM_POINTS: usize = 8;
 impl Collision {
     /// The spheres that touch a plane for the shape, in the link's frame: of a sphere itself, of a
     /// box its 8 corners, of a capsule the two balls at its ends, of a cylinder [`RIM_POINTS`]
-    /// points on each rim, the lower one first. Coincident corners, as those of a plate, are one.
-    /// None for a mesh or an unread shape.
+    /// points on each rim, the lower one first, of a mesh the points of its [`Hull`]. Coincident
+    /// corners, as those of a plate, are one. None for an unread shape.
     pub fn contact_spheres(&self) -> Vec<ContactSphere> {
         let (radius, points) = match &self.shape {
             CollisionShape::Sphere { radius } => (*radius, [[0.0; 3]].into()),
             CollisionShape::Box { size } => (0.0, corners(*size)),
             CollisionShape::Cylinder { radius, length } => (0.0, rims(*radius, *length)),
             CollisionShape::Capsule { radius, length } => (*radius, [-0.5, 0.5].map(|end| [0.0, 0.0, end * length]).into()),
+            CollisionShape::Mesh { hull: Hull::Points { points, .. }, .. } => (0.0, points.clone()),
             CollisionShape::Mesh { .. } | CollisionShape::Unread { .. } => (0.0, Vec::new()),
         };
         let (turn, at) = (self.origin.rotation.matrix::<f64>(), Vector3::from(self.origin.xyz));
@@ -176,7 +201,9 @@ mod tests {
         assert_eq!(count(CollisionShape::Cylinder { radius: 0.0, length: 1.0 }), 2);
         assert_eq!(count(CollisionShape::Cylinder { radius: 1.0, length: 0.0 }), 8);
         assert_eq!(count(CollisionShape::Box { size: [0.0; 3] }), 1);
-        assert_eq!(count(CollisionShape::Mesh { file: "foot.stl".into(), scale: [1.0; 3] }), 0);
+        let mesh = |hull| CollisionShape::Mesh { file: "foot.stl".into(), scale: [1.0; 3], hull };
+        assert_eq!(count(mesh(Hull::NotRead)), 0);
+        assert_eq!(count(mesh(Hull::Points { points: [[0.0; 3], [1.0; 3]].into(), missing: 0.0, vertices: 9 })), 2);
         assert_eq!(count(CollisionShape::Unread { why: "no size".into() }), 0);
     }
 

@@ -26,7 +26,7 @@ use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 
-pub use collision::{Collision, CollisionShape, ContactSphere, RIM_POINTS, Visual};
+pub use collision::{Collision, CollisionShape, ContactSphere, Hull, RIM_POINTS, Visual};
 pub use couple::Coupling;
 pub use edit::{Editor, Payload};
 pub use error::EditError;
