@@ -41,7 +41,7 @@ pub fn bounds(graph: &Graph, level: Precision, input: &dyn Fn(usize, usize) -> (
 /// ([`coordinate_box`]), sines and cosines within ±1, everything else within ±2: (midpoint, radius)
 /// of element `index`.
 pub fn in_box(model: &Model<f64>, argument: Argument, index: usize) -> (f64, f64) {
-    if !matches!(argument, Argument::Q | Argument::Target) {
+    if !argument.is_configuration() {
         return if argument == Argument::SinCos { (0.0, 1.0) } else { (0.0, 2.0) };
     }
     let joint = model.joints().iter().find(|j| (j.q.0..j.q.0 + j.q.1).contains(&index));

@@ -38,6 +38,7 @@ mod build;
 mod cache;
 mod capabilities;
 mod checked;
+mod differentiate;
 pub mod function_groups;
 pub mod graph;
 pub mod ledger;
@@ -84,7 +85,7 @@ pub use parameters::Parameter;
 pub use plan::{MOST_FREEDOMS, check_names, check_words, defined, massless, undefined};
 pub use request::{Options, Request};
 pub use size::MAX_CODE_SIZE;
-pub use spec::{Constant, FunctionSpec, FunctionTerm};
+pub use spec::{Constant, Derivative, FunctionSpec, FunctionTerm, Output, Transform};
 pub use sym::Sym;
 pub use target::{COptions, File, RustOptions, Target, identifier, is_keyword};
 

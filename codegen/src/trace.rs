@@ -7,11 +7,12 @@ use articulated_core::algorithm::{Argument, Variant};
 use articulated_core::model::Model;
 use num_traits::Zero;
 
+use crate::differentiate::{ImplicitRule, Steps};
 use crate::graph::{Graph, Op};
 use crate::limbs::{Constants, IsomorphicLimbs, pack};
 use crate::model_pass::{FoldedRotations, View, model_passes, no_joint_moves_origin};
 use crate::parameters::Parameter;
-use crate::pass::{copy, dce, rebuild};
+use crate::pass::{self, copy, dce, rebuild};
 use crate::program::Strategy;
 use crate::spec::{FunctionSpec, FunctionTerm};
 use crate::sym::{self, Sym};
@@ -20,19 +21,15 @@ use crate::sym::{self, Sym};
 /// after the last; the results of the parts one after the other.
 pub(crate) fn trace(spec: &FunctionSpec, strategies: &[Strategy], model: &Model<f64>, parameters: &[Parameter]) -> Graph {
     let arguments = spec.arguments();
-    let graph = sym::trace(|| {
+    let view = |part: &FunctionTerm, strategy: &Strategy| {
         let with_inputs = (!parameters.is_empty()).then(|| {
             let input = |k| Sym::input(arguments.len(), k);
             model.cast::<Sym>().changed(|parts| parameters.iter().for_each(|p| p.put(parts, input)))
         });
-        let run = |(part, strategy): (&FunctionTerm, &Strategy)| {
-            // If all inputs are numbers, passes run on numbers, which is faster.
-            let symbolic = with_inputs.as_ref().map_or_else(|| passed(part, strategy, model).cast(), |m| passed(part, strategy, m));
-            run(part, strategy, &symbolic, &arguments)
-        };
-        spec.parts.iter().zip(strategies).flat_map(run).collect()
-    });
-    sines_given(graph, &arguments)
+        // If all inputs are numbers, passes run on numbers, which is faster.
+        with_inputs.as_ref().map_or_else(|| passed(part, strategy, model).cast(), |m| passed(part, strategy, m))
+    };
+    sines_given(traced(spec, strategies, model, &arguments, view), &arguments)
 }
 
 /// Takes the sines and cosines of q from their own argument, if there is one.
@@ -59,14 +56,8 @@ fn sines_given(graph: Graph, arguments: &[Argument]) -> Graph {
 pub(crate) fn trace_in_lanes(spec: &FunctionSpec, strategies: &[Strategy], model: &Model<f64>, alike: &IsomorphicLimbs) -> Graph {
     let arguments = spec.arguments();
     let mut constants = Constants::new(arguments.len());
-    let graph = sym::trace(|| {
-        let mut run = |(part, strategy): (&FunctionTerm, &Strategy)| {
-            let symbolic = alike.symbolic(&passed(part, strategy, model), &mut constants);
-            run(part, strategy, &symbolic, &arguments)
-        };
-        spec.parts.iter().zip(strategies).flat_map(&mut run).collect()
-    });
-    let graph = sines_given(graph, &arguments);
+    let view = |part: &FunctionTerm, strategy: &Strategy| alike.symbolic(&passed(part, strategy, model), &mut constants);
+    let graph = sines_given(traced(spec, strategies, model, &arguments, view), &arguments);
     pack(&dce(&graph), &arguments, alike, &constants).requested_as(&graph)
 }
 
@@ -110,16 +101,64 @@ fn finished(part: &FunctionTerm, model: &Model<f64>) -> View<f64> {
     passed(part, &Strategy::plain(&part.function.ways[0], usize::MAX), model)
 }
 
-fn run(part: &FunctionTerm, strategy: &Strategy, view: &View<Sym>, arguments: &[Argument]) -> Vec<Sym> {
+/// The graph of a function, or of its derivative; `view`: the model of symbols for a term.
+fn traced(
+    spec: &FunctionSpec,
+    strategies: &[Strategy],
+    model: &Model<f64>,
+    arguments: &[Argument],
+    mut view: impl FnMut(&FunctionTerm, &Strategy) -> View<Sym>,
+) -> Graph {
+    let place = |argument: Argument| arguments.iter().position(|a| *a == argument);
+    let mut graph_of = |terms: &[FunctionTerm], place: &dyn Fn(Argument) -> Option<usize>, steps: Option<&Steps<'_>>| {
+        let mut one = |(term, strategy): (&FunctionTerm, &Strategy)| {
+            let strategy = strategy.for_function(term.function);
+            run(term, &strategy, &view(term, &strategy), place, steps)
+        };
+        sym::trace(|| terms.iter().zip(strategies).flat_map(&mut one).collect())
+    };
+    let Some(steps) = Steps::of(spec, arguments, model) else { return graph_of(&spec.parts, &place, None) };
+    if let Some(rule) = ImplicitRule::of(spec, &steps, model) {
+        let [forward, solution, inverse] = rule.terms();
+        let graphs = [
+            graph_of(&[forward], &place, None),
+            graph_of(&[solution], &|argument| rule.place_in_solution(argument), None),
+            graph_of(&[inverse], &|argument| rule.place_in_inverse(argument), Some(&steps)),
+        ];
+        let requested = graphs[0].clone();
+        return rule.derivative(graphs).requested_as(&requested);
+    }
+    let graph = graph_of(&spec.parts, &place, Some(&steps));
+    let derivative = steps.derivative(&graph).requested_as(&graph);
+    match steps.own_algorithm(&spec.parts[0]) {
+        Some(term) => cheaper(derivative, steps.blocks(graph_of(&[term], &place, None))),
+        None => derivative,
+    }
+}
+
+/// The graph that costs less after all passes.
+fn cheaper(one: Graph, other: Graph) -> Graph {
+    let [first, second] = [&one, &other].map(|graph| pass::cost(&pass::run_all_unchecked(graph.clone())));
+    if second < first { other } else { one }
+}
+
+fn run(
+    part: &FunctionTerm,
+    strategy: &Strategy,
+    view: &View<Sym>,
+    place: &dyn Fn(Argument) -> Option<usize>,
+    steps: Option<&Steps<'_>>,
+) -> Vec<Sym> {
     let shape = view.model.shape();
     let vector = |argument: &Argument| -> Vec<Sym> {
-        let place = arguments.iter().position(|a| a == argument);
+        let place = place(*argument);
         let symbol = |k: usize| match (part.constant(*argument), place) {
             (Some(constant), _) => Sym::from_f64(constant.at(k)),
             (None, Some(place)) => Sym::input(place, k),
             (None, None) => Sym::zero(),
         };
-        (0..argument.len(shape)).map(symbol).collect()
+        let given: Vec<Sym> = (0..argument.len(shape)).map(symbol).collect();
+        steps.map_or(given.clone(), |steps| steps.moved(*argument, given, &view.model))
     };
     let vectors: Vec<Vec<Sym>> = part.function.takes.iter().map(vector).collect();
     let slices: Vec<&[Sym]> = vectors.iter().map(Vec::as_slice).collect();

@@ -21,7 +21,7 @@ pub(crate) fn arguments(model: &Model<f64>, row: &Function<f64>, number: u64) ->
     };
     let one = |argument: &Argument| {
         let mut numbers: Vec<f64> = (0..argument.len(model.shape())).map(|_| unit()).collect();
-        if matches!(argument, Argument::Q | Argument::Target) {
+        if argument.is_configuration() {
             let uniform = numbers;
             numbers = vec![0.0; model.nq()];
             random_configuration(model, &mut Workspace::new(model), &uniform[..Argument::Uniform.len(model.shape())], &mut numbers);

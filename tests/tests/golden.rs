@@ -69,6 +69,44 @@ fn the_ledger_of_operations() {
     golden::check("ledger.txt", &out);
 }
 
+/// Operations of derivatives by transforms, beside those of their function, without lanes. A rise
+/// needs a reason, as above.
+#[test]
+fn the_ledger_of_derivatives() {
+    const OF: [&str; 8] = [
+        "vjp(inverse_dynamics)",
+        "jvp(inverse_dynamics)",
+        "hvp(inverse_dynamics)",
+        "vjp(forward_dynamics)",
+        "jvp(forward_dynamics)",
+        "gradient(kinetic_energy)",
+        "gradient(potential_energy)",
+        "jacobian(center_of_mass)",
+    ];
+    let function = |text: &str| text.split(['(', ')']).nth(1).expect("a function in brackets").to_owned();
+    let mut out = String::from(
+        "# Operations of derivatives. mul, add: multiplications and additions; ins: instructions, multiply-adds counted once; over: ins of\n\
+         # the derivative over those of its function, both without lanes. A rise needs a reason.\n",
+    );
+    let _ = writeln!(out, "{:<18}{:<28}{:>7}{:>7}{:>7}{:>7}", "robot", "derivative", "mul", "add", "ins", "over");
+    for name in ["ur5_like", "panda_like", "quadruped", "humanoid"] {
+        let mut request = request(name);
+        request.options.limbs = false;
+        let derivatives = OF.iter().enumerate().map(|(k, text)| format!("d{k} = {text}"));
+        let functions = OF.iter().enumerate().map(|(k, text)| format!("f{k} = {}", function(text)));
+        request.options.functions = derivatives.chain(functions).map(|text| text.into()).collect();
+        let generated = generate(&request).unwrap();
+        let (derivatives, functions) = generated.ledger.functions.split_at(OF.len());
+        for ((text, own), of) in OF.iter().zip(derivatives).zip(functions) {
+            let (c, of) = (own.emitted(), of.emitted());
+            let over = c.instructions() as f64 / of.instructions() as f64;
+            let (mul, add, ins) = (c.multiplications(), c.additions(), c.instructions());
+            let _ = writeln!(out, "{name:<18}{text:<28}{mul:>7}{add:>7}{ins:>7}{over:>7.2}");
+        }
+    }
+    golden::check("derivatives.txt", &out);
+}
+
 #[test]
 fn the_same_request_gives_the_same_bytes() {
     for name in ["panda_like", "gripper_arm", "quadruped"] {

@@ -15,7 +15,7 @@ use crate::lir::pass::rows::WIDTH;
 use crate::lir::pass::spill::{self, spill};
 use crate::lir::{Array, Bodies, Body, Stmt, Ty};
 use crate::program::{MultiRhsSolve, Program};
-use crate::spec::FunctionSpec;
+use crate::spec::{FunctionSpec, Output};
 use crate::{Arithmetic, Precision};
 
 /// An argument of a function.
@@ -53,7 +53,9 @@ pub(crate) struct Function<'a> {
     pub(crate) arguments: Vec<Argument>,
     /// How long each dimension is.
     pub(crate) shape: Shape,
-    /// The arrays of the result, one for each part.
+    /// The results, with their names.
+    pub(crate) outputs: Vec<Output>,
+    /// Their arrays.
     pub(crate) results: Vec<Array>,
     pub(crate) ending: Ending,
     pub(crate) body: Body,
@@ -121,6 +123,7 @@ impl<'a> Function<'a> {
             entry,
             arguments,
             shape,
+            outputs: spec.outputs(),
             results: results(spec, shape),
             ending,
             body: plan.body(ending, plan.is_outlined, false),
@@ -196,7 +199,7 @@ fn results(spec: &FunctionSpec, shape: Shape) -> Vec<Array> {
         start += array.numbers();
         array
     };
-    spec.parts.iter().map(|part| array(part.function.gives.iter().map(|d| d.len(shape)).collect())).collect()
+    spec.outputs().iter().map(|output| array(output.dims.iter().map(|d| d.len(shape)).collect())).collect()
 }
 
 /// The same, each part as one array of numbers.

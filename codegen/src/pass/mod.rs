@@ -1,6 +1,7 @@
 //! Graph passes: `Graph → Graph`, keeping the algebra. One file each, in the order of
 //! [`GRAPH_PASSES`].
 
+mod adjoint;
 mod chains;
 mod cse_partial_sums;
 mod dce;
@@ -9,13 +10,18 @@ mod fma_contract;
 mod from_the_last;
 mod sink_into_reduction;
 mod sums;
+mod tangent;
 
+pub use adjoint::adjoint;
+pub(crate) use adjoint::gradients;
 pub use cse_partial_sums::cse_partial_sums;
 pub use dce::dce;
 pub use factor::factor;
 pub use fma_contract::fma_contract;
 pub use from_the_last::from_the_last;
 pub use sink_into_reduction::sink_into_reduction;
+pub use tangent::tangent;
+pub(crate) use tangent::tangents;
 
 use articulated_core::running::Running;
 

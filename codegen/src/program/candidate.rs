@@ -6,14 +6,14 @@ use articulated_core::algorithm::Variant;
 use articulated_core::model::Model;
 
 use super::forms::Form;
-use super::strategy::{Strategy, Transform};
+use super::strategy::{self, Strategy};
 use crate::graph::{Counts, Graph};
 use crate::ledger::{Entry, depth};
 use crate::limbs::IsomorphicLimbs;
 use crate::model_pass::{FoldedRotations, model_passes};
 use crate::parameters::Parameter;
 use crate::pass;
-use crate::spec::{FunctionSpec, FunctionTerm};
+use crate::spec::{Derivative, FunctionSpec, FunctionTerm, Transform};
 use crate::sym::Sym;
 use crate::trace::{foldable_rotations, trace, trace_in_lanes, units, ways};
 
@@ -32,12 +32,12 @@ impl Candidate<'_> {
     /// ledger entry.
     pub(super) fn build(&self, spec: &FunctionSpec, unsolved: Option<&'static Variant<Sym>>) -> (Graph, Entry) {
         let all = model_passes::<Sym>().len();
-        let choose = |part| unsolved.map_or_else(|| cheapest(part, self, all), |way| Strategy::plain(way, all));
+        let choose = |part| unsolved.map_or_else(|| cheapest(part, tried_transform(spec), self, all), |way| Strategy::plain(way, all));
         let strategies = by_axes(spec, spec.parts.iter().map(choose).collect(), self);
         let strategies = in_the_best_unit(spec, strategies, self);
         let (traced, mut stages) = self.traced(spec, &strategies, all);
         let mut graph = pass::run_all(traced, |name, graph| stages.push((name, graph.counts())));
-        if spec.parts.iter().all(|part| Form::FromTheLast.fits(part.function.id)) {
+        if spec.transform.is_none() && spec.parts.iter().all(|part| Form::FromTheLast.fits(part.function.id)) {
             graph = pass::run("from the last", pass::from_the_last, &graph);
         }
         let ways = strategies.iter().flat_map(Strategy::names).collect();
@@ -59,7 +59,7 @@ impl Candidate<'_> {
             }
             stages.push((if passes == 0 { "trace" } else { model_passes::<Sym>()[passes - 1].0 }, graph.counts()));
         }
-        for (transform, name, _) in Transform::ALL {
+        for (transform, name, _) in strategy::Transform::ALL {
             if strategies.iter().any(|c| c.adds(transform)) {
                 graph = self.trace(spec, &strategies.iter().map(|c| c.up_to(transform)).collect::<Vec<_>>());
                 stages.push((name, graph.counts()));
@@ -97,9 +97,15 @@ const FOLDED_TO: u32 = 2500;
 /// traces the function again.
 const FOLDED_BODIES: usize = 64;
 
+/// The derivative that strategies are compared with: that of the function, unless it is many times
+/// as long as the function, which then is compared by itself.
+fn tried_transform(spec: &FunctionSpec) -> Option<Transform> {
+    spec.transform.clone().filter(|transform| !matches!(transform.kind, Derivative::Hvp | Derivative::Jacobian))
+}
+
 /// The strategy that costs least after the graph passes. With parameters, model passes may cost
 /// more than they save; then they are left out.
-pub(super) fn cheapest(part: &FunctionTerm, candidate: &Candidate, all: usize) -> Strategy {
+fn cheapest(part: &FunctionTerm, transform: Option<Transform>, candidate: &Candidate, all: usize) -> Strategy {
     let few = if candidate.parameters.is_empty() { all..=all } else { 0..=all };
     let ways = ways(part, candidate.model);
     let tried = candidate.parameters.is_empty() && candidate.model.bodies().len() <= FOLDED_BODIES;
@@ -113,7 +119,7 @@ pub(super) fn cheapest(part: &FunctionTerm, candidate: &Candidate, all: usize) -
     if let [(one, _)] = candidates.as_slice() {
         return *one;
     }
-    let alone = FunctionSpec { name: String::new(), parts: vec![part.clone()] };
+    let alone = FunctionSpec { name: String::new(), parts: vec![part.clone()], transform };
     let mut best: Option<(Strategy, u32)> = None;
     for (strategy, least) in candidates {
         // A way whose lower bound exceeds another's cost is not tried: the factorisation of a long

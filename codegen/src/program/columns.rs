@@ -28,7 +28,7 @@ pub(super) fn columns(spec: &FunctionSpec, model: &Model<f64>, can: Capabilities
 
 /// Whether the solution of M X = B is emitted as a loop.
 pub(crate) fn has_columns(spec: &FunctionSpec, model: &Model<f64>, can: Capabilities) -> bool {
-    let [part] = spec.parts.as_slice() else { return false };
+    let ([part], None) = (spec.parts.as_slice(), &spec.transform) else { return false };
     let fits = COLUMNS.contains(&model.nv()) && can.loops;
     fits && part.function.unsolved.as_ref().is_some_and(|unsolved| applies(unsolved, model))
 }

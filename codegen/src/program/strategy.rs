@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use articulated_core::algorithm::Variant;
+use articulated_core::algorithm::{Function, Variant};
 
 use crate::model_pass::FoldedRotations;
 use crate::sym::Sym;
@@ -29,6 +29,15 @@ impl Strategy {
     /// A way after this number of model passes, without further transforms.
     pub(crate) fn plain(way: &'static Variant<Sym>, passes: usize) -> Self {
         Self { way, passes, folded: None, unit: None, shifted: false, axes: false }
+    }
+
+    /// The strategy for a term that serves another function: its way of this name, or else its first.
+    /// A part before a loop is no way of the table, and serves no other.
+    pub(crate) fn for_function(&self, function: &'static Function<Sym>) -> Self {
+        let serves = self.way.name != "columns in a loop";
+        let named = function.ways.iter().find(|way| way.name == self.way.name);
+        let way = if serves { named.unwrap_or(&function.ways[0]) } else { self.way };
+        Self { way, ..*self }
     }
 
     /// Whether the strategy includes the transform.

@@ -43,7 +43,7 @@ impl Constant {
         if numbers.len() != expected {
             return Err(format!("constant {name}: found {} numbers, expected {expected}", numbers.len()));
         }
-        let configuration = matches!(argument, Argument::Q | Argument::Target);
+        let configuration = argument.is_configuration();
         let zeros = !matches!(function, FunctionId::integrate | FunctionId::difference | FunctionId::difference_derivatives);
         let or = if zeros { ", or 0, which does not turn" } else { "" };
         let told =

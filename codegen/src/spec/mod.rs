@@ -8,12 +8,14 @@
 //! ```
 
 mod constant;
+mod transform;
 
 use articulated_core::algorithm::{Argument, Dim, Function, functions};
 use articulated_core::diagnostic::{Code, Diagnostic};
 use articulated_core::model::Model;
 
 pub use constant::Constant;
+pub use transform::{Derivative, Transform};
 
 use constant::{constant, entries};
 
@@ -27,6 +29,19 @@ pub struct FunctionSpec {
     /// The functions of the table that it consists of; a function of several gives a struct with a
     /// field for each.
     pub parts: Vec<FunctionTerm>,
+    /// The derivative of the only part that it is, if it is one.
+    pub transform: Option<Transform>,
+}
+
+/// A result of a function.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Output {
+    /// Its name, if there are several.
+    pub name: &'static str,
+    /// Its dimensions; empty for a single number.
+    pub dims: Vec<Dim>,
+    /// Its units, and the meaning of the dimensions.
+    pub unit: String,
 }
 
 /// A function of the table, with arguments that are constants.
@@ -48,7 +63,7 @@ pub(crate) fn wrong_entry(entry: &str, reason: &str) -> Diagnostic {
 impl FunctionSpec {
     /// The function of the table by itself.
     pub fn plain(function: &'static Function<Sym>) -> Self {
-        Self { name: function.name.into(), parts: vec![FunctionTerm { function, constants: Vec::new(), sines: false }] }
+        Self { name: function.name.into(), parts: vec![FunctionTerm { function, constants: Vec::new(), sines: false }], transform: None }
     }
 
     /// Reads one entry of a list of functions.
@@ -59,10 +74,17 @@ impl FunctionSpec {
             None => (None, text),
         };
         let mut parts = Vec::new();
-        for part in all_outside(rest, '+') {
+        let derivative = transform::split(rest);
+        for part in all_outside(derivative.map_or(rest, |(_, function, _)| function), '+') {
             parts.push(FunctionTerm::parse(part.trim(), &wrong)?);
         }
+        let transform = match (derivative, parts.as_slice()) {
+            (None, _) => None,
+            (Some((kind, _, list)), [part]) => Some(transform::parse(kind, part, list, &wrong)?),
+            (Some((kind, ..)), _) => return Err(wrong(format!("{} takes one function, and not a sum", kind.name()))),
+        };
         let name = match (name, parts.as_slice()) {
+            (None, _) if transform.is_some() => return Err(wrong("a derivative needs a name: write name = vjp(function)".into())),
             (Some(name), _) => name,
             (None, [one]) => one.function.name,
             (None, _) => return Err(wrong("several functions in one need a name: write name = first + second".into())),
@@ -71,7 +93,7 @@ impl FunctionSpec {
         if let Some(k) = twice {
             return Err(wrong(format!("`{}` is in it twice", parts[k].function.name)));
         }
-        let wanted = Self { name: name.into(), parts };
+        let wanted = Self { name: name.into(), parts, transform };
         match wanted.no_name() {
             Some(reason) => Err(wrong(format!("`{name}` {reason}"))),
             None => Ok(wanted),
@@ -79,8 +101,35 @@ impl FunctionSpec {
     }
 
     /// Its arguments: those that a part takes and that are not bound to constants there, in the
-    /// order of the table; sines last.
+    /// order of the table, then sines; last what a derivative takes beside them.
     pub fn arguments(&self) -> Vec<Argument> {
+        let mut arguments = self.arguments_of_parts();
+        arguments.extend(self.transform.iter().flat_map(|transform| transform.arguments(&self.parts[0])));
+        arguments
+    }
+
+    /// The results, in order.
+    pub fn outputs(&self) -> Vec<Output> {
+        let of_part = |part: &FunctionTerm| {
+            let function = part.function;
+            Output { name: function.name, dims: function.gives.to_vec(), unit: function.unit.to_owned() }
+        };
+        match &self.transform {
+            None => self.parts.iter().map(of_part).collect(),
+            Some(transform) => transform.outputs(&self.parts[0]),
+        }
+    }
+
+    /// What each part computes, in a sentence.
+    pub(crate) fn summaries(&self) -> Vec<String> {
+        match &self.transform {
+            None => self.parts.iter().map(|part| part.function.summary.to_owned()).collect(),
+            Some(transform) => vec![transform.summary(&self.parts[0])],
+        }
+    }
+
+    /// The arguments without those of a derivative.
+    pub(crate) fn arguments_of_parts(&self) -> Vec<Argument> {
         let taken = |a: &Argument| self.parts.iter().any(|p| p.function.takes.contains(a) && p.constant(*a).is_none());
         let sines = self.parts.iter().any(|p| p.sines).then_some(Argument::SinCos);
         Argument::ALL.into_iter().filter(taken).chain(sines).collect()
@@ -93,11 +142,13 @@ impl FunctionSpec {
         if !plain || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
             return Some("is not a valid name for a function: expected lower case letters, digits and _");
         }
-        let is_another = |f: &Function<Sym>| f.name == name && !self.parts.iter().any(|part| part.function.id == f.id);
+        let is_part = |f: &Function<Sym>| self.transform.is_none() && self.parts.iter().any(|part| part.function.id == f.id);
+        let is_another = |f: &Function<Sym>| f.name == name && !is_part(f);
         if functions::<Sym>().iter().any(is_another) {
             return Some("is what another function is called: expected a name of its own");
         }
-        let results = self.parts.len() > 1 && self.parts.iter().any(|p| p.function.name == name);
+        let outputs = self.outputs();
+        let results = outputs.len() > 1 && outputs.iter().any(|output| output.name == name);
         let argument = results || self.arguments().iter().any(|a| a.name() == name);
         argument.then_some("is what one of its arguments or results is called: expected another name")
     }
@@ -106,20 +157,22 @@ impl FunctionSpec {
     /// capitals. `None` for one part.
     pub(crate) fn group(&self) -> Option<String> {
         let word = |w: &str| w[..1].to_uppercase() + &w[1..];
-        (self.parts.len() > 1).then(|| self.name.split('_').filter(|w| !w.is_empty()).map(word).collect())
+        (self.outputs().len() > 1).then(|| self.name.split('_').filter(|w| !w.is_empty()).map(word).collect())
     }
 
     /// The function of the table, if it is one unchanged.
     pub fn as_function(&self) -> Option<&'static Function<Sym>> {
         match self.parts.as_slice() {
-            [part] if part.constants.is_empty() && !part.sines && part.function.name == self.name => Some(part.function),
+            [part] if self.transform.is_none() && part.constants.is_empty() && !part.sines && part.function.name == self.name => {
+                Some(part.function)
+            }
             _ => None,
         }
     }
 
     /// The same function with equal but cheaper terms: arguments fixed at zero then cost nothing.
     pub(crate) fn reduced(&self) -> Self {
-        Self { name: self.name.clone(), parts: self.parts.iter().map(FunctionTerm::reduced).collect() }
+        Self { name: self.name.clone(), parts: self.parts.iter().map(FunctionTerm::reduced).collect(), transform: self.transform.clone() }
     }
 
     /// Checks constants for a robot: their number, and unit quaternions.

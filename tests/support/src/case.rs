@@ -79,7 +79,7 @@ impl State {
             Argument::Step => &self.step,
             Argument::Target => &self.target,
             Argument::Uniform => &self.uniform,
-            Argument::SinCos => &[],
+            _ => &[],
         }
     }
 

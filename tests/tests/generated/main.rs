@@ -5,6 +5,7 @@ mod balls;
 mod batches;
 mod c;
 mod choices;
+mod derivatives;
 mod effects;
 mod equals_generic;
 mod interpreted;

@@ -100,8 +100,8 @@ impl Source<'_> {
             all.push(Array { name: a.name, length, numbers, is_parameters, is_result: false });
         }
         let results = self.results(function);
-        for ((name, part), array) in results.into_iter().zip(&function.spec.parts).zip(&function.results) {
-            let length = self.lengths(part.function.gives);
+        for ((name, output), array) in results.into_iter().zip(&function.outputs).zip(&function.results) {
+            let length = self.lengths(&output.dims);
             all.push(Array { name, length, numbers: array.numbers(), is_parameters: false, is_result: true });
         }
         all

@@ -56,11 +56,11 @@ pub(super) fn write(out: &mut String, prefix: &str, functions: &[Function]) {
         let inputs = inputs(function);
         let zeros = zeros(function);
         let (mut start, mut results) = (0, Vec::new());
-        for (array, part) in function.results.iter().zip(&function.spec.parts) {
-            let dims: Vec<usize> = part.function.gives.iter().map(|d| d.len(function.shape)).collect();
+        for (array, output) in function.results.iter().zip(&function.outputs) {
+            let dims: Vec<usize> = output.dims.iter().map(|d| d.len(function.shape)).collect();
             let columns = if dims.len() > 1 { dims[dims.len() - 1] } else { 1 };
             let rows = if dims.len() > 1 { dims[..dims.len() - 1].iter().product() } else { array.numbers() };
-            let name = if function.results.len() == 1 { "out" } else { part.function.name };
+            let name = if function.results.len() == 1 { "out" } else { output.name };
             results.push((name.to_owned(), Matrix::of(&zeros, start, rows, columns)));
             start += array.numbers();
         }

@@ -242,8 +242,8 @@ impl Source<'_> {
 
     fn document(&self, out: &mut String, function: &Function) {
         let _ = writeln!(out, "/**");
-        for part in &function.spec.parts {
-            let _ = writeln!(out, " * {}.", part.function.summary);
+        for summary in function.spec.summaries() {
+            let _ = writeln!(out, " * {summary}.");
         }
         for argument in function.spec.arguments() {
             let _ = writeln!(out, " * @param {} {}: {}", argument.name(), self.lengths(argument.dims()), argument.unit());
@@ -251,8 +251,8 @@ impl Source<'_> {
         if function.arguments.iter().any(Argument::is_parameters) {
             let _ = writeln!(out, " * @param parameters constants of the model that stayed inputs");
         }
-        for (name, part) in self.results(function).iter().zip(&function.spec.parts) {
-            let _ = writeln!(out, " * @param {name} {}: {}", self.lengths(part.function.gives), part.function.unit);
+        for (name, output) in self.results(function).iter().zip(&function.outputs) {
+            let _ = writeln!(out, " * @param {name} {}: {}", self.lengths(&output.dims), output.unit);
         }
         let c = function.entry.emitted();
         let _ = writeln!(out, " * Operations: {}; sines and cosines: {}.\n */", c.instructions(), c.trigonometric());
@@ -260,9 +260,9 @@ impl Source<'_> {
 
     /// The names of the results.
     fn results(&self, function: &Function) -> Vec<&'static str> {
-        match function.spec.parts.as_slice() {
+        match function.outputs.as_slice() {
             [_] => vec!["out"],
-            parts => parts.iter().map(|part| part.function.name).collect(),
+            outputs => outputs.iter().map(|output| output.name).collect(),
         }
     }
 
@@ -290,8 +290,8 @@ impl Source<'_> {
                 self.array(&format!("const {outside}"), a.name, &a.dims, function)
             }
         };
-        let result = |(name, part): (&&str, &crate::FunctionTerm)| self.array(outside, name, part.function.gives, function);
-        function.arguments.iter().map(argument).chain(results.iter().zip(&function.spec.parts).map(result)).collect()
+        let result = |(name, output): (&&str, &crate::spec::Output)| self.array(outside, name, &output.dims, function);
+        function.arguments.iter().map(argument).chain(results.iter().zip(&function.outputs).map(result)).collect()
     }
 
     /// The parameter for an array. C has no arrays of length zero.

@@ -7,7 +7,7 @@ use super::Shape;
 use crate::model::Model;
 
 /// One dimension of an array.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Dim {
     /// One for each coordinate.
     Nq,
@@ -65,40 +65,92 @@ macro_rules! dims {
 
 pub(crate) use dims;
 
+/// An input of a function: its name, its dimensions and its units.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Port {
+    /// Its name in signatures and files.
+    pub name: &'static str,
+    /// Its dimensions.
+    pub dims: &'static [Dim],
+    /// Its units, for documentation.
+    pub unit: &'static str,
+    /// Its place among the inputs of the table's algorithms.
+    place: Option<Place>,
+}
+
+impl Port {
+    /// An input of a user's function.
+    pub const fn new(name: &'static str, dims: &'static [Dim], unit: &'static str) -> Self {
+        Self { name, dims, unit, place: None }
+    }
+}
+
+/// An argument of a function: one of those that functions of the table share, or a function's own.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Argument(&'static Port);
+
+impl Argument {
+    /// An argument of a user's function.
+    pub const fn new(port: &'static Port) -> Self {
+        Self(port)
+    }
+
+    /// Its name in signatures and files.
+    pub fn name(self) -> &'static str {
+        self.0.name
+    }
+
+    /// Its dimensions.
+    pub fn dims(self) -> &'static [Dim] {
+        self.0.dims
+    }
+
+    /// Its units, for documentation.
+    pub fn unit(self) -> &'static str {
+        self.0.unit
+    }
+
+    /// Whether its numbers are coordinates of the robot, with unit quaternions.
+    pub fn is_configuration(self) -> bool {
+        self == Self::Q || self == Self::Target
+    }
+
+    /// The same in the tangent space: where it is a configuration, one number for each degree of
+    /// freedom.
+    pub fn tangent_dims(self) -> &'static [Dim] {
+        if self.is_configuration() { Self::V.dims() } else { self.dims() }
+    }
+}
+
+impl fmt::Debug for Argument {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
 macro_rules! arguments {
     ($($(#[$doc:meta])* $variant:ident $name:ident [$($dim:ident $(($n:literal))?),*] $unit:literal;)*) => {
-        /// An argument of a function.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-        pub enum Argument {
-            $($(#[$doc])* $variant,)*
+        /// The arguments that functions of the table share.
+        #[allow(non_upper_case_globals)]
+        impl Argument {
+            $($(#[$doc])* pub const $variant: Self =
+                Self(&Port { name: stringify!($name), dims: &[$(Dim::$dim $(($n))?),*], unit: $unit, place: Some(Place::$variant) });)*
         }
 
-        impl Argument {
-            /// Its name in signatures and files.
-            pub fn name(self) -> &'static str {
-                match self {
-                    $(Self::$variant => stringify!($name),)*
-                }
-            }
-
-            /// Its dimensions.
-            pub fn dims(self) -> &'static [Dim] {
-                match self {
-                    $(Self::$variant => &[$(Dim::$dim $(($n))?),*],)*
-                }
-            }
-
-            /// Its units, for documentation.
-            pub fn unit(self) -> &'static str {
-                match self {
-                    $(Self::$variant => $unit,)*
-                }
-            }
+        /// The place of each argument of the table among the inputs of an algorithm.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub(super) enum Place {
+            $($variant,)*
         }
 
         /// The argument of a name.
         macro_rules! argument {
             $(($name) => { Argument::$variant };)*
+        }
+
+        /// Its place.
+        macro_rules! place {
+            $(($name) => { crate::algorithm::argument::Place::$variant as usize };)*
         }
 
         /// An argument with its dimensions and unit, for documentation.
@@ -108,7 +160,7 @@ macro_rules! arguments {
     };
 }
 
-// The variant of each argument, its name, its dimensions, and its units for documentation.
+// The constant of each argument, its name, its dimensions, and its units for documentation.
 arguments! {
     /// q, `[nq]`: rad, m, or position and unit quaternion.
     Q q [Nq] "rad|m|unit quaternion";
@@ -132,8 +184,8 @@ arguments! {
     SinCos sines [Nq, Of(2)] "[sin q, cos q] of each coordinate that is an angle; the others are not read";
 }
 
-pub(super) use argument;
 pub(crate) use documentation;
+pub(super) use {argument, place};
 
 impl Argument {
     /// All that functions of the table take.
@@ -142,6 +194,11 @@ impl Argument {
     /// How many numbers.
     pub fn len(self, shape: Shape) -> usize {
         size(self.dims(), shape)
+    }
+
+    /// Its place among the inputs of the table's algorithms.
+    pub(super) fn place(self) -> Option<usize> {
+        self.0.place.map(|place| place as usize)
     }
 }
 

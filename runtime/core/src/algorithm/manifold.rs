@@ -43,6 +43,37 @@ pub fn integrate<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, q: &[S], ste
     }
 }
 
+/// q ⊕ step for a step so small that its third power does not count: the polynomial that has the
+/// value, the first and the second derivatives of [`integrate`] at step = 0. Derivatives in the
+/// tangent space are those of f(q ⊕ δ) at δ = 0.
+///
+/// ```text
+/// p + R (v + ½ ω × v),   quaternion ⊗ (½ ω, 1 − ⅛ |ω|²)
+/// ```
+///
+/// # Panics
+/// As [`integrate`].
+pub fn small_step<S: Scalar>(model: &Model<S>, q: &[S], step: &[S], out: &mut [S]) {
+    let half = S::from_f64(0.5);
+    let turn = |omega: Vector3<S>| {
+        let [x, y, z] = [0, 1, 2].map(|k| half * omega[k]);
+        Quaternion::from_array([x, y, z, S::one() - half * (x * x + y * y + z * z)])
+    };
+    for joint in &model.joints {
+        let (q, step, out) = (&q[range(joint.q)], &step[range(joint.v)], &mut out[range(joint.q)]);
+        match Space::of(joint.kind) {
+            Space::Placements => {
+                let ((position, rotation), Twist { angular, linear }) = (placement(q), six(step));
+                let shift = linear + angular.cross(&linear) * half;
+                put(out, &(position + rotate(&rotation.to_rotation(), shift)));
+                out[3..7].copy_from_slice(&rotation.product(&turn(angular)).to_array());
+            }
+            Space::Rotations => out[..4].copy_from_slice(&quaternion(q).product(&turn(three(step))).to_array()),
+            Space::Numbers => plain(out, q, step, |q, step| q + step),
+        }
+    }
+}
+
 /// target ⊖ q: the step that takes q to the target, with no rotation beyond half a turn.
 ///
 /// q, target: `[nq]` rad|m|quaternion; out: `[nv]` rad|m|twist times time. Absolute error some 8u

@@ -29,7 +29,7 @@ mod workspace;
 mod wrenches;
 
 pub use aba::{articulated_body, articulated_body_with_wrenches, solve_by_articulated_body};
-pub use argument::{Argument, Dim};
+pub use argument::{Argument, Dim, Port};
 pub use base_parameters::{BaseParameter, BodyParameters, Identifiability, base_parameters, identifiable_parameters};
 pub use call::{FunctionError, check_count, check_length, exactly, exactly_rows};
 pub use checked::{checked_forward_dynamics, checked_forward_dynamics_with_wrenches};
@@ -47,7 +47,7 @@ pub use frames::{
     twists_world, twists_world_aligned,
 };
 pub use kinematics::placements;
-pub use manifold::{coordinate_box, difference, integrate, neutral, random_configuration};
+pub use manifold::{coordinate_box, difference, integrate, neutral, random_configuration, small_step};
 pub use manifold_derivatives::{difference_derivatives, integrate_derivatives};
 pub use momentum::{
     center_of_mass, center_of_mass_acceleration, center_of_mass_jacobian, center_of_mass_velocity, centroidal_momentum,

@@ -45,15 +45,15 @@ pub enum Needs {
     FreeFrames,
 }
 
-/// Arguments of an algorithm, by their numbers; an empty slice means zeros.
+/// Arguments of an algorithm, by their places; an empty slice means zeros.
 pub(super) struct Inputs<'a, S>(pub(super) [&'a [S]; Argument::ALL.len()]);
 
 impl<'a, S> Inputs<'a, S> {
     /// These arguments, and no others.
     #[inline]
-    pub(super) fn new<const N: usize>(given: [(Argument, &'a [S]); N]) -> Self {
+    pub(super) fn new<const N: usize>(given: [(usize, &'a [S]); N]) -> Self {
         let mut inputs = Self([&[]; Argument::ALL.len()]);
-        given.into_iter().for_each(|(argument, given)| inputs.0[argument as usize] = given);
+        given.into_iter().for_each(|(place, given)| inputs.0[place] = given);
         inputs
     }
 }
@@ -243,7 +243,9 @@ impl<S: Scalar> Function<S> {
         let mut inputs = Inputs::new([]);
         for (argument, given) in self.takes.iter().zip(arguments) {
             check_length(argument.name(), given.len(), argument.len(shape))?;
-            inputs.0[*argument as usize] = given;
+            if let Some(slot) = argument.place().and_then(|place| inputs.0.get_mut(place)) {
+                *slot = given;
+            }
         }
         check_length("out", out.len(), self.len(shape))?;
         (way.run)(model, ws, &inputs, out);

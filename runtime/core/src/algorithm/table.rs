@@ -21,7 +21,7 @@
 
 use core::marker::PhantomData;
 
-use super::argument::{argument, dims, documentation};
+use super::argument::{argument, dims, documentation, place};
 use super::registry::Inputs;
 use super::workspace::near_the_middle;
 #[allow(clippy::wildcard_imports)]
@@ -183,10 +183,10 @@ macro_rules! ways {
         Variant { name: $way, applies: $applies, least: $least, run: ways!(run $run, $arguments $(, in $axes)?) }
     };
     (run $run:ident, ($($argument:ident),*)) => {
-        |model, ws, inputs, out| $run(model, ws, $(inputs.0[argument!($argument) as usize],)* out)
+        |model, ws, inputs, out| $run(model, ws, $(inputs.0[place!($argument)],)* out)
     };
     (run $run:ident, ($($argument:ident),*), in $axes:ident) => {
-        |model, ws, inputs, out| ws.$axes(|ws| $run(model, ws, $(inputs.0[argument!($argument) as usize],)* out))
+        |model, ws, inputs, out| ws.$axes(|ws| $run(model, ws, $(inputs.0[place!($argument)],)* out))
     };
 }
 
@@ -237,7 +237,7 @@ macro_rules! by_inputs {
     ($name:ident, ($($argument:ident),*), -> $row:ident) => {
         #[inline]
         pub(super) fn $name<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, inputs: &Inputs<'_, S>, out: &mut [S]) {
-            super::super::$name(model, ws, $(inputs.0[argument!($argument) as usize],)* out);
+            super::super::$name(model, ws, $(inputs.0[place!($argument)],)* out);
         }
     };
 }
@@ -253,7 +253,7 @@ macro_rules! preset {
         /// check and return an error.
         #[inline]
         pub fn $name<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, $($argument: &[S],)* out: &mut [S]) {
-            let inputs = Inputs::new([$((argument!($argument), $argument)),*]);
+            let inputs = Inputs::new([$((place!($argument), $argument)),*]);
             by_inputs::$general(model, ws, &inputs, out);
         }
     };

@@ -118,7 +118,7 @@ fn friction_of_a_contact_is_that_of_its_whole_normal_force() {
         let normal = effect::unit(random.three(1.0)).expect("a direction");
         let height = 3.0;
         let parameters = [&[radius, stiffness, damping, friction, smooth][..], &normal, &[height, time]].concat();
-        let applied = Applied { effect: EffectId::contact, on: name, at: at.clone(), parameters };
+        let applied = Applied { effect: EffectId::contact, on: name, at, parameters };
         let model = case.model.clone().with_effects(&[applied]).expect("a contact");
         let State { q, v, .. } = case.state(random);
         let wrench = call(&model, "effect_forces", &[&q, &v]);

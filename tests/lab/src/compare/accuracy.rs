@@ -242,7 +242,7 @@ pub(crate) fn exact(reference: &Exact, model: &Model<f64>, function: &str, state
     let row = articulated_core::algorithm::function::<f64>(function)?;
     let precise = |(argument, x): (&Argument, &&[f64])| {
         let mut x: Vec<Big> = x.iter().map(|x| Big::from_f64(*x)).collect();
-        if matches!(argument, Argument::Q | Argument::Target) {
+        if argument.is_configuration() {
             quaternions(model).for_each(|(_, at)| normalise(&mut x[at..at + 4]));
         }
         x

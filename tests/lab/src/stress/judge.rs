@@ -14,7 +14,7 @@
 
 use articulated_codegen::model_pass::View;
 use articulated_core::algorithm::checked::{Factor, Singular, Solver};
-use articulated_core::algorithm::{FunctionId, Workspace, checked_forward_dynamics};
+use articulated_core::algorithm::{Argument, FunctionId, Workspace, checked_forward_dynamics};
 use articulated_core::model::Model;
 use articulated_reference::{Big, Exact, is_plain, scales};
 
@@ -114,12 +114,11 @@ impl<'a, F: Machine> Judge<'a, F> {
 
     /// The largest error of a function in units of u times the magnitude of its terms.
     fn error(&self, function: FunctionId, state: &State) -> f64 {
-        use articulated_core::algorithm::Argument::{A, Q, Tau, V};
-        let of = |a: &_| match a {
-            Q => &state.q,
-            V => &state.v,
-            A => &state.a,
-            Tau => &state.tau,
+        let of = |a: &Argument| match *a {
+            Argument::Q => &state.q,
+            Argument::V => &state.v,
+            Argument::A => &state.a,
+            Argument::Tau => &state.tau,
             _ => unreachable!("functions of motion and torques"),
         };
         let takes = function.row::<F>().takes;

@@ -64,9 +64,9 @@ pub(super) fn inputs(function: &Function) -> Vec<Array> {
 
 /// The results of a function.
 pub(super) fn results(function: &Function) -> Vec<Array> {
-    let parts = &function.spec.parts;
-    let name = |f: &'static str| if parts.len() == 1 { "out" } else { f };
-    parts.iter().map(|p| Array::new(name(p.function.name), p.function.gives, function.shape)).collect()
+    let outputs = &function.outputs;
+    let name = |own: &'static str| if outputs.len() == 1 { "out" } else { own };
+    outputs.iter().map(|output| Array::new(name(output.name), &output.dims, function.shape)).collect()
 }
 
 /// A text for each array, with its name in the place of `NAME`, its number of numbers in that of

@@ -26,7 +26,7 @@ impl Batch<'_> {
     }
 
     fn document(&self, out: &mut String, what: &str) {
-        let parts: Vec<&str> = self.function.spec.parts.iter().map(|p| p.function.summary).collect();
+        let parts = self.function.spec.summaries();
         let name = &self.function.spec.name;
         let _ = writeln!(
             out,

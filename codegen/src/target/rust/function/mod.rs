@@ -256,10 +256,10 @@ fn lanes_calls(out: &mut String, signature: &Signature) {
 
 fn document(out: &mut String, signature: &Signature, context: Context) {
     let Function { spec, entry, .. } = signature.function;
-    for part in &spec.parts {
+    for (part, summary) in spec.parts.iter().zip(spec.summaries()) {
         let constants: Vec<String> = part.constants.iter().map(|(a, c)| format!("{} = {}", a.name(), shown(c))).collect();
         let at = if constants.is_empty() { String::new() } else { format!(", at {}", constants.join(", ")) };
-        let _ = writeln!(out, "/// {}{at}.\n///", part.function.summary);
+        let _ = writeln!(out, "/// {summary}{at}.\n///");
     }
     for argument in spec.arguments() {
         let _ = writeln!(out, "/// {}: `{}` {}.", argument.name(), signature.array(argument.dims()), argument.unit());
@@ -267,8 +267,8 @@ fn document(out: &mut String, signature: &Signature, context: Context) {
     if context.parameters {
         let _ = writeln!(out, "/// parameters: as [`PARAMETERS`].");
     }
-    if let [part] = spec.parts.as_slice() {
-        let _ = writeln!(out, "/// Returns `{}` {}.\n///", signature.array(part.function.gives), part.function.unit);
+    if let ([output], [part]) = (signature.function.outputs.as_slice(), spec.parts.as_slice()) {
+        let _ = writeln!(out, "/// Returns `{}` {}.\n///", signature.array(&output.dims), output.unit);
         let _ = writeln!(out, "/// {}.", part.function.source);
     }
     let by = match entry.ways.join(", ") {

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use articulated_core::algorithm::Dim;
 
 use crate::lir::function::{Argument, Ending, Function};
-use crate::spec::array_of;
+use crate::spec::{Output, array_of};
 use crate::target::rust::function::results::{index, is_sparse, nested, zeros};
 use crate::target::rust::literal::bare;
 use crate::target::rust::statements::Place;
@@ -94,18 +94,18 @@ impl<'a> Signature<'a> {
     /// Whether there is a form that writes into the caller's memory: if the result is more than a
     /// number.
     pub(crate) fn has_into(&self) -> bool {
-        self.group.is_some() || !self.function.spec.parts[0].function.gives.is_empty()
+        self.group.is_some() || !self.function.outputs[0].dims.is_empty()
     }
 
     /// Number of further dimensions of the result, if it is one array of arrays.
     pub(crate) fn nests(&self) -> Option<usize> {
-        let nests = self.function.spec.parts[0].function.gives.len().checked_sub(1)?;
+        let nests = self.function.outputs[0].dims.len().checked_sub(1)?;
         (nests > 0 && self.group.is_none()).then_some(nests)
     }
 
     /// The type of the result.
     pub(crate) fn gives(&self) -> String {
-        self.group.clone().unwrap_or_else(|| self.array(self.function.spec.parts[0].function.gives))
+        self.group.clone().unwrap_or_else(|| self.array(&self.function.outputs[0].dims))
     }
 
     /// The same, in the private module.
@@ -129,17 +129,14 @@ impl<'a> Signature<'a> {
         let _ = writeln!(out, "/// Results of [`{}`].", self.name());
         let _ = writeln!(out, "#[derive(\n    ::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq,\n)]");
         let _ = writeln!(out, "pub struct {name} {{");
-        for part in &self.function.spec.parts {
-            let f = part.function;
-            let _ = writeln!(
-                out,
-                "    /// {}: `{}`, {}.\n    pub {}: {},",
-                f.summary,
-                self.array(f.gives),
-                f.unit,
-                f.name,
-                self.array(f.gives)
-            );
+        let mut summaries = self.function.spec.summaries();
+        if summaries.len() != self.function.outputs.len() {
+            summaries = vec![String::new(); self.function.outputs.len()];
+        }
+        for (output, summary) in self.function.outputs.iter().zip(summaries) {
+            let summary = if summary.is_empty() { summary } else { format!("{summary}: ") };
+            let array = self.array(&output.dims);
+            let _ = writeln!(out, "    /// {summary}`{array}`, {}.\n    pub {}: {array},", output.unit, output.name);
         }
         let _ = writeln!(out, "}}\n");
     }
@@ -147,9 +144,9 @@ impl<'a> Signature<'a> {
     /// The values of each part, with its name and the lengths of its array.
     fn parts<'v>(&'v self, mut values: &'v [Option<String>]) -> Vec<PartValues<'v>> {
         let mut parts = Vec::new();
-        for (part, array) in self.function.spec.parts.iter().zip(&self.function.results) {
+        for (output, array) in self.function.outputs.iter().zip(&self.function.results) {
             let (own, others) = values.split_at(array.numbers());
-            parts.push((part.function.name, own, array.lengths.as_slice()));
+            parts.push((output.name, own, array.lengths.as_slice()));
             values = others;
         }
         parts
@@ -183,9 +180,9 @@ impl<'a> Signature<'a> {
     /// The array of each part of a result in uninitialised memory: its name, a pointer to it, its
     /// length.
     pub(crate) fn rooms(&self) -> Vec<(String, String, usize)> {
-        let parts = self.function.spec.parts.iter().zip(self.function.results.iter());
-        let room = |(part, array): (&crate::FunctionTerm, &crate::lir::Array)| {
-            let name = part.function.name;
+        let parts = self.function.outputs.iter().zip(self.function.results.iter());
+        let room = |(output, array): (&Output, &crate::lir::Array)| {
+            let name = output.name;
             match &self.group {
                 None => ("out".to_owned(), "out.as_mut_ptr()".to_owned(), array.numbers()),
                 Some(_) => (format!("out_{name}"), format!("(&raw mut (*out.as_mut_ptr()).{name})"), array.numbers()),
@@ -205,11 +202,11 @@ impl<'a> Signature<'a> {
     }
 
     fn zeros(&self, group: Option<&str>) -> String {
-        let parts = self.function.spec.parts.iter().zip(self.function.results.iter());
+        let parts = self.function.outputs.iter().zip(self.function.results.iter());
         match group {
             None => parts.map(|(_, array)| zeros(&array.lengths)).collect(),
             Some(name) => {
-                let fields: Vec<String> = parts.map(|(part, array)| format!("{}: {}", part.function.name, zeros(&array.lengths))).collect();
+                let fields: Vec<String> = parts.map(|(output, array)| format!("{}: {}", output.name, zeros(&array.lengths))).collect();
                 format!("{name} {{ {} }}", fields.join(", "))
             }
         }
@@ -221,7 +218,7 @@ impl<'a> Signature<'a> {
         let part = results.iter().rposition(|array| array.start <= at && at < array.start + array.numbers()).unwrap_or(0);
         let (lengths, k) = (&results[part].lengths, at - results[part].start);
         let name = match &self.group {
-            Some(_) => format!("out.{}", self.function.spec.parts[part].function.name),
+            Some(_) => format!("out.{}", self.function.outputs[part].name),
             None => "out".to_owned(),
         };
         match lengths.as_slice() {

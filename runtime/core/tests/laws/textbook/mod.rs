@@ -39,7 +39,7 @@ impl Scene {
     fn new(case: &Case, state: &State) -> Self {
         let mut arguments: Vec<(Argument, Vec<Big>)> = Argument::ALL.iter().map(|&a| (a, cast(state.argument(a)))).collect();
         for (name, x) in &mut arguments {
-            if matches!(name, Argument::Q | Argument::Target) {
+            if name.is_configuration() {
                 normalise(case, x);
             }
         }

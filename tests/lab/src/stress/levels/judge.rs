@@ -3,7 +3,7 @@
 use articulated_codegen::graph::Graph;
 use articulated_codegen::{Arithmetic, TrigAccuracy, bound};
 use articulated_core::Scalar;
-use articulated_core::algorithm::FunctionId;
+use articulated_core::algorithm::{Argument, FunctionId};
 use articulated_core::model::Model;
 use articulated_reference::{Big, Magnitude, norms, scales};
 
@@ -85,12 +85,11 @@ impl Judged<'_> {
     }
 
     fn arguments(&self, s: &State) -> Vec<Vec<f64>> {
-        use articulated_core::algorithm::Argument::{A, Q, Tau, V};
-        let of = |a: &_| match a {
-            Q => &s.q,
-            V => &s.v,
-            A => &s.a,
-            Tau => &s.tau,
+        let of = |a: &Argument| match *a {
+            Argument::Q => &s.q,
+            Argument::V => &s.v,
+            Argument::A => &s.a,
+            Argument::Tau => &s.tau,
             _ => unreachable!("functions of motion and torques"),
         };
         self.function.row::<f64>().takes.iter().map(|a| of(a).clone()).collect()

@@ -1,0 +1,264 @@
+//! Derivatives of traced functions.
+//!
+//! With respect to a configuration q they are those of f(q ⊕ δ) at δ = 0: the function is traced
+//! with q ⊕ δ in the place of q, differentiated by the inputs δ, and then δ is zero.
+
+use articulated_core::algorithm::{Argument, FunctionId, Shape, small_step};
+use articulated_core::model::Model;
+use num_traits::Zero;
+
+use crate::graph::{Graph, NodeId, Op};
+use crate::pass::{self, adjoint, dce, tangent};
+use crate::spec::{Derivative, FunctionSpec, FunctionTerm, Transform};
+use crate::sym::Sym;
+
+/// The arguments of the matrices of derivatives of inverse and forward dynamics.
+const BLOCKS: [&[Argument]; 3] = [&[Argument::Q], &[Argument::V], &[Argument::A, Argument::Tau]];
+
+/// The inputs by which a function is differentiated.
+pub(crate) struct Steps<'a> {
+    transform: &'a Transform,
+    arguments: &'a [Argument],
+    shape: Shape,
+}
+
+impl<'a> Steps<'a> {
+    /// For a derivative; `arguments`: those of the function and of the derivative.
+    pub(crate) fn of(spec: &'a FunctionSpec, arguments: &'a [Argument], model: &Model<f64>) -> Option<Self> {
+        let transform = spec.transform.as_ref()?;
+        Some(Self { transform, arguments, shape: model.shape() })
+    }
+
+    /// The number of the argument δ of a configuration; `None` for arguments that are differentiated
+    /// by themselves. Numbers above those of the arguments and of parameters are free.
+    fn step(&self, argument: Argument) -> Option<usize> {
+        let place = self.transform.wrt.iter().position(|a| *a == argument)?;
+        (argument.is_configuration() && !self.transform.in_coordinates).then_some(self.arguments.len() + 1 + place)
+    }
+
+    /// q ⊕ δ for a configuration by which the function is differentiated; other arguments as given.
+    pub(crate) fn moved(&self, argument: Argument, given: Vec<Sym>, model: &Model<Sym>) -> Vec<Sym> {
+        let Some(step) = self.step(argument) else { return given };
+        let delta: Vec<Sym> = (0..self.shape.nv).map(|k| Sym::input(step, k)).collect();
+        let mut moved = vec![Sym::zero(); given.len()];
+        small_step(model, &given, &delta, &mut moved);
+        moved
+    }
+
+    /// The inputs by which the function is differentiated, argument by argument.
+    fn inputs(&self) -> Vec<(usize, usize)> {
+        let of = |argument: &Argument| {
+            let own = self.arguments.iter().position(|a| a == argument).unwrap_or_default();
+            let count = self.transform.dims(*argument).iter().map(|d| d.len(self.shape)).product::<usize>();
+            let number = self.step(*argument).unwrap_or(own);
+            (0..count).map(move |k| (number, k)).collect::<Vec<_>>()
+        };
+        self.transform.wrt.iter().flat_map(of).collect()
+    }
+
+    /// The number of an argument of the derivative.
+    fn argument(&self, name: &str) -> usize {
+        self.arguments.iter().rposition(|a| a.name() == name).unwrap_or_default()
+    }
+
+    /// The node of the direction of an input.
+    fn direction(&self, graph: &mut Graph, input: (usize, usize)) -> Option<NodeId> {
+        let argument = self.transform.wrt.iter().find(|argument| {
+            let own = self.arguments.iter().position(|a| a == *argument);
+            self.step(**argument).or(own) == Some(input.0)
+        })?;
+        let number = self.argument(&format!("d{}", argument.name()));
+        Some(graph.input(number, input.1))
+    }
+
+    /// The graph with directions of the inputs, differentiated along them.
+    fn along(&self, graph: &Graph) -> Graph {
+        tangent(graph, |new, argument, index| self.direction(new, (argument, index)))
+    }
+
+    /// The derivative of the graph of the function.
+    pub(crate) fn derivative(&self, graph: &Graph) -> Graph {
+        let (inputs, weights) = (self.inputs(), self.argument("weights"));
+        let found = match self.transform.kind {
+            Derivative::Vjp => adjoint(graph, &inputs, |new, k| new.input(weights, k)),
+            Derivative::Gradient => adjoint(graph, &inputs, |new, _| new.constant(1.0)),
+            Derivative::Jvp => self.along(graph),
+            Derivative::Hvp => self.along(&dce(&adjoint(graph, &inputs, |new, k| new.input(weights, k)))),
+            Derivative::Jacobian => self.jacobian(graph, &inputs),
+        };
+        self.at_rest(&found)
+    }
+
+    /// All columns by forward mode, or all rows by reverse mode, whichever is cheaper.
+    fn jacobian(&self, graph: &Graph, inputs: &[(usize, usize)]) -> Graph {
+        let rows = graph.outputs.len();
+        let mut forward = graph.clone();
+        let columns: Vec<Vec<NodeId>> = inputs
+            .iter()
+            .map(|input| {
+                let one = forward.constant(1.0);
+                pass::tangents(&mut forward, &graph.outputs, graph.nodes().len(), |_, argument, index| {
+                    ((argument, index) == *input).then_some(one)
+                })
+            })
+            .collect();
+        let mut reverse = graph.clone();
+        let gradients: Vec<Vec<NodeId>> = (0..rows)
+            .map(|row| {
+                let one = reverse.constant(1.0);
+                pass::gradients(&mut reverse, &[graph.outputs[row]], graph.nodes().len(), inputs, |_, _| one)
+            })
+            .collect();
+        // One array for each argument: its rows, one after the other.
+        let (mut first, mut by_columns, mut by_rows) = (0, Vec::new(), Vec::new());
+        for argument in &self.transform.wrt {
+            let count = self.transform.dims(*argument).iter().map(|d| d.len(self.shape)).product::<usize>();
+            for row in 0..rows {
+                by_columns.extend((first..first + count).map(|column| columns[column][row]));
+                by_rows.extend((first..first + count).map(|column| gradients[row][column]));
+            }
+            first += count;
+        }
+        (forward.outputs, reverse.outputs) = (by_columns, by_rows);
+        let [forward, reverse] = [forward, reverse].map(|graph| dce(&self.at_rest(&graph)));
+        if pass::cost(&reverse) < pass::cost(&forward) { reverse } else { forward }
+    }
+
+    /// The function of the table that has this jacobian, as `[3][nv][nv]` for q, v and a or τ.
+    pub(crate) fn own_algorithm(&self, part: &FunctionTerm) -> Option<FunctionTerm> {
+        let takes_wrenches = part.function.takes.contains(&Argument::Wrenches);
+        let id = match (part.function.general, takes_wrenches) {
+            (FunctionId::inverse_dynamics_with_wrenches, false) => FunctionId::inverse_dynamics_derivatives,
+            (FunctionId::inverse_dynamics_with_wrenches, true) => FunctionId::inverse_dynamics_derivatives_with_wrenches,
+            (FunctionId::forward_dynamics_with_wrenches, false) => FunctionId::forward_dynamics_derivatives,
+            (FunctionId::forward_dynamics_with_wrenches, true) => FunctionId::forward_dynamics_derivatives_with_wrenches,
+            _ => return None,
+        };
+        let has_all = self.transform.wrt.iter().all(|a| BLOCKS.iter().any(|block| block.contains(a)));
+        let fits = self.transform.kind == Derivative::Jacobian && !self.transform.in_coordinates && has_all;
+        fits.then(|| FunctionTerm { function: id.row(), ..part.clone() })
+    }
+
+    /// The blocks of its result for the requested arguments.
+    pub(crate) fn blocks(&self, mut graph: Graph) -> Graph {
+        let size = self.shape.nv * self.shape.nv;
+        let block = |argument: &Argument| BLOCKS.iter().position(|block| block.contains(argument)).unwrap_or_default();
+        let outputs = std::mem::take(&mut graph.outputs);
+        graph.outputs = self.transform.wrt.iter().flat_map(|a| outputs[block(a) * size..][..size].to_vec()).collect();
+        graph
+    }
+
+    /// The graph with δ = 0.
+    fn at_rest(&self, graph: &Graph) -> Graph {
+        let steps: Vec<usize> = self.transform.wrt.iter().filter_map(|argument| self.step(*argument)).collect();
+        let graph = dce(graph);
+        let mut new = graph.emptied();
+        new.outputs = splice(&mut new, &graph, |new, argument, _| steps.contains(&argument).then(|| new.constant(0.0)));
+        new
+    }
+}
+
+/// Adds the nodes of `graph` to another, with some of its inputs replaced. Returns its outputs.
+fn splice(new: &mut Graph, graph: &Graph, mut input: impl FnMut(&mut Graph, usize, usize) -> Option<NodeId>) -> Vec<NodeId> {
+    let mut ids: Vec<NodeId> = Vec::with_capacity(graph.nodes().len());
+    for node in graph.nodes() {
+        let operands: Vec<NodeId> = node.operands().map(|operand| ids[operand.index()]).collect();
+        ids.push(match node.op {
+            Op::Input => input(new, node.args[0] as usize, node.args[1] as usize).unwrap_or_else(|| new.leaf(*node)),
+            _ if operands.is_empty() => new.leaf(*node),
+            op => new.apply(op, &operands),
+        });
+    }
+    graph.outputs.iter().map(|output| ids[output.index()]).collect()
+}
+
+/// The derivatives of forward dynamics by those of inverse dynamics, which are cheaper and divide
+/// less. From ID(q, v, a, w) = τ for a = FD(q, v, τ, w):
+///
+/// ```text
+/// da = M⁻¹ (dτ − ∂ID·(dq, dv, dw)),   λᵀ da = μᵀ dτ − μᵀ ∂ID·(dq, dv, dw)   with   μ = M⁻¹ λ
+/// ```
+pub(crate) struct ImplicitRule<'a> {
+    steps: &'a Steps<'a>,
+    part: &'a FunctionTerm,
+}
+
+impl<'a> ImplicitRule<'a> {
+    /// For a derivative that it applies to. Torques that motors change are not τ of the equation.
+    pub(crate) fn of(spec: &'a FunctionSpec, steps: &'a Steps<'a>, model: &Model<f64>) -> Option<Self> {
+        let part = &spec.parts[0];
+        let is_forward = part.function.general == FunctionId::forward_dynamics_with_wrenches;
+        let is_known = matches!(steps.transform.kind, Derivative::Vjp | Derivative::Jvp);
+        (is_forward && is_known && !model.has_motors()).then_some(Self { steps, part })
+    }
+
+    /// The forward dynamics, the solution of M x = b, and the inverse dynamics.
+    pub(crate) fn terms(&self) -> [FunctionTerm; 3] {
+        let takes_wrenches = self.part.function.takes.contains(&Argument::Wrenches);
+        let inverse = if takes_wrenches { FunctionId::inverse_dynamics_with_wrenches } else { FunctionId::inverse_dynamics };
+        let of = |id: FunctionId| {
+            let function = id.row();
+            let constants =
+                self.part.constants.iter().filter(|(a, _)| function.takes.contains(a) && *a != Argument::Tau).cloned().collect();
+            FunctionTerm { function, constants, sines: self.part.sines }
+        };
+        [self.part.clone(), of(FunctionId::solve_mass_matrix), of(inverse)]
+    }
+
+    /// Numbers of arguments that are free: b, a and μ.
+    fn free(&self, which: usize) -> usize {
+        self.steps.arguments.len() + 1 + self.steps.transform.wrt.len() + which
+    }
+
+    fn place(&self, argument: Argument) -> Option<usize> {
+        self.steps.arguments.iter().position(|a| *a == argument)
+    }
+
+    /// Where the solution of M x = b takes its arguments from.
+    pub(crate) fn place_in_solution(&self, argument: Argument) -> Option<usize> {
+        if argument == Argument::Tau { Some(self.free(0)) } else { self.place(argument) }
+    }
+
+    /// Where the inverse dynamics takes its arguments from.
+    pub(crate) fn place_in_inverse(&self, argument: Argument) -> Option<usize> {
+        if argument == Argument::A { Some(self.free(1)) } else { self.place(argument) }
+    }
+
+    /// The derivative, from the graphs of the terms.
+    pub(crate) fn derivative(&self, [forward, solution, inverse]: [Graph; 3]) -> Graph {
+        let steps = self.steps;
+        let mut new = forward.emptied();
+        let acceleration = splice(&mut new, &forward, |_, _, _| None);
+        let solve =
+            |new: &mut Graph, b: &[NodeId]| splice(new, &solution, |_, argument, index| (argument == self.free(0)).then(|| b[index]));
+        let nv = acceleration.len();
+        let torque = |new: &mut Graph, argument: &str| (0..nv).map(|k| new.input(steps.argument(argument), k)).collect::<Vec<_>>();
+        new.outputs = if steps.transform.kind == Derivative::Jvp {
+            let held = steps.at_rest(&steps.along(&inverse));
+            let change = splice(&mut new, &held, |_, argument, index| (argument == self.free(1)).then(|| acceleration[index]));
+            let driven = if steps.transform.wrt.contains(&Argument::Tau) { torque(&mut new, "dtau") } else { Vec::new() };
+            let minus = |(k, change): (usize, &NodeId)| match driven.get(k) {
+                Some(driven) => new.apply(Op::Sub, &[*driven, *change]),
+                None => new.apply(Op::Neg, &[*change]),
+            };
+            let b: Vec<NodeId> = change.iter().enumerate().map(minus).collect();
+            solve(&mut new, &b)
+        } else {
+            let weights = torque(&mut new, "weights");
+            let mu = solve(&mut new, &weights);
+            let held = steps.at_rest(&adjoint(&inverse, &steps.inputs(), |graph, k| graph.input(self.free(2), k)));
+            let mut gradient = splice(&mut new, &held, |_, argument, index| match argument {
+                _ if argument == self.free(1) => Some(acceleration[index]),
+                _ if argument == self.free(2) => Some(mu[index]),
+                _ => None,
+            });
+            // One result for each input, of which τ is no input of the inverse dynamics.
+            let tau = self.place(Argument::Tau);
+            for (result, (argument, index)) in gradient.iter_mut().zip(steps.inputs()) {
+                *result = if Some(argument) == tau { mu[index] } else { new.apply(Op::Neg, &[*result]) };
+            }
+            gradient
+        };
+        new
+    }
+}
