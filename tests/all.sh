@@ -37,17 +37,19 @@ ensure() { # a component of the toolchain that a minimal installation may lack
     cargo "$1" --version >/dev/null 2>&1 || rustup component add "$2"
 }
 
-alone() { # core without std, and without allocation; the reader without a second one
+alone() { # core without std, and without allocation; the reader without a second one; the command without what measures
     cargo check --quiet -p articulated-core --no-default-features
     cargo check --quiet -p articulated-core --no-default-features --features alloc
     cargo clippy --quiet -p articulated-formats -- -D warnings
+    cargo clippy --quiet -p articulated-cli --no-default-features -- -D warnings
 }
 
 documentation() {
     RUSTDOCFLAGS="-D warnings" cargo doc --quiet "${rust[@]}" --no-deps
 }
 
-# The command and the wheel are built in one profile and one folder. With the features of both, so that each crate is compiled once.
+# The command and the wheel are built in one profile and one folder. With the features of both, so that each crate is compiled once, except
+# the command and the lab: the wheel has them without what measures.
 release() {
     cargo build --quiet --release -p articulated-cli -p articulated-python --bins
 }

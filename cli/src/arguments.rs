@@ -8,9 +8,15 @@ use articulated_formats::{LeaveOut, SNAP_EXPECTED, can_snap};
 use clap::{Args, ValueEnum};
 
 use crate::edits::{Edits, FrameArguments};
-use crate::failure::Failure;
+use crate::failure::{Failure, STATUSES};
 use crate::names::{Names, known, requested};
 use crate::table::counted;
+
+/// The end of a command's help.
+pub(crate) fn examples(lines: &[&str]) -> String {
+    let lines: String = lines.iter().map(|l| format!("  {l}\n")).collect();
+    format!("Examples:\n{lines}\n{STATUSES}")
+}
 
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

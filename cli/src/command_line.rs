@@ -4,15 +4,12 @@ use articulated_codegen::function_groups::Group;
 use articulated_core::algorithm::function;
 use clap::{Parser, Subcommand};
 
-use crate::accuracy::AccuracyArguments;
-use crate::arguments::{CheckArguments, EvalArguments, Format, FunctionsArguments, GenerateArguments};
-use crate::compare::CompareArguments;
+use crate::arguments::{CheckArguments, EvalArguments, Format, FunctionsArguments, GenerateArguments, examples};
 use crate::effects::EffectsArguments;
 use crate::failure::STATUSES;
+use crate::measure::Measurement;
 use crate::new::NewArguments;
-use crate::scaling::ScalingArguments;
 use crate::simulate::arguments::SimulateArguments;
-use crate::stress::StressArguments;
 
 /// Robot dynamics, spelled out: checks a robot file (URDF, xacro, MJCF or SDF), generates its
 /// straight-line code, evaluates it, compares it, and simulates it.
@@ -73,26 +70,8 @@ pub(crate) enum Command {
         "Columns of a joint that has several numbers: q.hip[0],q.hip[1],…; a floating base is the joint __floating_base__",
     ]))]
     Eval(EvalArguments),
-    /// Measures generated code against generic code: operations, size, time, error
-    #[command(after_help = examples(&[
-        "articulated compare panda_like",
-        "articulated compare humanoid --functions inverse_dynamics --repetitions 101",
-        "articulated compare ur5_like --functions kinematics,derivatives --frames flange",
-        "articulated compare panda_like --functions inverse_dynamics --batch f64,f32",
-        "articulated compare arm.urdf --peer libpeer.so --format json",
-        "articulated compare quadruped --peers-manifest target/peers/peers.json --chart quadruped.svg",
-    ]))]
-    Compare(CompareArguments),
-    /// Measures what accuracy costs: error and time of each function at each level, and the
-    /// cheapest that is accurate enough
-    #[command(after_help = examples(&[
-        "articulated accuracy panda_like",
-        "articulated accuracy arm.urdf --functions inverse_dynamics,mass_matrix --levels f32,f64,double_double --output accuracy",
-        "articulated accuracy panda_like --functions forward_dynamics --advise --error 1e-9",
-        "articulated accuracy --simulate pendulum --output integrators",
-        "articulated accuracy ur5_like --peers-manifest target/peers/peers.json --output accuracy",
-    ]))]
-    Accuracy(AccuracyArguments),
+    #[command(flatten)]
+    Measure(Measurement),
     /// Lists all functions, and what they cost on some robots, on the frames of their tips
     #[command(after_help = examples(&[
         "articulated functions",
@@ -100,23 +79,6 @@ pub(crate) enum Command {
         "articulated functions --markdown > docs/functions.md",
     ]))]
     Functions(FunctionsArguments),
-    /// Measures how costs grow with the robot: chains of 7 to 125 joints (--all: to 1000),
-    /// generated against generic code, hot and cold caches
-    #[command(after_help = examples(&[
-        "articulated scaling",
-        "articulated scaling --joints 7,30,100 --functions inverse_dynamics --chart scaling.svg",
-        "articulated scaling --all --markdown --chart docs/scaling.svg > docs/scaling.md",
-    ]))]
-    Scaling(ScalingArguments),
-    /// Measures hard cases: a corpus and the bundled robots, or a robot of yours; each with a limit
-    /// that it has to keep
-    #[command(after_help = examples(&[
-        "articulated stress",
-        "articulated stress --chapters chains,screws --rows",
-        "articulated stress arm.urdf --states states.json",
-        "articulated stress arm.urdf --generated --format json",
-    ]))]
-    Stress(StressArguments),
     /// Simulates a scene: a table of the motion, pictures, a page that plays it, and what became of
     /// energy and momentum
     #[command(after_help = examples(&[
@@ -140,11 +102,6 @@ pub(crate) enum Command {
         "articulated effects arm.toml --functions forward_dynamics,mass_matrix --format json",
     ]))]
     Effects(EffectsArguments),
-}
-
-fn examples(lines: &[&str]) -> String {
-    let lines: String = lines.iter().map(|l| format!("  {l}\n")).collect();
-    format!("Examples:\n{lines}\n{STATUSES}")
 }
 
 fn overview() -> String {

@@ -1,11 +1,9 @@
 //! The command `articulated`, as a library: arguments, loading and reports. Its measurements are in
 //! the library `articulated_lab`.
 
-mod accuracy;
 mod arguments;
 mod check;
 mod command_line;
-mod compare;
 mod console;
 mod diagnostic;
 mod edits;
@@ -15,21 +13,21 @@ mod excerpt;
 pub mod failure;
 mod functions;
 mod generate;
+#[cfg_attr(not(feature = "measure"), path = "unmeasured.rs")]
+mod measure;
 mod named_scene;
 mod names;
 mod new;
 mod output;
 mod robot;
 mod robot_scene;
-mod scaling;
 mod shape;
 mod simulate;
-mod stress;
 
 use std::ffi::OsString;
 
 use articulated_lab::json::json;
-use articulated_lab::{compiled, ledger, parallel, states, table, tips};
+use articulated_lab::{ledger, parallel, states, table, tips};
 use clap::Parser;
 
 use arguments::Format;
@@ -69,7 +67,9 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Ok(status) => status,
         Err(failure) => {
             console::failed(&failure);
-            if arguments.format == Format::Json && !failure.reported {
+            // Words of a refused command are not read.
+            let is_json = arguments.format == Format::Json || failure.status == USAGE && asks_for_json(&words);
+            if is_json && !failure.reported {
                 // If the reader has closed the pipe, there is no one to report to.
                 let _ = console::print(&json(&failure));
             }
@@ -123,7 +123,7 @@ fn with_plain_words(text: &str, words: &[OsString]) -> Option<String> {
     (!words.is_empty()).then(|| values.fold(text.to_owned(), |text, word| text.replace(word, &table::plain(word))))
 }
 
-/// Whether unreadable words request JSON.
+/// Whether unread words request JSON.
 fn asks_for_json(words: &[OsString]) -> bool {
     words.iter().any(|word| word == "--format=json") || words.windows(2).any(|w| w[0] == "--format" && w[1] == "json")
 }
@@ -144,14 +144,11 @@ fn dispatch(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Check(a) => check::run(a, format),
         Command::Generate(a) => generate::run(a, format).map(|()| OK),
         Command::Eval(a) => eval::run(a, format),
-        Command::Accuracy(a) => accuracy::run(a, format).map(|()| OK),
-        Command::Compare(a) => compare::run(a, format),
+        Command::Measure(a) => measure::run(a, format),
         Command::Functions(a) => functions::run(a, format).map(|()| OK),
-        Command::Scaling(a) => scaling::run(a, format).map(|()| OK),
         Command::Simulate(a) => simulate::run(a, format),
         Command::New(a) => new::run(a, format).map(|()| OK),
         Command::Effects(a) => effects::run(a, format).map(|()| OK),
-        Command::Stress(a) => stress::run(a, format),
     }
 }
 

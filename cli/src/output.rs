@@ -27,18 +27,6 @@ pub(crate) fn file(option: &str, path: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Whether the file of `--chart` can be written: charts are SVG.
-pub(crate) fn chart(path: &Path) -> Result<(), Failure> {
-    let raster = ["png", "jpg", "jpeg", "pdf"];
-    match path.extension().and_then(|e| e.to_str()).filter(|e| raster.iter().any(|r| e.eq_ignore_ascii_case(r))) {
-        Some(ending) => Err(Failure::usage(format!(
-            "--chart {}: found a name that ends with .{ending}, expected .svg: charts are SVG; convert them with rsvg-convert or a browser",
-            path.display()
-        ))),
-        None => file("--chart", path),
-    }
-}
-
 /// Whether two paths lead to one file, by links of either sort.
 pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
     matches!((identity(a), identity(b)), (Ok(a), Ok(b)) if a == b)

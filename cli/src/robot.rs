@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use articulated_codegen::scene::Scene;
-use articulated_codegen::{Appended, Generated, MOST_FREEDOMS, Options, Request, TrigAccuracy, generate, nearest};
+use articulated_codegen::{Appended, MOST_FREEDOMS, Options, Request, TrigAccuracy, nearest};
 use articulated_core::description::Base;
 use articulated_core::diagnostic::{Diagnostic, Diagnostics, summary, values};
 use articulated_core::model::Model;
@@ -31,6 +31,8 @@ pub(crate) struct Robot {
     pub(crate) options: Options,
     /// The scene with its effects.
     effects: Option<Scene>,
+    /// Of the document, for measurements.
+    #[cfg_attr(not(feature = "measure"), expect(dead_code))]
     path: Option<PathBuf>,
     /// Warnings of bundled robots are intended.
     bundled: bool,
@@ -173,11 +175,6 @@ impl Robot {
         request
     }
 
-    /// The code of these functions, for calls.
-    pub(crate) fn generate(&self, functions: &[String]) -> Result<Generated, Diagnostics> {
-        generate(&self.request(functions))
-    }
-
     /// Whether the base floats.
     pub(crate) fn floating(&self) -> bool {
         self.options.robot.base == Base::Floating
@@ -199,6 +196,7 @@ impl Robot {
     }
 
     /// The robot for measurements.
+    #[cfg(feature = "measure")]
     pub(crate) fn loaded(&self) -> articulated_lab::robot::Robot {
         let Self { file, scene, document, options, effects, path, .. } = self.clone();
         articulated_lab::robot::Robot { file, scene, document, options, effects, path }

@@ -1,5 +1,6 @@
 """Wheels of one robot, installed without articulated."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -123,6 +124,36 @@ def test_the_command_of_rust_comes_with_the_package():
     assert done.returncode == 0 and "swing" in done.stdout
     wrong = subprocess.run([sys.executable, "-m", "articulated", "check", "no_such_robot"], capture_output=True, text=True)
     assert wrong.returncode == 1 and "no_such_robot" in wrong.stderr
+
+
+@pytest.mark.parametrize("words, name", [
+    (["compare", "panda_like", "--repetitions", "31", "-o", "out"], "`compare`"),
+    (["accuracy", "--advise", "--error=1e-9"], "`accuracy`"),
+    (["scaling"], "`scaling`"),
+    (["stress", "panda_like", "--levels", "f64"], "`stress`"),
+    (["simulate", "--all"], "--all: "),
+    (["simulate", "pendulum", "--generated"], "--generated: "),
+    (["simulate", "pendulum", "--against", "peers.json"], "--against: "),
+    (["effects", "pendulum", "--time"], "--time: "),
+    (["eval", "simple_pendulum", "--function", "mass_matrix", "--states", "states.json", "--generated"], "--generated: "),
+])
+def test_what_measures_or_compiles_is_in_the_command_of_cargo(tmp_path, words, name):
+    (tmp_path / "states.json").write_text('{"states": [{"q": [0.1]}]}')
+    command = [sys.executable, "-m", "articulated", *words, "--format", "json"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+    report = json.loads(done.stdout)
+    message = report["errors"][0]["message"]
+    assert done.returncode == report["exit_status"] == 2 and report["status"] == "error"
+    assert name in message and "`cargo install --path cli`" in message and f"error: {message}" in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["states.json"]
+
+
+def test_eval_of_the_package_is_generic(tmp_path):
+    (tmp_path / "states.json").write_text('{"states": [{"q": [0.1]}]}')
+    command = [sys.executable, "-m", "articulated", "eval", "simple_pendulum", "--function", "mass_matrix", "--states", tmp_path / "states.json"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0 and "generic results only" in done.stderr
+    assert not subprocess.run([*command, "--generic"], capture_output=True, text=True).stderr
 
 
 @pytest.mark.parametrize("options, error, message", [

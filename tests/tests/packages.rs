@@ -112,6 +112,21 @@ fn dependencies_within_the_workspace_can_be_published() {
     assert_eq!(wrong, [""; 0]);
 }
 
+/// A dependency without default features is one without `measure`.
+#[test]
+fn the_python_package_compiles_nothing_that_measures() {
+    let packages = packages();
+    let dependency = |user: &str, used: &str| {
+        let package = packages.iter().find(|package| text(package, "name") == user).expect("a crate");
+        let all = package["dependencies"].as_array().expect("a list");
+        all.iter().find(|one| text(one, "name") == used && one["kind"].is_null()).expect("a dependency").clone()
+    };
+    for (user, used) in [("articulated-python", "articulated-cli"), ("articulated-cli", "articulated-lab")] {
+        let found = dependency(user, used);
+        assert_eq!((&found["uses_default_features"], &found["features"]), (&Value::Bool(false), &Value::Array(Vec::new())), "{user}");
+    }
+}
+
 fn sources(folder: &Path, files: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();

@@ -1,21 +1,15 @@
 //! Costs of effects: code is generated without effects, with each of them, and with all of them,
-//! and counted or timed.
+//! and counted.
 
 use articulated_codegen::graph::{Counts, Op};
 use articulated_codegen::{Generated, defined, generate as generate_code, massless};
-use articulated_core::algorithm::function;
 use articulated_core::diagnostic::Code;
 use articulated_core::effect::{Applied, EffectId};
 
 use super::report::{Added, Cost, Counted, OnlyWith, Operations};
-use crate::compiled::{Compiled, Rustc};
 use crate::console::Progress;
-use articulated_lab::compare::contender::Contender;
-use articulated_lab::compare::timing::{self, Run};
-
 use crate::failure::Failure;
 use crate::parallel;
-use crate::states;
 use articulated_lab::session::Session;
 
 /// The scene with some of its effects.
@@ -37,9 +31,7 @@ pub(super) struct Part {
 }
 
 /// Index of the variant that others are compared with.
-const FIRST: usize = 0;
-/// States that functions are timed on.
-const STATES: usize = 64;
+pub(super) const FIRST: usize = 0;
 
 /// The functions that are defined without effects, and those that are not.
 pub(super) fn parts(session: &Session, functions: &[String]) -> Result<Vec<Part>, Failure> {
@@ -151,38 +143,4 @@ impl Operations {
             instructions: self.instructions - other.instructions,
         }
     }
-}
-
-/// Compiles all of it and times each function, all variants in turn.
-pub(super) fn time(
-    session: &Session,
-    made: &[Generated],
-    rustc: &Rustc,
-    repetitions: usize,
-    costs: &mut [Cost],
-    progress: &Progress,
-) -> Result<(), Failure> {
-    progress.doing("rustc".to_owned());
-    let compiled = parallel::map(made, |generated| Compiled::build(rustc, generated));
-    let compiled: Vec<Compiled> = compiled.into_iter().collect::<Result<_, _>>().map_err(|e| Failure::tool(&e))?;
-    let states = states::random(&session.model, STATES, 1);
-    for cost in costs {
-        let Some(row) = function::<f64>(&cost.function) else { continue };
-        progress.doing(format!("{}: times", row.name));
-        let arguments: Vec<Vec<&[f64]>> = states.iter().map(|s| s.arguments(row).unwrap_or_default()).collect();
-        let contenders: Vec<Contender> = compiled.iter().map(|c| Contender::generated(c, row)).collect();
-        let mut runs: Vec<Run<'_>> = contenders.iter().map(|c| c.run(&arguments)).collect();
-        let times = timing::interleaved(&mut runs, repetitions);
-        drop(runs);
-        if let Some(whole) = cost.whole_mut() {
-            whole.ns = Some(timing::summary(&times[FIRST]));
-        }
-        for (added, time) in cost.adds.iter_mut().zip(&times[1..]) {
-            let sign = if added.what == "gravity" { -1.0 } else { 1.0 };
-            let more: Vec<f64> = time.iter().zip(&times[FIRST]).map(|(with, without)| sign * (with - without)).collect();
-            added.ns = Some(timing::summary(&more));
-        }
-        progress.step();
-    }
-    Ok(())
 }

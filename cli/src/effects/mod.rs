@@ -3,6 +3,8 @@
 mod cost;
 mod report;
 mod text;
+#[cfg_attr(not(feature = "measure"), path = "untimed.rs")]
+mod timed;
 
 use std::path::PathBuf;
 
@@ -10,12 +12,12 @@ use articulated_core::effect::Applied;
 use clap::Args;
 
 use crate::arguments::Format;
-use crate::compiled::Rustc;
 use crate::console::{self, Progress};
 use crate::failure::Failure;
 use crate::named_scene;
 use crate::names::{self, Names, known};
 use report::Report;
+use timed::Compiler;
 
 #[derive(Args, Debug)]
 pub(crate) struct EffectsArguments {
@@ -54,17 +56,17 @@ pub(crate) fn run(arguments: &EffectsArguments, format: Format) -> Result<(), Fa
     if arguments.time {
         session.is_of_doubles()?;
     }
-    let rustc = arguments.time.then(Rustc::find).transpose().map_err(|e| Failure::tool(&e))?;
+    let compiler = arguments.time.then(Compiler::find).transpose()?;
     let mut report = Report::of(&session);
-    report.compiler = rustc.as_ref().map(|rustc| rustc.version.clone());
+    report.compiler = compiler.as_ref().map(Compiler::version);
     let parts = cost::parts(&session, &functions)?;
     let progress = Progress::new(parts.iter().map(|part| part.steps(arguments.time)).sum());
     for part in &parts {
         let made = part.generate(&session, &progress)?;
         report.limbs = made.iter().flat_map(|g| &g.ledger.functions).map(|f| f.lanes).fold(report.limbs, usize::max);
         let mut costs = part.counted(&made);
-        if let Some(rustc) = &rustc {
-            cost::time(&session, &made, rustc, arguments.repetitions as usize, &mut costs, &progress)?;
+        if let Some(compiler) = &compiler {
+            compiler.time(&session, &made, arguments.repetitions as usize, &mut costs, &progress)?;
         }
         report.costs.extend(costs);
     }

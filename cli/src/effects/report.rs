@@ -5,9 +5,9 @@ use articulated_core::effect::effects;
 use articulated_scene::EffectCount;
 use serde::Serialize;
 
-use articulated_lab::compare::timing::Summary;
 use articulated_lab::json::Units;
 use articulated_lab::session::Session;
+use articulated_lab::timing::Summary;
 
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Report {
@@ -144,10 +144,6 @@ impl Cost {
     /// Costs reported as totals, not as differences.
     pub(super) fn whole(&self) -> Option<&Counted> {
         self.without.as_ref().or(self.only_with.as_ref().map(|only| &only.cost))
-    }
-
-    pub(super) fn whole_mut(&mut self) -> Option<&mut Counted> {
-        self.without.as_mut().or(self.only_with.as_mut().map(|only| &mut only.cost))
     }
 }
 

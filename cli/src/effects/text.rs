@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::report::{Cost, Ignored, On, Operations, Report};
 use crate::table::{Table, freedom, number, plain};
-use articulated_lab::compare::timing::Summary;
+use articulated_lab::timing::Summary;
 
 pub(super) fn text(r: &Report) -> String {
     let [x, y, z] = r.gravity.map(number);

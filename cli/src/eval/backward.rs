@@ -4,7 +4,7 @@
 
 use articulated_core::algorithm::Function;
 use articulated_core::model::Model;
-use articulated_lab::compare::accuracy::{Residual, residual_of};
+use articulated_lab::residual::{Residual, residual_of};
 use articulated_reference::ROUNDOFF;
 
 use super::BOUND;

@@ -1,6 +1,8 @@
 //! `articulated eval`.
 
 mod backward;
+#[cfg_attr(not(feature = "measure"), path = "uncompiled.rs")]
+mod compiled;
 mod layout;
 mod report;
 mod text;
@@ -14,7 +16,6 @@ use articulated_formats::nearest_file;
 use articulated_reference::{scales, scales_of_generated, where_suspect};
 
 use crate::arguments::{EvalArguments, Format};
-use crate::compiled::{CompileError, Compiled, Rustc, Target};
 use crate::console;
 use crate::failure::{Failure, OK};
 use crate::names;
@@ -22,6 +23,7 @@ use crate::robot::{Robot, note_of_parameters, read_bytes};
 use crate::states::{self, State};
 use crate::table::counted;
 use backward::Backward;
+use compiled::{Compiled, compile};
 use report::{Difference, FunctionReport, Outcome, Report};
 
 /// Generic and generated results may differ by this many units of roundoff of the sum of the
@@ -97,28 +99,6 @@ fn missing(states: &[State], model: &Model<f64>, functions: &[&'static Function<
         }
     }
     lines
-}
-
-/// Compiled code, or `None`, with a note of the reason, if generic results suffice.
-fn compile(robot: &Robot, names: &[String], needed: bool, report: &mut Report) -> Result<Option<Compiled>, Failure> {
-    let generated = robot.generate(names)?;
-    let progress = console::Progress::new(1);
-    progress.doing("rustc".into());
-    let built = Rustc::find().and_then(|rustc| Ok((Compiled::build(&rustc, &generated)?, rustc)));
-    match built {
-        Ok((compiled, rustc)) => {
-            report.compiler = Some(format!("{} {}", rustc.version, Rustc::flags(Target::Own).join(" ")));
-            Ok(Some(compiled))
-        }
-        Err(error @ (CompileError::NotFound { .. } | CompileError::Folder(_))) if !needed => {
-            let note = format!("{error}; generic results only");
-            drop(progress);
-            console::warn(&note);
-            report.warnings.push(note);
-            Ok(None)
-        }
-        Err(error) => Err(Failure::tool(&error)),
-    }
 }
 
 fn evaluate(

@@ -11,7 +11,7 @@ use super::backward::Backward;
 use super::layout::{Labelled, labelled};
 use crate::effects::sorts;
 use crate::robot::Robot;
-use articulated_lab::compare::accuracy::worse;
+use articulated_lab::residual::worse;
 
 /// All results.
 pub(super) struct Report {

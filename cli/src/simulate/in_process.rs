@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use articulated::simulate::Settings;
 use articulated_lab::console::{Progress, collect};
-use articulated_lab::session::{Code, Session};
+use articulated_lab::session::{Generic, Session};
 
 use super::arguments::{self, SimulateArguments};
 use super::files::{FIELDS, Files};
@@ -129,7 +129,7 @@ impl Scene {
             let settings = changes.arguments().and_then(|arguments| settings::of(session, &arguments));
             let (settings, initial) = Failure::both(settings, session.start().map_err(Failure::from))?;
             motion::solvable(session)?;
-            let motion = motion::run(session, &initial, Code::Generic, &settings, &Progress::hidden(), go_on)?;
+            let motion = motion::run(session, &initial, &Generic, &settings, &Progress::hidden(), go_on)?;
             let summary = Summary::new(session, &motion, &settings, "generic");
             for warning in summary.out_of_balance().iter().chain(&motion.error) {
                 crate::console::warn(&format!("{}: {warning}", session.scene.file));

@@ -1,7 +1,8 @@
 //! `articulated simulate`.
 
-mod all;
 pub(crate) mod arguments;
+#[cfg_attr(not(feature = "measure"), path = "uncompiled.rs")]
+mod compiled;
 mod files;
 pub mod in_process;
 mod label;
@@ -18,10 +19,7 @@ mod table;
 mod text;
 
 use articulated::simulate::Settings;
-use articulated_lab::against;
-use articulated_lab::compiled::Rustc;
-use articulated_lab::session::{Code, Session};
-use articulated_lab::straight::Straight;
+use articulated_lab::session::{Generic, Session};
 use articulated_motion::InitialState;
 use serde::Serialize;
 
@@ -31,6 +29,7 @@ use crate::failure::{Failure, INPUT, OK, OUT_OF_TOLERANCE};
 use crate::robot::has_room;
 use crate::{named_scene, output, robot_scene};
 use arguments::SimulateArguments;
+use compiled::Compiler;
 use files::Files;
 use motion::Motion;
 use size::Size;
@@ -45,7 +44,7 @@ struct PrintedScene<'a> {
 
 /// Simulates and writes.
 pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
-    let Some(scene) = &arguments.scene else { return all::run(arguments, format) };
+    let Some(scene) = &arguments.scene else { return compiled::all(arguments, format) };
     if arguments.print_scene {
         if !named_scene::is_robot(scene) {
             return Err(Failure::input([format!(
@@ -65,18 +64,17 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     let settings = settings::of(&session, arguments);
     let (mut settings, initial) = Failure::both(settings, session.start().map_err(Failure::from))?;
     if let Some(file) = &arguments.against {
-        let report = against::measure(&session, &initial, &settings, file)?;
-        console::report(format, || report.text(), || crate::json(&report))?;
-        return Ok(OK);
+        return compiled::against(&session, &initial, &settings, file, format);
     }
     motion::solvable(&session)?;
+    let compiler = arguments.generated.then(Compiler::find).transpose()?;
     let size = Size::look_ahead(session.model.shape(), &mut settings, arguments)?;
     let files = arguments.output.as_deref().map(|path| Files::at(path, &arguments.package, &settings, files::OPTIONS)).transpose()?;
     arguments.mcap.as_deref().map_or(Ok(()), |path| output::file("--mcap", path))?;
     let progress = Progress::of_whole(format!("{}: motion", session.name));
-    let (mut motion, code) = match arguments.generated {
-        true => (by_generated_code(&session, &initial, &settings, &progress)?, "generated"),
-        false => (by_generic_code(&session, &initial, &settings, &progress)?, "generic"),
+    let (mut motion, code) = match &compiler {
+        Some(compiler) => (compiler.run(&session, &initial, &settings, &progress)?, "generated"),
+        None => (by_generic_code(&session, &initial, &settings, &progress)?, "generic"),
     };
     if let (Some(error), Some(full)) = (&mut motion.error, size.and_then(|size| size.ended(motion.recording.len()))) {
         *error += &format!("; {full}");
@@ -104,18 +102,9 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     })
 }
 
-fn by_generated_code(session: &Session, initial: &InitialState, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
-    let (generated, frames) = session.generate(settings.integrator)?;
-    progress.doing(format!("{}: rustc", session.name));
-    let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
-    let robot = Straight::build(&rustc, &generated).map_err(|e| Failure::tool(&e))?;
-    progress.doing(format!("{}: motion", session.name));
-    motion::run(session, initial, Code::Generated(&robot, &frames), settings, progress, &mut || true)
-}
-
 fn by_generic_code(session: &Session, initial: &InitialState, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
     if cfg!(debug_assertions) {
         console::warn("this command was built without optimisation: its speed means little");
     }
-    motion::run(session, initial, Code::Generic, settings, progress, &mut || true)
+    motion::run(session, initial, &Generic, settings, progress, &mut || true)
 }

@@ -76,13 +76,13 @@ pub(super) fn solvable(session: &Session) -> Result<(), Failure> {
 pub(super) fn run(
     session: &Session,
     initial: &InitialState,
-    code: Code<'_>,
+    code: &dyn Code,
     settings: &Settings,
     progress: &Progress,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Motion, Failure> {
     let mut monitor = RunMonitor::new(session, settings, progress);
-    let (outcome, unavailable) = session.run(initial, code, settings, &mut |t, counts| {
+    let (outcome, unavailable) = code.run(session, initial, settings, &mut |t, counts| {
         monitor.look(t, counts);
         go_on()
     })?;

@@ -14,7 +14,6 @@ use articulated_scene::{BuiltRobot, Robot, beyond_sense};
 
 use crate::console;
 use crate::error::Error;
-use crate::straight::Straight;
 
 /// A scene with its moving robot, and further data for the command.
 pub struct Session {
@@ -95,23 +94,8 @@ impl Session {
         Ok((articulated_codegen::generate(&request)?, frames))
     }
 
-    /// Runs the motion, by generated code or by the generic library; `look` gets the time and the
-    /// counts after each step, and returns false to stop the run. Returns the outcome, and events
-    /// of the scene that the code lacks.
-    pub fn run(
-        &self,
-        initial: &InitialState,
-        code: Code<'_>,
-        settings: &Settings,
-        look: &mut dyn FnMut(f64, &Counts) -> bool,
-    ) -> Result<(Outcome, Vec<String>), MotionErrors> {
-        match code {
-            Code::Generic => self.run_by(initial, (&self.model, &self.frame_names()), settings, look),
-            Code::Generated(robot, frames) => self.run_by(initial, (robot, frames), settings, look),
-        }
-    }
-
-    fn run_by<R: Dynamics<f64>, S: AsRef<str>>(
+    /// Runs the motion by this implementation of its functions, and its frames.
+    pub(crate) fn run_by<R: Dynamics<f64>, S: AsRef<str>>(
         &self,
         initial: &InitialState,
         (robot, frames): (&R, &[S]),
@@ -131,13 +115,34 @@ impl Session {
     }
 }
 
-/// Implementation of the functions of a motion.
-#[derive(Clone, Copy)]
-pub enum Code<'a> {
-    /// The generic library.
-    Generic,
-    /// Generated code, and its frames.
-    Generated(&'a Straight, &'a [String]),
+/// Implementation of the functions of a motion. The runs of all are compiled in this crate, which is
+/// optimised more than the command.
+pub trait Code {
+    /// Runs the motion of a scene; `look` gets the time and the counts after each step, and returns
+    /// false to stop the run. Returns the outcome, and events of the scene that the code lacks.
+    fn run(
+        &self,
+        session: &Session,
+        initial: &InitialState,
+        settings: &Settings,
+        look: &mut dyn FnMut(f64, &Counts) -> bool,
+    ) -> Result<(Outcome, Vec<String>), MotionErrors>;
+}
+
+/// The generic library.
+#[derive(Clone, Copy, Debug)]
+pub struct Generic;
+
+impl Code for Generic {
+    fn run(
+        &self,
+        session: &Session,
+        initial: &InitialState,
+        settings: &Settings,
+        look: &mut dyn FnMut(f64, &Counts) -> bool,
+    ) -> Result<(Outcome, Vec<String>), MotionErrors> {
+        session.run_by(initial, (&session.model, &session.frame_names()), settings, look)
+    }
 }
 
 /// The deepest contact that starts under its plane, and how many more there are.
@@ -154,14 +159,14 @@ pub fn joint_of(session: &Session, number: usize) -> Option<String> {
 }
 
 /// The bundled robots, as scenes name them.
-#[cfg(test)]
+#[cfg(all(test, feature = "measure"))]
 fn robots() -> Vec<articulated_codegen::scene::Bundled<'static>> {
     let all = articulated_models::ROBOTS.iter();
     all.map(|robot| articulated_codegen::scene::Bundled { name: robot.name, document: robot.urdf, base: robot.base }).collect()
 }
 
 /// A bundled scene.
-#[cfg(test)]
+#[cfg(all(test, feature = "measure"))]
 pub(crate) fn bundled(name: &str) -> Session {
     use articulated_codegen::scene::{Scene, open_in};
     let scene = articulated_models::scene(name).expect("a bundled scene");
@@ -171,7 +176,7 @@ pub(crate) fn bundled(name: &str) -> Session {
 }
 
 /// The scene of a file.
-#[cfg(test)]
+#[cfg(all(test, feature = "measure"))]
 pub(crate) fn opened(path: &std::path::Path) -> Session {
     let prepared = articulated_codegen::scene::open(path, &robots()).expect("a scene that can be opened");
     let folder = path.parent().expect("a folder").to_owned();

@@ -1,11 +1,14 @@
 //! A robot by its generated code, compiled and loaded, as anything that has dynamics.
 
+use articulated::simulate::{Counts, Settings};
 use articulated::{Dynamics, FunctionError, FunctionId, Shape, check_count, check_length};
 use articulated_codegen::Generated;
 use articulated_core::algorithm::functions;
+use articulated_motion::{InitialState, MotionErrors, Outcome};
 
 use crate::compiled::{CompileError, Compiled, Rustc};
 use crate::native::Kernel;
+use crate::session::{Code, Session};
 
 /// Generated code of some functions of a robot.
 pub struct Straight {
@@ -57,5 +60,25 @@ impl Dynamics<f64> for Straight {
         }
         kernel.call(arguments, out);
         Ok(())
+    }
+}
+
+/// Generated code for the motion of a scene, with the names of its frames.
+pub struct StraightMotion {
+    /// The code.
+    pub robot: Straight,
+    /// The frames.
+    pub frames: Vec<String>,
+}
+
+impl Code for StraightMotion {
+    fn run(
+        &self,
+        session: &Session,
+        initial: &InitialState,
+        settings: &Settings,
+        look: &mut dyn FnMut(f64, &Counts) -> bool,
+    ) -> Result<(Outcome, Vec<String>), MotionErrors> {
+        session.run_by(initial, (&self.robot, &self.frames), settings, look)
     }
 }

@@ -6,9 +6,9 @@ use std::time::Instant;
 use articulated_codegen::Precision;
 use articulated_core::algorithm::Function;
 
-use crate::compare::timing::Run;
 use crate::compiled::{Compiled, packed, unpacked};
 use crate::native::Kernel;
+use crate::timing::Run;
 
 /// A function with the arguments of every state, as it takes them.
 pub(super) struct Contender {

@@ -12,8 +12,8 @@ use articulated_core::algorithm::Function;
 use articulated_core::model::Model;
 use articulated_reference::{Big, Exact, ROUNDOFF, scales};
 
-use crate::compare::accuracy::worse;
-use crate::compare::accuracy::{above_residues, backward, exact, inverse_of, largest, singular};
+use crate::compare::accuracy::{above_residues, backward, singular};
+use crate::residual::{exact, inverse_of, largest, worse};
 
 /// The result of one state for one contender.
 #[derive(Clone, Copy, Debug, Default)]

@@ -15,13 +15,13 @@ use super::words;
 use crate::compare::accuracy::Reference;
 use crate::compare::manifest;
 use crate::compare::peer::{self, Peer};
-use crate::compare::timing::{self, Run};
 use crate::compiled::{Compiled, Rustc, Target};
 use crate::console::Progress;
 use crate::error::Error;
 use crate::parallel;
 use crate::process::Folder;
 use crate::robot::Robot;
+use crate::timing::{self, Run};
 
 /// A level's library.
 struct BuiltRobot {

@@ -6,8 +6,8 @@ use articulated_codegen::Precision;
 use serde::Serialize;
 
 use crate::compare::accuracy::Against;
-use crate::compare::timing::Summary;
 use crate::json::Units;
+use crate::timing::Summary;
 
 /// Settings of the measurement.
 #[derive(Clone, Debug)]

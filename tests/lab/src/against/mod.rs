@@ -13,13 +13,13 @@ use articulated::simulate::{IntegratorId, Settings};
 use articulated_motion::InitialState;
 
 use crate::compare::manifest::{self, Library};
-use crate::compare::timing::{self, Run};
 use crate::compiled::Rustc;
 use crate::console::Progress;
 use crate::error::Error;
 use crate::process::Folder;
 use crate::session::Session;
 use crate::straight::Straight;
+use crate::timing::{self, Run};
 use ours::Ours;
 use peers::Peer;
 pub use report::Report;

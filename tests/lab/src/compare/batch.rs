@@ -8,9 +8,9 @@ use serde::Serialize;
 use super::contender::{Contender, clock};
 use super::manifest::{BOUND, SINGLE_BOUND};
 use super::peer::{self, Peer};
-use super::timing::{self, Run, Summary};
 use crate::compiled::{Batch, CompiledBatches};
 use crate::native::Numbers;
+use crate::timing::{self, Run, Summary};
 
 /// A function of many states at once, in one type and layout.
 #[derive(Clone, Debug, Serialize)]

@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 use articulated_core::algorithm::{Function, Workspace};
 use articulated_core::model::Model;
 
-use super::timing::Run;
 use crate::compiled::Compiled;
 use crate::native::{Kernel, PeerKernel};
+use crate::timing::Run;
 
 /// One way to compute a function. A run through all states is timed, so that contenders that
 /// compute several at once have a time per state too.

@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use super::contender::{Contender, clock};
 use super::peer::{self, Peer};
-use super::timing::{self, Run, Summary};
 use crate::native::PeerKernel;
+use crate::timing::{self, Run, Summary};
 
 /// A peer's function of several states a call.
 #[derive(Clone, Debug, Serialize)]

@@ -1,6 +1,6 @@
 //! Generated code against generic code and peers: operations, bytes, times and errors.
 
-pub mod accuracy;
+pub(crate) mod accuracy;
 mod batch;
 mod chart;
 pub mod contender;
@@ -11,7 +11,6 @@ pub(crate) mod peer;
 mod prepare;
 mod report;
 mod text;
-pub mod timing;
 
 use std::path::Path;
 
@@ -26,6 +25,7 @@ use crate::error::Error;
 use crate::parallel;
 use crate::process::Folder;
 use crate::robot::Robot;
+use crate::timing;
 use crate::tips::Tips;
 use accuracy::Reference;
 use batch::{Beside, Many};

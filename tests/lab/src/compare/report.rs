@@ -18,11 +18,11 @@ use super::making::Making;
 use super::manifest::{Cost, Library};
 use super::peer::Peer;
 use super::prepare::Prepared;
-use super::timing::{self, Summary};
 use crate::compiled::{Rustc, Target};
 use crate::json::Units;
 use crate::ledger::{Stage, stages};
 use crate::robot::Robot;
+use crate::timing::{self, Summary};
 use crate::tips::Tips;
 
 const CALL: &str = "ns per call";

@@ -9,11 +9,11 @@ use articulated_core::algorithm::{Dim, Function};
 use super::chain::chain;
 use super::report::Point;
 use crate::compare::contender::Contender;
-use crate::compare::timing::{self, Run};
 use crate::compiled::{CompileError, Compiled, Filler, Rustc};
 use crate::error::Error;
 use crate::states::{self, State};
 use crate::table::counted;
+use crate::timing::{self, Run};
 
 /// Random states of the evaluations: enough that branches are not predicted from memory, few enough
 /// that those of a long chain stay in the cache.

@@ -1,9 +1,9 @@
 //! The measurements as a drawing: a panel for each function, both axes logarithmic.
 
 use super::report::{Crossover, Point, Report};
-use crate::compare::timing::Summary;
 use crate::plot::{Anchor, Axis, Dash, Drawing, INK, SMALL, Text};
 use crate::table::counted;
+use crate::timing::Summary;
 
 const PANEL: f64 = 350.0;
 const HEIGHT: f64 = 360.0;

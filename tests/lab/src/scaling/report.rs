@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
-use crate::compare::timing::Summary;
 use crate::json::Units;
+use crate::timing::Summary;
 
 /// Of all numbers that have one.
 pub(super) const UNITS: Units = Units(&[

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::report::{Crossover, Growth, Point, Report};
-use crate::compare::timing::Summary;
 use crate::table::{Table, counted, number, wrapped};
+use crate::timing::Summary;
 
 pub(super) fn text(report: &Report) -> String {
     let mut out = format!(

@@ -21,7 +21,7 @@ use articulated_reference::{Big, Exact, is_plain, scales};
 use super::condition::{condition, diagonal, norm, sensitivity};
 use super::machine::{Machine, cast, exact, wide, widened};
 use super::row::{Case, Row};
-use crate::compare::accuracy::worse;
+use crate::residual::worse;
 use crate::table::counted;
 
 /// Robots of more degrees of freedom than this are judged without derivatives: 96 digits of its

@@ -13,8 +13,8 @@ use super::levels::{self, BuiltRobot};
 use super::machine::Machine;
 use super::robots::{state, states};
 use super::row::{Case, Row};
-use crate::compare::accuracy::worse;
 use crate::error::Error;
+use crate::residual::worse;
 use crate::robot::Robot;
 use crate::states::quaternions;
 

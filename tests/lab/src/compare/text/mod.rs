@@ -9,10 +9,10 @@ use articulated_core::Plain;
 
 use super::accuracy::Against;
 use super::report::{FunctionReport, Report, VariantReport};
-use super::timing::Summary;
 use crate::ledger::Stage;
 use crate::robot::named;
 use crate::table::{Table, counted, freedom, plain, wrapped};
+use crate::timing::Summary;
 
 /// The summary, then the description of the measurement, then the tables.
 pub(super) fn text(report: &Report) -> String {

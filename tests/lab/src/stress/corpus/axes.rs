@@ -7,7 +7,7 @@ use articulated_core::model::Model;
 use articulated_reference::{Big, Exact};
 
 use super::Effort;
-use crate::compare::accuracy::worse;
+use crate::residual::worse;
 use crate::stress::judge::{BACKWARD, Ends, Judge, State, call_on_view, called, scale};
 use crate::stress::machine::{Machine, cast};
 use crate::stress::robots::{Body, Builder, built, state, states};

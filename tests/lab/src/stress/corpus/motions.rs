@@ -7,7 +7,7 @@ use articulated_core::description::{Base, JointKind, Origin};
 use articulated_core::model::Model;
 
 use super::Effort;
-use crate::compare::accuracy::worse;
+use crate::residual::worse;
 use crate::states::SplitMix64;
 use crate::stress::judge::call;
 use crate::stress::robots::{Body, Builder, built, chain, normalise};

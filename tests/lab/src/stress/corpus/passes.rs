@@ -6,7 +6,7 @@ use articulated_core::model::Model;
 
 use super::Effort;
 use super::axes::from_textbook;
-use crate::compare::accuracy::worse;
+use crate::residual::worse;
 use crate::stress::judge::{BACKWARD, State};
 use crate::stress::robots::{built, hard, states};
 use crate::stress::row::{Case, Row};

@@ -8,7 +8,7 @@ use articulated_core::spatial::{Twist, Vector3};
 use articulated_reference::Big;
 
 use super::Effort;
-use crate::compare::accuracy::worse;
+use crate::residual::worse;
 use crate::stress::row::{Case, Row};
 
 pub(super) const NAME: &str = "screws";

@@ -7,7 +7,7 @@ use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
 
 use super::Effort;
-use crate::compare::accuracy::worse;
+use crate::residual::worse;
 use crate::stress::robots::{Body, Builder};
 use crate::stress::row::{Case, Row};
 

@@ -12,7 +12,7 @@ use articulated_core::spatial::{Matrix3, Placement, Vector3};
 use articulated_reference::Big;
 
 use super::Effort;
-use crate::compare::accuracy::worse;
+use crate::residual::worse;
 use crate::states::SplitMix64;
 use crate::stress::judge::{BACKWARD, Ends, Judge, State, call};
 use crate::stress::robots::{Body, Builder, built, normalise, state, states};

@@ -9,7 +9,7 @@ use articulated_reference::{Big, Magnitude, norms, scales};
 
 use super::BuiltRobot;
 use super::contract::Contract;
-use crate::compare::accuracy::worse;
+use crate::residual::worse;
 use crate::stress::judge::{Judge, State, call, called, scale};
 use crate::stress::machine::{cast, exact};
 use crate::stress::row::{Case, Row};

@@ -2,18 +2,17 @@
 
 use std::path::Path;
 
-use articulated_lab::compiled::Rustc;
-use articulated_lab::session::Code;
-use articulated_lab::straight::Straight;
+use articulated_lab::session::Generic;
 use serde::Serialize;
 
-use super::arguments::SimulateArguments;
-use super::summary::Summary;
-use super::{motion, settings};
+use super::Compiler;
 use crate::arguments::Format;
 use crate::console::{self, Progress};
 use crate::failure::{Failure, OK, OUT_OF_TOLERANCE};
 use crate::named_scene;
+use crate::simulate::arguments::SimulateArguments;
+use crate::simulate::summary::Summary;
+use crate::simulate::{motion, settings};
 use crate::table::{Table, number};
 
 #[derive(Clone, Debug, Serialize)]
@@ -36,13 +35,13 @@ struct Row {
 
 /// Runs every bundled scene, by generated and by generic code, without writing files. The status is
 /// the worst one.
-pub(super) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
-    let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
+pub(in crate::simulate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
+    let compiler = Compiler::find()?;
     let progress = Progress::new(articulated_models::SCENES.len());
     let mut rows = Vec::new();
     for scene in articulated_models::SCENES {
         progress.doing(scene.name.to_owned());
-        rows.push(row(scene.name, arguments, &rustc)?);
+        rows.push(row(scene.name, arguments, &compiler)?);
         progress.step();
     }
     drop(progress);
@@ -55,15 +54,14 @@ fn status(rows: &[Row]) -> u8 {
     if rows.iter().all(|row| row.status == "ok") { OK } else { OUT_OF_TOLERANCE }
 }
 
-fn row(name: &'static str, arguments: &SimulateArguments, rustc: &Rustc) -> Result<Row, Failure> {
+fn row(name: &'static str, arguments: &SimulateArguments, compiler: &Compiler) -> Result<Row, Failure> {
     let session = named_scene::session(Path::new(name))?;
     let settings = settings::of(&session, arguments)?;
     let initial = session.start()?;
-    let (generated, frames) = session.generate(settings.integrator)?;
-    let robot = Straight::build(rustc, &generated).map_err(|e| Failure::tool(&e))?;
+    let code = compiler.code(&session, &settings)?;
     let quiet = Progress::hidden();
-    let fast = motion::run(&session, &initial, Code::Generated(&robot, &frames), &settings, &quiet, &mut || true)?;
-    let slow = motion::run(&session, &initial, Code::Generic, &settings, &quiet, &mut || true)?;
+    let fast = motion::run(&session, &initial, &code, &settings, &quiet, &mut || true)?;
+    let slow = motion::run(&session, &initial, &Generic, &settings, &quiet, &mut || true)?;
     let (fast, slow) = (Summary::new(&session, &fast, &settings, "generated"), Summary::new(&session, &slow, &settings, "generic"));
     if let Some(error) = fast.error.as_ref().or(slow.error.as_ref()) {
         return Err(Failure::input([format!("{name}: {error}")]));

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use articulated_lab::scaling::{Settings, measure};
 use clap::Args;
 
+use super::chart;
 use crate::arguments::Format;
 use crate::failure::Failure;
 use crate::names::{self, Names, known};
@@ -42,7 +43,7 @@ pub(crate) fn run(arguments: &ScalingArguments, format: Format) -> Result<(), Fa
     if cfg!(debug_assertions) {
         console::warn("this command was built without optimisation: times of generic code, and of the generation, mean little");
     }
-    arguments.chart.as_deref().map_or(Ok(()), output::chart)?;
+    arguments.chart.as_deref().map_or(Ok(()), chart::checked)?;
     let settings = Settings {
         joints: arguments.joints.clone(),
         functions: names::flat(&arguments.functions),

@@ -6,6 +6,7 @@ use articulated_core::lanes::Real;
 use articulated_lab::compare::{Settings, measure};
 use clap::Args;
 
+use super::chart;
 use crate::arguments::{Format, Language, RobotArguments, real, types_of_batch};
 use crate::edits::FrameArguments;
 use crate::failure::{Failure, OK};
@@ -69,7 +70,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
     let mut robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     robot.has_a_level_of_rounding()?;
     robot.keeps_its_files("--chart", arguments.chart.as_deref())?;
-    arguments.chart.as_deref().map_or(Ok(()), output::chart)?;
+    arguments.chart.as_deref().map_or(Ok(()), chart::checked)?;
     robot.options.rust_mut().forbid_unsafe |= arguments.forbid_unsafe;
     let built = robot.read()?;
     let reading = &built.reading;
