@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use articulated_core::algorithm::UserFunction;
 use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Span, Spanned, summary};
 use articulated_formats::LeaveOut;
 use articulated_scene::{Loader, Robot, beside};
@@ -201,7 +202,40 @@ impl Build {
     /// `motion`, for all functions that its motion calls.
     #[must_use]
     pub fn functions<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
-        self.request.options.functions = names.into_iter().map(|name| name.into().into()).collect();
+        let options = &mut self.request.options;
+        options.functions = names.into_iter().map(|name| name.into().into()).collect();
+        for user in options.users.iter() {
+            if options.functions.iter().all(|name| name.trim() != user.name) {
+                options.functions.push(user.name.into());
+            }
+        }
+        self
+    }
+
+    /// Adds a function of your own ([`user_function!`](articulated_core::user_function)): it is
+    /// generated under its name, and [`functions`](Self::functions) and derivatives may name it.
+    ///
+    /// ```no_run
+    /// // build.rs
+    /// # use articulated_codegen::Build;
+    /// # use articulated_codegen::core::{algorithm::potential_energy, user_function};
+    /// user_function! {
+    ///     /// k U(q): the potential energy, weighed.
+    ///     pub struct Weighed;
+    ///     fn weighed<S>(robot, work, q: [Nq] "rad", k: [] "1") -> (cost: [] "J") {
+    ///         potential_energy(robot, work, q, cost);
+    ///         cost[0] *= k[0];
+    ///     }
+    /// }
+    /// Build::new("robots/arm.urdf").functions(["slope = gradient(weighed, q)"]).function(Weighed).write("arm");
+    /// ```
+    #[must_use]
+    pub fn function<F: UserFunction>(mut self, function: F) -> Self {
+        let options = &mut self.request.options;
+        options.users.push(function);
+        if options.functions.iter().all(|name| name.trim() != F::NAME) {
+            options.functions.push(F::NAME.into());
+        }
         self
     }
 
@@ -400,7 +434,8 @@ impl Build {
             c.prefix.get_or_insert_with(|| name.to_owned());
             return write_c(folder, &request);
         }
-        let cache = Cache::new(&path, &request);
+        // The cache does not see what a function of the user contains.
+        let cache = if request.options.users.is_empty() { Cache::new(&path, &request) } else { None };
         if let Some(warnings) = cache.as_ref().and_then(Cache::warnings) {
             return Ok(Written { path, warnings, generated: false });
         }

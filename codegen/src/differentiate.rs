@@ -1,15 +1,17 @@
 //! Derivatives of traced functions.
 //!
 //! With respect to a configuration q they are those of f(q ⊕ δ) at δ = 0: the function is traced
-//! with q ⊕ δ in the place of q, differentiated by the inputs δ, and then δ is zero.
+//! with q ⊕ δ in the place of q, differentiated by the inputs δ, and then δ is zero. In coordinates
+//! they are those of f(q/|q|), in which each quaternion has length one.
 
+use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, FunctionId, Shape, small_step};
-use articulated_core::model::Model;
-use num_traits::Zero;
+use articulated_core::model::{JointInfo, Model};
+use num_traits::{One, Zero};
 
 use crate::graph::{Graph, NodeId, Op};
 use crate::pass::{self, adjoint, dce, tangent};
-use crate::spec::{Derivative, FunctionSpec, FunctionTerm, Transform};
+use crate::spec::{Derivative, FunctionSpec, FunctionTerm, Output, Transform, weights};
 use crate::sym::Sym;
 
 /// The arguments of the matrices of derivatives of inverse and forward dynamics.
@@ -19,6 +21,10 @@ const BLOCKS: [&[Argument]; 3] = [&[Argument::Q], &[Argument::V], &[Argument::A,
 pub(crate) struct Steps<'a> {
     transform: &'a Transform,
     arguments: &'a [Argument],
+    /// Those that are weights.
+    weights: Vec<Argument>,
+    /// Lengths of the function's results.
+    results: Vec<usize>,
     shape: Shape,
 }
 
@@ -26,7 +32,10 @@ impl<'a> Steps<'a> {
     /// For a derivative; `arguments`: those of the function and of the derivative.
     pub(crate) fn of(spec: &'a FunctionSpec, arguments: &'a [Argument], model: &Model<f64>) -> Option<Self> {
         let transform = spec.transform.as_ref()?;
-        Some(Self { transform, arguments, shape: model.shape() })
+        let (part, shape) = (&spec.parts[0], model.shape());
+        let length = |output: &Output| output.dims.iter().map(|d| d.len(shape)).product();
+        let results = part.outputs().iter().map(length).collect();
+        Some(Self { transform, arguments, weights: weights(part), results, shape })
     }
 
     /// The number of the argument δ of a configuration; `None` for arguments that are differentiated
@@ -38,6 +47,10 @@ impl<'a> Steps<'a> {
 
     /// q ⊕ δ for a configuration by which the function is differentiated; other arguments as given.
     pub(crate) fn moved(&self, argument: Argument, given: Vec<Sym>, model: &Model<Sym>) -> Vec<Sym> {
+        let is_known = argument.is_configuration() && self.transform.wrt.contains(&argument);
+        if is_known && self.transform.in_coordinates {
+            return of_length_one(given, model);
+        }
         let Some(step) = self.step(argument) else { return given };
         let delta: Vec<Sym> = (0..self.shape.nv).map(|k| Sym::input(step, k)).collect();
         let mut moved = vec![Sym::zero(); given.len()];
@@ -54,6 +67,19 @@ impl<'a> Steps<'a> {
             (0..count).map(move |k| (number, k)).collect::<Vec<_>>()
         };
         self.transform.wrt.iter().flat_map(of).collect()
+    }
+
+    /// The node of the weight of number `k` of all results.
+    fn weight(&self, graph: &mut Graph, mut k: usize) -> NodeId {
+        for weights in &self.weights {
+            let count = weights.len(self.shape);
+            if k < count {
+                let number = self.arguments.iter().rposition(|a| a == weights).unwrap_or_default();
+                return graph.input(number, k);
+            }
+            k -= count;
+        }
+        graph.constant(0.0)
     }
 
     /// The number of an argument of the derivative.
@@ -78,12 +104,13 @@ impl<'a> Steps<'a> {
 
     /// The derivative of the graph of the function.
     pub(crate) fn derivative(&self, graph: &Graph) -> Graph {
-        let (inputs, weights) = (self.inputs(), self.argument("weights"));
+        let inputs = self.inputs();
+        let weight = |graph: &mut Graph, k: usize| self.weight(graph, k);
         let found = match self.transform.kind {
-            Derivative::Vjp => adjoint(graph, &inputs, |new, k| new.input(weights, k)),
+            Derivative::Vjp => adjoint(graph, &inputs, weight),
             Derivative::Gradient => adjoint(graph, &inputs, |new, _| new.constant(1.0)),
             Derivative::Jvp => self.along(graph),
-            Derivative::Hvp => self.along(&dce(&adjoint(graph, &inputs, |new, k| new.input(weights, k)))),
+            Derivative::Hvp => self.along(&dce(&adjoint(graph, &inputs, weight))),
             Derivative::Jacobian => self.jacobian(graph, &inputs),
         };
         self.at_rest(&found)
@@ -109,15 +136,19 @@ impl<'a> Steps<'a> {
                 pass::gradients(&mut reverse, &[graph.outputs[row]], graph.nodes().len(), inputs, |_, _| one)
             })
             .collect();
-        // One array for each argument: its rows, one after the other.
-        let (mut first, mut by_columns, mut by_rows) = (0, Vec::new(), Vec::new());
-        for argument in &self.transform.wrt {
-            let count = self.transform.dims(*argument).iter().map(|d| d.len(self.shape)).product::<usize>();
-            for row in 0..rows {
-                by_columns.extend((first..first + count).map(|column| columns[column][row]));
-                by_rows.extend((first..first + count).map(|column| gradients[row][column]));
+        // One array for each result and argument: its rows, one after the other.
+        let (mut below, mut by_columns, mut by_rows) = (0, Vec::new(), Vec::new());
+        for result in &self.results {
+            let mut first = 0;
+            for argument in &self.transform.wrt {
+                let count = self.transform.dims(*argument).iter().map(|d| d.len(self.shape)).product::<usize>();
+                for row in below..below + result {
+                    by_columns.extend((first..first + count).map(|column| columns[column][row]));
+                    by_rows.extend((first..first + count).map(|column| gradients[row][column]));
+                }
+                first += count;
             }
-            first += count;
+            below += result;
         }
         (forward.outputs, reverse.outputs) = (by_columns, by_rows);
         let [forward, reverse] = [forward, reverse].map(|graph| dce(&self.at_rest(&graph)));
@@ -156,6 +187,16 @@ impl<'a> Steps<'a> {
         new.outputs = splice(&mut new, &graph, |new, argument, _| steps.contains(&argument).then(|| new.constant(0.0)));
         new
     }
+}
+
+/// The configuration with each quaternion divided by its length.
+pub(crate) fn of_length_one(mut q: Vec<Sym>, model: &Model<Sym>) -> Vec<Sym> {
+    for quaternion in model.joints().iter().filter_map(JointInfo::quaternion) {
+        let square = q[quaternion.clone()].iter().fold(Sym::zero(), |sum, x| sum + *x * *x);
+        let inverse = Sym::one() / square.sqrt();
+        q[quaternion].iter_mut().for_each(|x| *x *= inverse);
+    }
+    q
 }
 
 /// Adds the nodes of `graph` to another, with some of its inputs replaced. Returns its outputs.

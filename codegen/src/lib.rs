@@ -85,7 +85,7 @@ pub use parameters::Parameter;
 pub use plan::{MOST_FREEDOMS, check_names, check_words, defined, massless, undefined};
 pub use request::{Options, Request};
 pub use size::MAX_CODE_SIZE;
-pub use spec::{Constant, Derivative, FunctionSpec, FunctionTerm, Output, Transform};
+pub use spec::{Constant, Derivative, FunctionSpec, FunctionTerm, Output, Transform, UserFunctions};
 pub use sym::Sym;
 pub use target::{COptions, File, RustOptions, Target, identifier, is_keyword};
 
@@ -229,7 +229,10 @@ pub fn function(name: &str) -> Result<&'static Function<Sym>, Diagnostic> {
         let groups = groups.filter(|_| function_groups::functions_of(name).is_none());
         let known: Vec<&str> = functions::<Sym>().iter().map(|f| f.name).chain(groups).collect();
         let nearest = resolve_synonym(name, known.iter().copied());
-        let rest = nearest.map_or_else(|| format!("there are: {}", known.join(", ")), |nearest| format!("did you mean `{nearest}`?"));
+        let rest = nearest.map_or_else(
+            || format!("there are: {}; a function of your own is given to a build script, by Build::function", known.join(", ")),
+            |nearest| format!("did you mean `{nearest}`?"),
+        );
         Diagnostic::refusal("", Place::DOCUMENT, Code::UnknownFunction, format!("unknown function `{name}`, {rest}"))
     })
 }

@@ -62,7 +62,7 @@ pub(crate) fn plan(request: &Request, members: &BTreeMap<String, String>, log: &
 /// The readable functions. Reports invalid words of the options, which do not depend on the robot.
 fn words(options: &Options, log: &mut Diagnostics) -> Vec<Entry> {
     options.target.check(options, log);
-    let read = |(k, text): (usize, &Spanned<String>)| match FunctionSpec::parse(text) {
+    let read = |(k, text): (usize, &Spanned<String>)| match FunctionSpec::parse_with(text, &options.users) {
         Ok(function) => Some((k, function)),
         Err(error) => {
             log.push(error.at(text));

@@ -8,6 +8,7 @@ use articulated_core::precision::Precision;
 use articulated_scene::{BuiltRobot, RobotOptions, RobotRequest, Scene};
 
 use crate::function_groups;
+use crate::spec::UserFunctions;
 use crate::target::Target;
 use crate::target::rust::is_name;
 
@@ -34,6 +35,8 @@ pub struct Options {
     /// The requested functions, each as [`crate::FunctionSpec::parse`] reads it: a name of
     /// [`articulated_core::algorithm::functions`], or `name = first + second(a = 0)`.
     pub functions: Vec<Spanned<String>>,
+    /// Functions of the user, which `functions` may name.
+    pub users: UserFunctions,
     /// The functions that `motion` in `functions` means: those that the motion of a scene calls;
     /// empty without such a scene.
     pub motion: Vec<String>,
@@ -64,6 +67,7 @@ impl Default for Options {
         Self {
             robot: RobotOptions::default(),
             functions: vec!["placements".into(), "inverse_dynamics".into()],
+            users: UserFunctions::default(),
             motion: Vec::new(),
             parameters: Vec::new(),
             rename: Vec::new(),

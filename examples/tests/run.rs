@@ -43,6 +43,15 @@ fn a_known_payload_is_held_still() {
 }
 
 #[test]
+fn a_controller_of_ones_own_is_that_by_hand_in_fewer_instructions() {
+    let text = printed(env!("CARGO_BIN_EXE_impedance"));
+    assert!(number(&text, "largest difference") < 1e-12, "{text}");
+    let counts: Vec<u32> = text.lines().nth(1).unwrap().split([' ', ',']).filter_map(|word| word.parse().ok()).collect();
+    assert!(counts.len() == 2 && counts[0] < counts[1], "{text}");
+    assert!(number(&text, "stiffness of the first joint") > 0.0, "{text}");
+}
+
+#[test]
 fn the_quadruped_stands() {
     let text = printed(env!("CARGO_BIN_EXE_quadruped"));
     assert!(number(&text, "it stands at") < 1e-2, "{text}");

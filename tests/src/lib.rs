@@ -44,4 +44,9 @@ pub struct Recipes;
 #[doc = include_str!("../../docs/simulation.md")]
 pub struct Simulation;
 
+/// The examples of `docs/derivatives.md`, compiled and run as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/derivatives.md")]
+pub struct Derivatives;
+
 pub use articulated_formats::urdf::write as urdf_text;

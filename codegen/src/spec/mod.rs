@@ -10,11 +10,14 @@
 mod constant;
 mod transform;
 
-use articulated_core::algorithm::{Argument, Dim, Function, functions};
+use std::fmt;
+
+use articulated_core::algorithm::{Argument, Dim, Function, FunctionId, UserFunction, functions};
 use articulated_core::diagnostic::{Code, Diagnostic};
 use articulated_core::model::Model;
 
 pub use constant::Constant;
+pub(crate) use transform::weights;
 pub use transform::{Derivative, Transform};
 
 use constant::{constant, entries};
@@ -55,6 +58,40 @@ pub struct FunctionTerm {
     pub sines: bool,
 }
 
+/// Functions of the user, which requests may name beside those of the table.
+#[derive(Clone, Default)]
+pub struct UserFunctions(Vec<&'static Function<Sym>>);
+
+impl UserFunctions {
+    /// Adds a function, in place of an earlier one of the same name.
+    pub fn push<F: UserFunction>(&mut self, function: F) {
+        self.0.retain(|other| other.name != F::NAME);
+        self.0.push(Function::of_user(function));
+    }
+
+    /// The functions.
+    pub fn iter(&self) -> impl Iterator<Item = &'static Function<Sym>> + '_ {
+        self.0.iter().copied()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+impl fmt::Debug for UserFunctions {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(self.iter().map(|function| function.name)).finish()
+    }
+}
+
+impl PartialEq for UserFunctions {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.len() == other.0.len() && self.0.iter().zip(&other.0).all(|(a, b)| std::ptr::eq(*a, *b))
+    }
+}
+
 /// An entry of the list of functions that is wrong.
 pub(crate) fn wrong_entry(entry: &str, reason: &str) -> Diagnostic {
     Diagnostic::refusal("", (Default::default(), "functions"), Code::FunctionSpec, format!("`{entry}`: {reason}"))
@@ -66,8 +103,13 @@ impl FunctionSpec {
         Self { name: function.name.into(), parts: vec![FunctionTerm { function, constants: Vec::new(), sines: false }], transform: None }
     }
 
-    /// Reads one entry of a list of functions.
+    /// Reads one entry of a list of functions of the table.
     pub fn parse(text: &str) -> Result<Self, Diagnostic> {
+        Self::parse_with(text, &UserFunctions::default())
+    }
+
+    /// The same, with functions of the user beside those of the table.
+    pub fn parse_with(text: &str, users: &UserFunctions) -> Result<Self, Diagnostic> {
         let wrong = |reason: String| wrong_entry(text.trim(), &reason);
         let (name, rest) = match split_outside(text, '=') {
             Some((name, rest)) => (Some(name.trim()), rest),
@@ -76,7 +118,7 @@ impl FunctionSpec {
         let mut parts = Vec::new();
         let derivative = transform::split(rest);
         for part in all_outside(derivative.map_or(rest, |(_, function, _)| function), '+') {
-            parts.push(FunctionTerm::parse(part.trim(), &wrong)?);
+            parts.push(FunctionTerm::parse(part.trim(), users, &wrong)?);
         }
         let transform = match (derivative, parts.as_slice()) {
             (None, _) => None,
@@ -89,7 +131,7 @@ impl FunctionSpec {
             (None, [one]) => one.function.name,
             (None, _) => return Err(wrong("several functions in one need a name: write name = first + second".into())),
         };
-        let twice = (1..parts.len()).find(|&k| parts[..k].iter().any(|p| p.function.id == parts[k].function.id));
+        let twice = (1..parts.len()).find(|&k| parts[..k].iter().any(|p| p.function.name == parts[k].function.name));
         if let Some(k) = twice {
             return Err(wrong(format!("`{}` is in it twice", parts[k].function.name)));
         }
@@ -110,12 +152,8 @@ impl FunctionSpec {
 
     /// The results, in order.
     pub fn outputs(&self) -> Vec<Output> {
-        let of_part = |part: &FunctionTerm| {
-            let function = part.function;
-            Output { name: function.name, dims: function.gives.to_vec(), unit: function.unit.to_owned() }
-        };
         match &self.transform {
-            None => self.parts.iter().map(of_part).collect(),
+            None => self.parts.iter().flat_map(FunctionTerm::outputs).collect(),
             Some(transform) => transform.outputs(&self.parts[0]),
         }
     }
@@ -123,7 +161,7 @@ impl FunctionSpec {
     /// What each part computes, in a sentence.
     pub(crate) fn summaries(&self) -> Vec<String> {
         match &self.transform {
-            None => self.parts.iter().map(|part| part.function.summary.to_owned()).collect(),
+            None => self.parts.iter().map(|part| part.summary().to_owned()).collect(),
             Some(transform) => vec![transform.summary(&self.parts[0])],
         }
     }
@@ -131,8 +169,14 @@ impl FunctionSpec {
     /// The arguments without those of a derivative.
     pub(crate) fn arguments_of_parts(&self) -> Vec<Argument> {
         let taken = |a: &Argument| self.parts.iter().any(|p| p.function.takes.contains(a) && p.constant(*a).is_none());
+        let mut own: Vec<Argument> = Vec::new();
+        for argument in self.parts.iter().flat_map(|p| p.function.takes) {
+            if taken(argument) && !Argument::ALL.contains(argument) && !own.contains(argument) {
+                own.push(*argument);
+            }
+        }
         let sines = self.parts.iter().any(|p| p.sines).then_some(Argument::SinCos);
-        Argument::ALL.into_iter().filter(taken).chain(sines).collect()
+        Argument::ALL.into_iter().filter(taken).chain(own).chain(sines).collect()
     }
 
     /// Why it cannot be called so, if it cannot.
@@ -142,7 +186,7 @@ impl FunctionSpec {
         if !plain || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
             return Some("is not a valid name for a function: expected lower case letters, digits and _");
         }
-        let is_part = |f: &Function<Sym>| self.transform.is_none() && self.parts.iter().any(|part| part.function.id == f.id);
+        let is_part = |f: &Function<Sym>| self.transform.is_none() && self.parts.iter().any(|part| part.function.name == f.name);
         let is_another = |f: &Function<Sym>| f.name == name && !is_part(f);
         if functions::<Sym>().iter().any(is_another) {
             return Some("is what another function is called: expected a name of its own");
@@ -163,7 +207,13 @@ impl FunctionSpec {
     /// The function of the table, if it is one unchanged.
     pub fn as_function(&self) -> Option<&'static Function<Sym>> {
         match self.parts.as_slice() {
-            [part] if self.transform.is_none() && part.constants.is_empty() && !part.sines && part.function.name == self.name => {
+            [part]
+                if self.transform.is_none()
+                    && part.function.id != FunctionId::user
+                    && part.constants.is_empty()
+                    && !part.sines
+                    && part.function.name == self.name =>
+            {
                 Some(part.function)
             }
             _ => None,
@@ -185,7 +235,7 @@ impl FunctionSpec {
 }
 
 impl FunctionTerm {
-    fn parse(text: &str, wrong: &dyn Fn(String) -> Diagnostic) -> Result<Self, Diagnostic> {
+    fn parse(text: &str, users: &UserFunctions, wrong: &dyn Fn(String) -> Diagnostic) -> Result<Self, Diagnostic> {
         let (name, arguments) = match text.split_once('(') {
             None => (text, None),
             Some((name, rest)) => {
@@ -196,7 +246,8 @@ impl FunctionTerm {
         if name.is_empty() {
             return Err(wrong("expected a function, as in name = first + second(a = 0)".into()));
         }
-        let function = function(name).map_err(|error| Diagnostic { field: "functions".into(), ..error })?;
+        let own = users.0.iter().find(|function| function.name == name).copied();
+        let function = own.map_or_else(|| function(name), Ok).map_err(|error| Diagnostic { field: "functions".into(), ..error })?;
         let mut constants = Vec::new();
         let mut sines = false;
         for entry in arguments.into_iter().flat_map(|a| entries(all_outside(a, ','))) {
@@ -219,9 +270,28 @@ impl FunctionTerm {
     /// The equal term that takes none of the arguments that are fixed at zero, as far as there is
     /// one.
     fn reduced(&self) -> Self {
+        if self.function.id == FunctionId::user {
+            return self.clone();
+        }
         let function = self.function.at_zero(|argument| self.constant(argument).is_some_and(Constant::is_zero));
         let constants = self.constants.iter().filter(|(argument, _)| function.takes.contains(argument)).cloned().collect();
         Self { function, constants, sines: self.sines }
+    }
+
+    /// What the function computes, without a full stop.
+    pub(crate) fn summary(&self) -> &'static str {
+        self.function.summary.trim_end_matches('.')
+    }
+
+    /// The results of the function.
+    pub fn outputs(&self) -> Vec<Output> {
+        let Function { name, gives, unit, outputs, .. } = self.function;
+        match outputs {
+            [] => vec![Output { name, dims: gives.to_vec(), unit: (*unit).to_owned() }],
+            several => {
+                several.iter().map(|port| Output { name: port.name, dims: port.dims.to_vec(), unit: port.unit.to_owned() }).collect()
+            }
+        }
     }
 
     /// The constant in the place of an argument.

@@ -90,21 +90,30 @@ impl Transform {
 
     /// Weights, then directions, as far as the derivative takes them.
     pub(super) fn arguments(&self, part: &FunctionTerm) -> Vec<Argument> {
-        let weights = self.kind.takes_weights().then(|| port("weights", part.function.gives, "a factor of each number of the result"));
+        let weights = if self.kind.takes_weights() { weights(part) } else { Vec::new() };
         let directions = self.wrt.iter().filter(|_| self.kind.takes_directions());
         weights.into_iter().chain(directions.map(|a| port(&format!("d{}", a.name()), self.dims(*a), "a direction"))).collect()
     }
 
     /// The results.
     pub(super) fn outputs(&self, part: &FunctionTerm) -> Vec<Output> {
-        let function = part.function;
+        let (name, own) = (part.function.name, part.outputs());
         if self.kind == Derivative::Jvp {
-            let unit = format!("{}, per unit of the direction", function.unit);
-            return vec![Output { name: function.name, dims: function.gives.to_vec(), unit }];
+            let along = |output: Output| Output { unit: format!("{}, per unit of the direction", output.unit), ..output };
+            return own.into_iter().map(along).collect();
+        }
+        if self.kind == Derivative::Jacobian {
+            let of = |output: &Output, argument: &Argument| {
+                let result = if own.len() == 1 { String::new() } else { format!("_{}", output.name) };
+                let dims = [output.dims.as_slice(), self.dims(*argument)].concat();
+                let space = if argument.is_configuration() && !self.in_coordinates { " in the tangent space" } else { "" };
+                let unit = format!("∂{}/∂{}{space}", output.name, argument.name());
+                Output { name: interned(&format!("jac{result}_{}", argument.name())), dims, unit }
+            };
+            return own.iter().flat_map(|output| self.wrt.iter().map(move |argument| of(output, argument))).collect();
         }
         let of = |argument: &Argument| {
-            let own = self.dims(*argument);
-            let dims = if self.kind == Derivative::Jacobian { [function.gives, own].concat() } else { own.to_vec() };
+            let dims = self.dims(*argument).to_vec();
             let what = match self.kind {
                 Derivative::Vjp => "weightsᵀ ∂",
                 Derivative::Hvp => "∂² of weightsᵀ f, times the directions, for ",
@@ -113,7 +122,7 @@ impl Transform {
             let space = if argument.is_configuration() && !self.in_coordinates { " in the tangent space" } else { "" };
             let unit = match self.kind {
                 Derivative::Hvp => format!("{what}{}{space}", argument.name()),
-                _ => format!("{what}{}/∂{}{space}", function.name, argument.name()),
+                _ => format!("{what}{name}/∂{}{space}", argument.name()),
             };
             Output { name: interned(&format!("{}_{}", self.kind.prefix(), argument.name())), dims, unit }
         };
@@ -130,7 +139,7 @@ impl Transform {
             Derivative::Jacobian => "the Jacobian",
             Derivative::Gradient => "the gradient",
         };
-        format!("{what} of {} with respect to {}: {}", part.function.name, wrt.join(", "), part.function.summary)
+        format!("{what} of {} with respect to {}: {}", part.function.name, wrt.join(", "), part.summary())
     }
 }
 
@@ -172,11 +181,20 @@ pub(super) fn parse(
     if takes.is_empty() {
         return Err(wrong(format!("{} takes no arguments to differentiate by", function.name)));
     }
-    if kind == Derivative::Gradient && !function.gives.is_empty() {
+    if kind == Derivative::Gradient && !matches!(part.outputs().as_slice(), [output] if output.dims.is_empty()) {
         return Err(wrong(format!("{} has several numbers as its result: expected vjp, or jacobian", function.name)));
     }
     let wrt = takes.into_iter().filter(|a| wanted.is_empty() || wanted.contains(a)).collect();
     Ok(Transform { kind, wrt, in_coordinates })
+}
+
+/// A factor for each number of each result.
+pub(crate) fn weights(part: &FunctionTerm) -> Vec<Argument> {
+    const UNIT: &str = "a factor of each number of the result";
+    match part.function.outputs {
+        [] => vec![port("weights", part.function.gives, UNIT)],
+        several => several.iter().map(|output| port(&format!("weights_{}", output.name), output.dims, UNIT)).collect(),
+    }
 }
 
 /// An argument of this name. It lives as long as the program, and once for all functions.

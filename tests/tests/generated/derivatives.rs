@@ -202,7 +202,7 @@ fn limbs_in_lanes_have_the_same_derivatives() {
     println!("largest error {:.1e}", check("walker", walker, Base::Floating, Vec::new(), &only, &mut Random::new(5)));
 }
 
-/// In coordinates a derivative is that of the formula by each number of q.
+/// In coordinates a derivative is that of f(q/|q|).
 #[test]
 fn derivatives_in_coordinates_are_by_the_numbers_of_q() {
     let urdf = "<robot name='stone'><link name='stone'><inertial><origin xyz='0.1 0.2 0.3'/><mass value='2'/>\
@@ -213,20 +213,18 @@ fn derivatives_in_coordinates_are_by_the_numbers_of_q() {
     let generated = generate(&request).unwrap();
     let q = [0.3, -0.2, 0.5, 0.1, 0.3, -0.2, 0.9];
     let found = generated.graphs[0].evaluate(|_, k| q[k]);
-    // U = m g (z + row 3 of R times c); R is taken to be of a quaternion of length one:
+    // U = m g (z + row 3 of R times c) at the quaternion p = q/|q|, and ∂p/∂q = (1 − p pᵀ)/|q|:
     // R_3 = (2 (x z − w y), 2 (y z + w x), 1 − 2 (x² + y²))
-    let (mg, [x, y, z, w], c) = (2.0 * 9.81, [q[3], q[4], q[5], q[6]], [0.1, 0.2, 0.3]);
+    let length = q[3..].iter().map(|x: &f64| x * x).sum::<f64>().sqrt();
+    let (mg, [x, y, z, w], c) = (2.0 * 9.81, [3, 4, 5, 6].map(|k| q[k] / length), [0.1, 0.2, 0.3]);
     let by = |rows: [f64; 3]| mg * (rows[0] * c[0] + rows[1] * c[1] + rows[2] * c[2]);
-    let expected = [
-        0.0,
-        0.0,
-        mg,
-        by([2.0 * z, 2.0 * w, -4.0 * x]),
-        by([-2.0 * w, 2.0 * z, -4.0 * y]),
-        by([2.0 * x, 2.0 * y, 0.0]),
-        by([-2.0 * y, 2.0 * x, 0.0]),
-    ];
-    assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?} {expected:?}");
+    let by_p =
+        [by([2.0 * z, 2.0 * w, -4.0 * x]), by([-2.0 * w, 2.0 * z, -4.0 * y]), by([2.0 * x, 2.0 * y, 0.0]), by([-2.0 * y, 2.0 * x, 0.0])];
+    let p = [x, y, z, w];
+    let along: f64 = by_p.iter().zip(p).map(|(d, p)| d * p).sum();
+    let by_q = [0, 1, 2, 3].map(|k| (by_p[k] - along * p[k]) / length);
+    let expected = [&[0.0, 0.0, mg][..], &by_q].concat();
+    assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?} {expected:?}");
 }
 
 #[test]

@@ -15,3 +15,4 @@ mod oracles;
 mod parameters;
 mod robots;
 mod scenes;
+mod user_functions;

@@ -83,6 +83,16 @@ impl Port {
     pub const fn new(name: &'static str, dims: &'static [Dim], unit: &'static str) -> Self {
         Self { name, dims, unit, place: None }
     }
+
+    /// How many numbers.
+    pub fn len(&self, shape: Shape) -> usize {
+        size(self.dims, shape)
+    }
+
+    /// Whether it never has a number.
+    pub fn is_empty(&self, shape: Shape) -> bool {
+        self.len(shape) == 0
+    }
 }
 
 /// An argument of a function: one of those that functions of the table share, or a function's own.
@@ -92,6 +102,19 @@ pub struct Argument(&'static Port);
 impl Argument {
     /// An argument of a user's function.
     pub const fn new(port: &'static Port) -> Self {
+        Self(port)
+    }
+
+    /// The argument of the table that has this name and these dimensions, or else one of a user's
+    /// function.
+    pub const fn named(port: &'static Port) -> Self {
+        let mut k = 0;
+        while k < Self::ALL.len() {
+            if is_equal(Self::ALL[k].0.name, port.name) && have_same_lengths(Self::ALL[k].0.dims, port.dims) {
+                return Self::ALL[k];
+            }
+            k += 1;
+        }
         Self(port)
     }
 
@@ -120,6 +143,30 @@ impl Argument {
     pub fn tangent_dims(self) -> &'static [Dim] {
         if self.is_configuration() { Self::V.dims() } else { self.dims() }
     }
+}
+
+/// Whether two names are the same, for constants.
+const fn is_equal(one: &str, other: &str) -> bool {
+    let (one, other) = (one.as_bytes(), other.as_bytes());
+    let mut k = 0;
+    while k < one.len() && k < other.len() && one[k] == other[k] {
+        k += 1;
+    }
+    k == one.len() && k == other.len()
+}
+
+/// Whether dimensions are the same, for constants.
+const fn have_same_lengths(one: &[Dim], other: &[Dim]) -> bool {
+    let mut k = 0;
+    while k < one.len() && k < other.len() {
+        match (one[k], other[k]) {
+            (Dim::Nq, Dim::Nq) | (Dim::Nv, Dim::Nv) | (Dim::Frames, Dim::Frames) | (Dim::Links, Dim::Links) => {}
+            (Dim::Of(n), Dim::Of(m)) if n == m => {}
+            _ => return false,
+        }
+        k += 1;
+    }
+    k == one.len() && k == other.len()
 }
 
 impl fmt::Debug for Argument {

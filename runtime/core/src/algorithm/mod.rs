@@ -25,6 +25,7 @@ mod regressor;
 mod rnea;
 pub(crate) mod table;
 pub mod textbook;
+mod user_function;
 mod workspace;
 mod wrenches;
 
@@ -54,9 +55,10 @@ pub use momentum::{
     centroidal_momentum_matrix, centroidal_momentum_rate,
 };
 pub use operational_space::{operational_space_inertia, operational_space_inertia_inverse};
-pub use registry::{Function, Group, Needs, Shape, Variant};
+pub use registry::{Function, Group, Inputs, Needs, Shape, Variant};
 pub use regressor::{PARAMETERS, kinetic_energy_regressor, potential_energy_regressor, torque_regressor};
 pub use rnea::{inverse_dynamics_with_wrenches, joint_wrenches};
 pub use table::presets::*;
 pub use table::{FunctionId, function, functions};
+pub use user_function::UserFunction;
 pub use workspace::Workspace;

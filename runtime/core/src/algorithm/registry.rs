@@ -1,7 +1,9 @@
 //! A function of the table: its arguments, its results, its requirements.
 
+use alloc::vec::Vec;
+
 use super::argument::size;
-use super::{Argument, Dim, FunctionError, FunctionId, Workspace, check_count, check_length, functions};
+use super::{Argument, Dim, FunctionError, FunctionId, Port, Workspace, check_count, check_length, functions};
 use crate::Scalar;
 use crate::model::Model;
 
@@ -45,21 +47,38 @@ pub enum Needs {
     FreeFrames,
 }
 
-/// Arguments of an algorithm, by their places; an empty slice means zeros.
-pub(super) struct Inputs<'a, S>(pub(super) [&'a [S]; Argument::ALL.len()]);
+/// Arguments of an algorithm; an empty slice means zeros.
+pub struct Inputs<'a, S> {
+    /// Those of the table, by their places.
+    pub(super) known: [&'a [S]; Argument::ALL.len()],
+    /// Those of a user's function.
+    own: &'a [(Argument, &'a [S])],
+}
 
 impl<'a, S> Inputs<'a, S> {
     /// These arguments, and no others.
     #[inline]
     pub(super) fn new<const N: usize>(given: [(usize, &'a [S]); N]) -> Self {
-        let mut inputs = Self([&[]; Argument::ALL.len()]);
-        given.into_iter().for_each(|(place, given)| inputs.0[place] = given);
+        let mut inputs = Self { known: [&[]; Argument::ALL.len()], own: &[] };
+        given.into_iter().for_each(|(place, given)| inputs.known[place] = given);
         inputs
+    }
+
+    /// These arguments of a user's function.
+    pub(super) fn of_own(own: &'a [(Argument, &'a [S])]) -> Self {
+        Self { known: [&[]; Argument::ALL.len()], own }
+    }
+
+    /// The numbers of an argument; none if it is not given.
+    pub fn get(&self, argument: Argument) -> &'a [S] {
+        let known = argument.place().and_then(|place| self.known.get(place)).filter(|given| !given.is_empty());
+        let own = || self.own.iter().find(|(other, _)| *other == argument).map_or(&[][..], |(_, given)| *given);
+        known.copied().unwrap_or_else(own)
     }
 }
 
 /// An algorithm as the table holds it, lengths checked.
-pub(super) type Run<S> = fn(&Model<S>, &mut Workspace<S>, &Inputs<'_, S>, &mut [S]);
+pub(super) type Run<S> = &'static (dyn Fn(&Model<S>, &mut Workspace<S>, &Inputs<'_, S>, &mut [S]) + Send + Sync);
 
 /// One way to compute a function.
 pub struct Variant<S: 'static> {
@@ -92,6 +111,8 @@ pub enum Group {
     Effects,
     /// Steps, differences and draws.
     Configurations,
+    /// Functions of users, which are not in the table.
+    User,
 }
 
 impl Group {
@@ -118,6 +139,7 @@ impl Group {
             Self::OperationalSpace => "operational_space",
             Self::Effects => "effects",
             Self::Configurations => "configurations",
+            Self::User => "user",
         }
     }
 
@@ -137,6 +159,7 @@ impl Group {
             Self::OperationalSpace => "Operational space",
             Self::Effects => "Effects of a scene",
             Self::Configurations => "Configurations",
+            Self::User => "Functions of users",
         }
     }
 
@@ -168,6 +191,8 @@ pub struct Function<S: 'static> {
     pub takes: &'static [Argument],
     /// The dimensions of its result; empty for a single number.
     pub gives: &'static [Dim],
+    /// The results, if there are several; empty for one.
+    pub outputs: &'static [Port],
     /// The units of its result, and the meaning of the dimensions.
     pub unit: &'static str,
     /// Its group in lists.
@@ -211,12 +236,13 @@ impl<S: Scalar> Function<S> {
     /// Whether it takes or returns something for each frame.
     pub fn asks_for_frames(&self) -> bool {
         let of_frames = |dims: &[Dim]| dims.contains(&Dim::Frames);
-        of_frames(self.gives) || self.takes.iter().any(|a| of_frames(a.dims()))
+        // A user's function may use any frame.
+        self.id == FunctionId::user || of_frames(self.gives) || self.takes.iter().any(|a| of_frames(a.dims()))
     }
 
     /// The number of its results.
     pub fn len(&self, shape: Shape) -> usize {
-        size(self.gives, shape)
+        if self.outputs.is_empty() { size(self.gives, shape) } else { self.outputs.iter().map(|port| port.len(shape)).sum() }
     }
 
     /// Evaluates the function; `arguments` in the order of `takes`, `out` as `gives` says, row by
@@ -243,11 +269,16 @@ impl<S: Scalar> Function<S> {
         let mut inputs = Inputs::new([]);
         for (argument, given) in self.takes.iter().zip(arguments) {
             check_length(argument.name(), given.len(), argument.len(shape))?;
-            if let Some(slot) = argument.place().and_then(|place| inputs.0.get_mut(place)) {
+            if let Some(slot) = argument.place().and_then(|place| inputs.known.get_mut(place)) {
                 *slot = given;
             }
         }
         check_length("out", out.len(), self.len(shape))?;
+        if self.id == FunctionId::user {
+            let own: Vec<(Argument, &[S])> = self.takes.iter().copied().zip(arguments.iter().copied()).collect();
+            (way.run)(model, ws, &Inputs::of_own(&own), out);
+            return Ok(());
+        }
         (way.run)(model, ws, &inputs, out);
         Ok(())
     }

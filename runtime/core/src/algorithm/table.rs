@@ -183,10 +183,10 @@ macro_rules! ways {
         Variant { name: $way, applies: $applies, least: $least, run: ways!(run $run, $arguments $(, in $axes)?) }
     };
     (run $run:ident, ($($argument:ident),*)) => {
-        |model, ws, inputs, out| $run(model, ws, $(inputs.0[place!($argument)],)* out)
+        &|model, ws, inputs, out| $run(model, ws, $(inputs.known[place!($argument)],)* out)
     };
     (run $run:ident, ($($argument:ident),*), in $axes:ident) => {
-        |model, ws, inputs, out| ws.$axes(|ws| $run(model, ws, $(inputs.0[place!($argument)],)* out))
+        &|model, ws, inputs, out| ws.$axes(|ws| $run(model, ws, $(inputs.known[place!($argument)],)* out))
     };
 }
 
@@ -221,6 +221,7 @@ macro_rules! entry {
             source: $source,
             takes: &[$(argument!($argument)),*],
             gives: &[$(Dim::$dim $(($n))?),*],
+            outputs: &[],
             unit: $unit,
             group: Group::$group,
             needs: Needs::$needs,
@@ -237,7 +238,7 @@ macro_rules! by_inputs {
     ($name:ident, ($($argument:ident),*), -> $row:ident) => {
         #[inline]
         pub(super) fn $name<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, inputs: &Inputs<'_, S>, out: &mut [S]) {
-            super::super::$name(model, ws, $(inputs.0[place!($argument)],)* out);
+            super::super::$name(model, ws, $(inputs.known[place!($argument)],)* out);
         }
     };
 }
@@ -268,6 +269,8 @@ macro_rules! rows {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum FunctionId {
             $(#[doc = $summary] $name,)*
+            /// A function of a user, which has no row here.
+            user,
         }
 
         impl FunctionId {
@@ -275,6 +278,7 @@ macro_rules! rows {
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$name => stringify!($name),)*
+                    Self::user => "user",
                 }
             }
         }
@@ -283,6 +287,23 @@ macro_rules! rows {
         impl<S: Scalar> Table<S> {
             $(const $name: Function<S> = entry!($name, $arguments, $summary, $(= $general)?
                 $(-> $dims $unit, $group, $needs, $regrouped,)? $($source)? $(, by $ways)? $(, columns $unsolved)?);)*
+
+            const NO_ROW: &'static Function<S> = &Function {
+                id: FunctionId::user,
+                general: FunctionId::user,
+                name: "user",
+                summary: "a user's function",
+                source: "a user's function",
+                takes: &[],
+                gives: &[],
+                outputs: &[],
+                unit: "",
+                group: Group::User,
+                needs: Needs::Nothing,
+                regrouped: false,
+                ways: &[],
+                unsolved: None,
+            };
 
             const ROWS: &'static [Function<S>] = &[$(Self::$name),*];
         }
@@ -338,8 +359,8 @@ pub fn function<S: Scalar>(name: &str) -> Option<&'static Function<S>> {
 }
 
 impl FunctionId {
-    /// Its row.
+    /// Its row. Of a user's function one that takes and gives nothing, and has no way to run.
     pub fn row<S: Scalar>(self) -> &'static Function<S> {
-        &Table::<S>::ROWS[self as usize]
+        Table::<S>::ROWS.get(self as usize).unwrap_or(Table::<S>::NO_ROW)
     }
 }

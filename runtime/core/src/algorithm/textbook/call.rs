@@ -86,6 +86,7 @@ impl<S: Scalar> Textbook<S> {
             F::integrate_derivatives => self.integrate_derivatives(q),
             F::difference_derivatives => self.difference_derivatives(q, x[1]),
             F::random_configuration => self.random_configuration(q),
+            F::user => Vec::new(),
         }
     }
 }
