@@ -181,10 +181,14 @@ pub(crate) struct GenerateArguments {
     /// C that does not need math.h: with sines, square roots and arctangents of its own
     #[arg(long)]
     pub(crate) no_libm: bool,
-    /// Another interface to add to C. casadi: what casadi.external loads, with sparsity, and with
-    /// jac_F where F and F_derivatives are generated
+    /// Another interface to add to C. casadi: what casadi.external loads, with sparsity and
+    /// derivatives
     #[arg(long, value_enum, value_name = "INTERFACE")]
     pub(crate) abi: Option<Abi>,
+    /// The derivatives that CasADi finds: 0 none, 1 jac_F and adj1_F of each function F, 2 also
+    /// jac_adj1_F, for exact Hessians [default: 1]
+    #[arg(long, value_name = "ORDER", requires = "abi", value_parser = clap::value_parser!(u8).range(0..=2))]
+    pub(crate) derivatives: Option<u8>,
     /// The file to write instead of the standard output. C: a header (arm.h), or a folder for a
     /// header and a source
     #[arg(short, long, value_name = "FILE")]

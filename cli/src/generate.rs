@@ -99,7 +99,13 @@ fn target(arguments: &GenerateArguments, options: &mut Options) -> Result<(), Fa
     }
     let casadi = arguments.abi == Some(Abi::Casadi);
     let header_only = arguments.output.as_deref().map_or(!casadi, is_header);
-    options.target = Target::C(COptions { prefix: arguments.prefix.clone(), header_only, casadi, no_libm: arguments.no_libm });
+    options.target = Target::C(COptions {
+        prefix: arguments.prefix.clone(),
+        header_only,
+        casadi,
+        derivatives: arguments.derivatives,
+        no_libm: arguments.no_libm,
+    });
     Ok(())
 }
 

@@ -45,6 +45,12 @@ impl<'a> Steps<'a> {
         (argument.is_configuration() && !self.transform.in_coordinates).then_some(self.arguments.len() + 1 + place)
     }
 
+    /// The same for a part of the derivative that is evaluated, and not differentiated: in coordinates
+    /// it takes q/|q| too.
+    pub(crate) fn in_coordinates(&self) -> Option<&Self> {
+        Some(self).filter(|_| self.transform.in_coordinates)
+    }
+
     /// q ⊕ δ for a configuration by which the function is differentiated; other arguments as given.
     pub(crate) fn moved(&self, argument: Argument, given: Vec<Sym>, model: &Model<Sym>) -> Vec<Sym> {
         let is_known = argument.is_configuration() && self.transform.wrt.contains(&argument);
@@ -111,9 +117,37 @@ impl<'a> Steps<'a> {
             Derivative::Gradient => adjoint(graph, &inputs, |new, _| new.constant(1.0)),
             Derivative::Jvp => self.along(graph),
             Derivative::Hvp => self.along(&dce(&adjoint(graph, &inputs, weight))),
+            Derivative::Hessian => self.hessian(&dce(&adjoint(graph, &inputs, weight)), &inputs),
             Derivative::Jacobian => self.jacobian(graph, &inputs),
         };
         self.at_rest(&found)
+    }
+
+    /// The columns of the derivative of the gradient by forward mode, on and below the diagonal. The
+    /// matrix is symmetric.
+    fn hessian(&self, gradient: &Graph, inputs: &[(usize, usize)]) -> Graph {
+        let (count, n) = (gradient.nodes().len(), inputs.len());
+        let mut graph = gradient.clone();
+        let one = graph.constant(1.0);
+        let mut below = vec![one; n * n];
+        for (column, input) in inputs.iter().enumerate() {
+            let along = |_: &mut Graph, argument, index| ((argument, index) == *input).then_some(one);
+            let entries = pass::tangents(&mut graph, &gradient.outputs[column..], count, along);
+            entries.into_iter().enumerate().for_each(|(k, entry)| below[(column + k) * n + column] = entry);
+        }
+        let lengths: Vec<usize> =
+            self.transform.wrt.iter().map(|a| self.transform.dims(*a).iter().map(|d| d.len(self.shape)).product()).collect();
+        let starts: Vec<usize> = (0..lengths.len()).map(|k| lengths[..k].iter().sum()).collect();
+        let mut outputs = Vec::with_capacity(n * n);
+        for (first, rows) in starts.iter().zip(&lengths) {
+            for (start, columns) in starts.iter().zip(&lengths) {
+                for row in *first..first + rows {
+                    outputs.extend((*start..start + columns).map(|column| below[row.max(column) * n + row.min(column)]));
+                }
+            }
+        }
+        graph.outputs = outputs;
+        graph
     }
 
     /// All columns by forward mode, or all rows by reverse mode, whichever is cheaper.

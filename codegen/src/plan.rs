@@ -53,6 +53,9 @@ pub(crate) fn plan(request: &Request, members: &BTreeMap<String, String>, log: &
     let mut without = Vec::new();
     let entries = fitting(request, &model, &massless, entries, (members, &mut without), log);
     robot.reading.warnings.extend(without);
+    let names: Vec<String> = entries.iter().map(|(_, function)| function.name.clone()).collect();
+    let derived = |(k, function): Entry| options.target.with_derivatives(function, &names).into_iter().map(move |f| (k, f));
+    let entries: Vec<Entry> = entries.into_iter().flat_map(derived).collect();
     size::within_limit(request, &model, &entries, log);
     options.target.check_names(&model, request, log);
     let functions = entries.into_iter().map(|(_, function)| function).collect();

@@ -4,12 +4,13 @@
 //! of joints quadratically, and one that inverts the mass matrix cubically. A test compares
 //! predictions with generated code.
 
+use articulated_core::algorithm::Shape;
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::index::{BodyId, ById};
 use articulated_core::model::Model;
 
 use crate::limbs::IsomorphicLimbs;
-use crate::spec::{FunctionSpec, FunctionTerm};
+use crate::spec::{Derivative, FunctionSpec, FunctionTerm};
 use crate::{Options, Request, program};
 
 /// Default limit of generated source, megabytes (10⁶ bytes). For more, a compiler takes minutes and
@@ -74,6 +75,19 @@ impl Tree {
         }
     }
 
+    /// How many times as many instructions a derivative has, about.
+    fn times(&self, spec: &FunctionSpec, shape: Shape) -> f64 {
+        let Some(transform) = &spec.transform else { return 1.0 };
+        let inputs: usize = transform.wrt.iter().map(|a| transform.dims(*a).iter().map(|d| d.len(shape)).product::<usize>()).sum();
+        let outputs = spec.parts[0].function.len(shape);
+        match transform.kind {
+            Derivative::Vjp | Derivative::Jvp | Derivative::Gradient => 2.5,
+            Derivative::Hvp => 6.0,
+            Derivative::Jacobian => 1.0 + 0.5 * inputs.min(outputs) as f64,
+            Derivative::Hessian => 2.5 + 0.5 * inputs as f64,
+        }
+    }
+
     /// Instructions of one function; `columns`: whether the solution of M X = B is a loop.
     fn instructions(&self, part: &FunctionTerm, columns: bool) -> f64 {
         let factors = 0.5 * self.squares;
@@ -106,7 +120,8 @@ impl Tree {
 fn megabytes(spec: &FunctionSpec, model: &Model<f64>, tree: &Tree, options: &Options) -> f64 {
     let can = options.target.capabilities(options);
     let bytes = options.target.bytes();
-    let instructions = |columns| spec.parts.iter().map(|part| tree.instructions(part, columns)).sum::<f64>();
+    let times = tree.times(spec, model.shape());
+    let instructions = |columns| times * spec.parts.iter().map(|part| tree.instructions(part, columns)).sum::<f64>();
     let has_limbs = options.limbs && can.vectors && options.parameters.is_empty();
     let has_limbs = has_limbs && [4, 2].into_iter().any(|width| IsomorphicLimbs::of(model, width).is_some());
     let single = bytes.single + if has_limbs { bytes.limbs } else { 0.0 };

@@ -7,7 +7,7 @@ use articulated_core::algorithm::{Argument, Variant};
 use articulated_core::model::Model;
 use num_traits::Zero;
 
-use crate::differentiate::{ImplicitRule, Steps};
+use crate::differentiate::{ImplicitRule, Steps, of_length_one};
 use crate::graph::{Graph, Op};
 use crate::limbs::{Constants, IsomorphicLimbs, pack};
 use crate::model_pass::{FoldedRotations, View, model_passes, no_joint_moves_origin};
@@ -113,7 +113,13 @@ fn traced(
     let mut graph_of = |terms: &[FunctionTerm], place: &dyn Fn(Argument) -> Option<usize>, steps: Option<&Steps<'_>>| {
         let mut one = |(term, strategy): (&FunctionTerm, &Strategy)| {
             let strategy = strategy.for_function(term.function);
-            run(term, &strategy, &view(term, &strategy), place, steps)
+            let view = view(term, &strategy);
+            let moved = |argument: Argument, given: Vec<Sym>| match steps {
+                Some(steps) => steps.moved(argument, given, &view.model),
+                None if spec.normalises && argument.is_configuration() => of_length_one(given, &view.model),
+                None => given,
+            };
+            run(term, &strategy, &view, place, &moved)
         };
         sym::trace(|| terms.iter().zip(strategies).flat_map(&mut one).collect())
     };
@@ -121,8 +127,8 @@ fn traced(
     if let Some(rule) = ImplicitRule::of(spec, &steps, model) {
         let [forward, solution, inverse] = rule.terms();
         let graphs = [
-            graph_of(&[forward], &place, None),
-            graph_of(&[solution], &|argument| rule.place_in_solution(argument), None),
+            graph_of(&[forward], &place, steps.in_coordinates()),
+            graph_of(&[solution], &|argument| rule.place_in_solution(argument), steps.in_coordinates()),
             graph_of(&[inverse], &|argument| rule.place_in_inverse(argument), Some(&steps)),
         ];
         let requested = graphs[0].clone();
@@ -147,7 +153,7 @@ fn run(
     strategy: &Strategy,
     view: &View<Sym>,
     place: &dyn Fn(Argument) -> Option<usize>,
-    steps: Option<&Steps<'_>>,
+    moved: &dyn Fn(Argument, Vec<Sym>) -> Vec<Sym>,
 ) -> Vec<Sym> {
     let shape = view.model.shape();
     let vector = |argument: &Argument| -> Vec<Sym> {
@@ -157,8 +163,7 @@ fn run(
             (None, Some(place)) => Sym::input(place, k),
             (None, None) => Sym::zero(),
         };
-        let given: Vec<Sym> = (0..argument.len(shape)).map(symbol).collect();
-        steps.map_or(given.clone(), |steps| steps.moved(*argument, given, &view.model))
+        moved(*argument, (0..argument.len(shape)).map(symbol).collect())
     };
     let vectors: Vec<Vec<Sym>> = part.function.takes.iter().map(vector).collect();
     let slices: Vec<&[Sym]> = vectors.iter().map(Vec::as_slice).collect();

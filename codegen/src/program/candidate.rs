@@ -100,7 +100,7 @@ const FOLDED_BODIES: usize = 64;
 /// The derivative that strategies are compared with: that of the function, unless it is many times
 /// as long as the function, which then is compared by itself.
 fn tried_transform(spec: &FunctionSpec) -> Option<Transform> {
-    spec.transform.clone().filter(|transform| !matches!(transform.kind, Derivative::Hvp | Derivative::Jacobian))
+    spec.transform.clone().filter(|transform| !matches!(transform.kind, Derivative::Hvp | Derivative::Hessian | Derivative::Jacobian))
 }
 
 /// The strategy that costs least after the graph passes. With parameters, model passes may cost
@@ -119,7 +119,7 @@ fn cheapest(part: &FunctionTerm, transform: Option<Transform>, candidate: &Candi
     if let [(one, _)] = candidates.as_slice() {
         return *one;
     }
-    let alone = FunctionSpec { name: String::new(), parts: vec![part.clone()], transform };
+    let alone = FunctionSpec { name: String::new(), parts: vec![part.clone()], transform, normalises: false };
     let mut best: Option<(Strategy, u32)> = None;
     for (strategy, least) in candidates {
         // A way whose lower bound exceeds another's cost is not tried: the factorisation of a long

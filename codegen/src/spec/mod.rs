@@ -34,6 +34,8 @@ pub struct FunctionSpec {
     pub parts: Vec<FunctionTerm>,
     /// The derivative of the only part that it is, if it is one.
     pub transform: Option<Transform>,
+    /// Whether it is f(q/|q|), in which each quaternion has length one.
+    pub normalises: bool,
 }
 
 /// A result of a function.
@@ -100,7 +102,12 @@ pub(crate) fn wrong_entry(entry: &str, reason: &str) -> Diagnostic {
 impl FunctionSpec {
     /// The function of the table by itself.
     pub fn plain(function: &'static Function<Sym>) -> Self {
-        Self { name: function.name.into(), parts: vec![FunctionTerm { function, constants: Vec::new(), sines: false }], transform: None }
+        Self {
+            name: function.name.into(),
+            parts: vec![FunctionTerm { function, constants: Vec::new(), sines: false }],
+            transform: None,
+            normalises: false,
+        }
     }
 
     /// Reads one entry of a list of functions of the table.
@@ -135,7 +142,7 @@ impl FunctionSpec {
         if let Some(k) = twice {
             return Err(wrong(format!("`{}` is in it twice", parts[k].function.name)));
         }
-        let wanted = Self { name: name.into(), parts, transform };
+        let wanted = Self { name: name.into(), parts, transform, normalises: false };
         match wanted.no_name() {
             Some(reason) => Err(wrong(format!("`{name}` {reason}"))),
             None => Ok(wanted),
@@ -222,7 +229,12 @@ impl FunctionSpec {
 
     /// The same function with equal but cheaper terms: arguments fixed at zero then cost nothing.
     pub(crate) fn reduced(&self) -> Self {
-        Self { name: self.name.clone(), parts: self.parts.iter().map(FunctionTerm::reduced).collect(), transform: self.transform.clone() }
+        Self {
+            name: self.name.clone(),
+            parts: self.parts.iter().map(FunctionTerm::reduced).collect(),
+            transform: self.transform.clone(),
+            normalises: self.normalises,
+        }
     }
 
     /// Checks constants for a robot: their number, and unit quaternions.

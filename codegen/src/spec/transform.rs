@@ -4,6 +4,7 @@
 //! g = vjp(inverse_dynamics)                    λᵀ ∂τ/∂q, λᵀ ∂τ/∂v, λᵀ ∂τ/∂a for given λ
 //! g = jvp(forward_dynamics, q v)               ∂a/∂q·dq + ∂a/∂v·dv for given dq and dv
 //! g = hvp(inverse_dynamics)                    ∂²(λᵀτ)·(dq, dv, da) for given λ and directions
+//! g = hessian(potential_energy)                λ ∂²U/∂q² for given λ
 //! g = jacobian(center_of_mass)                 ∂c/∂q
 //! g = gradient(kinetic_energy, v)              ∂T/∂v, of a function with one number as its result
 //! g = vjp(inverse_dynamics, q in coordinates)  with respect to the numbers of q
@@ -29,6 +30,8 @@ pub enum Derivative {
     Jvp,
     /// ∂²(λᵀf)/∂x²·dx for weights and directions.
     Hvp,
+    /// ∂²(λᵀf)/∂x² for weights.
+    Hessian,
     /// ∂f/∂x.
     Jacobian,
     /// ∂f/∂x of a single number f.
@@ -37,7 +40,7 @@ pub enum Derivative {
 
 impl Derivative {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::Vjp, Self::Jvp, Self::Hvp, Self::Jacobian, Self::Gradient];
+    pub const ALL: [Self; 6] = [Self::Vjp, Self::Jvp, Self::Hvp, Self::Hessian, Self::Jacobian, Self::Gradient];
 
     /// Its name in requests.
     pub fn name(self) -> &'static str {
@@ -45,6 +48,7 @@ impl Derivative {
             Self::Vjp => "vjp",
             Self::Jvp => "jvp",
             Self::Hvp => "hvp",
+            Self::Hessian => "hessian",
             Self::Jacobian => "jacobian",
             Self::Gradient => "gradient",
         }
@@ -52,7 +56,7 @@ impl Derivative {
 
     /// Whether it takes a weight for each number of the function's result.
     fn takes_weights(self) -> bool {
-        matches!(self, Self::Vjp | Self::Hvp)
+        matches!(self, Self::Vjp | Self::Hvp | Self::Hessian)
     }
 
     /// Whether it takes a direction for each argument.
@@ -65,6 +69,7 @@ impl Derivative {
         match self {
             Self::Vjp | Self::Gradient => "grad",
             Self::Hvp => "hvp",
+            Self::Hessian => "hess",
             Self::Jacobian => "jac",
             Self::Jvp => "",
         }
@@ -112,6 +117,14 @@ impl Transform {
             };
             return own.iter().flat_map(|output| self.wrt.iter().map(move |argument| of(output, argument))).collect();
         }
+        if self.kind == Derivative::Hessian {
+            let of = |one: &Argument, other: &Argument| {
+                let dims = [self.dims(*one), self.dims(*other)].concat();
+                let unit = format!("∂²(weightsᵀ {name})/∂{}∂{}", one.name(), other.name());
+                Output { name: interned(&format!("hess_{}_{}", one.name(), other.name())), dims, unit }
+            };
+            return self.wrt.iter().flat_map(|one| self.wrt.iter().map(move |other| of(one, other))).collect();
+        }
         let of = |argument: &Argument| {
             let dims = self.dims(*argument).to_vec();
             let what = match self.kind {
@@ -136,6 +149,7 @@ impl Transform {
             Derivative::Vjp => "weightsᵀ times the Jacobian",
             Derivative::Jvp => "the Jacobian times a direction",
             Derivative::Hvp => "the Hessian of weightsᵀ times the result, times a direction,",
+            Derivative::Hessian => "the Hessian of weightsᵀ times the result",
             Derivative::Jacobian => "the Jacobian",
             Derivative::Gradient => "the gradient",
         };

@@ -116,6 +116,14 @@ impl Target {
         }
     }
 
+    /// A function with those that the language makes of it beside it; `names`: those of all.
+    pub(crate) fn with_derivatives(&self, function: FunctionSpec, names: &[String]) -> Vec<FunctionSpec> {
+        match self {
+            Self::C(options) if options.casadi => c::with_derivatives(function, names, options.derivatives.unwrap_or(1).into()),
+            _ => vec![function],
+        }
+    }
+
     /// Reports the robot's names that are not names in this language.
     pub(crate) fn check_names(&self, model: &Model<f64>, request: &Request, log: &mut Diagnostics) {
         match self {

@@ -103,7 +103,7 @@ fn kinds(function: &Function<Big>) -> Vec<Derivative> {
     let with_hessian =
         ["inverse_dynamics", "forward_dynamics", "kinetic_energy", "potential_energy", "placements", "center_of_mass", "integrate"];
     if with_hessian.contains(&function.name) {
-        kinds.push(Derivative::Hvp);
+        kinds.extend([Derivative::Hvp, Derivative::Hessian]);
     }
     if ["inverse_dynamics", "forward_dynamics", "center_of_mass", "potential_energy", "twists_world"].contains(&function.name) {
         kinds.push(Derivative::Jacobian);
@@ -156,6 +156,19 @@ fn check(name: &str, urdf: &str, base: Base, effects: Vec<Applied>, only: &[&str
             Derivative::Hvp => {
                 let expected = curvature(function.name, &case.model, &state, [&along, &other]);
                 vec![(dot(&values, flat.iter().copied()), dot(&expected, weights.iter().copied()))]
+            }
+            Derivative::Hessian => {
+                let expected = curvature(function.name, &case.model, &state, [&along, &other]);
+                let (mut sum, mut size, mut at) = (Big::zero(), 0.0, 0);
+                for rows in &other {
+                    for columns in &along {
+                        for r in rows {
+                            let (value, terms) = dot(&values[at..at + columns.len()], columns.iter().map(|s| s * r));
+                            (sum, size, at) = (sum + value, size + terms, at + columns.len());
+                        }
+                    }
+                }
+                vec![((sum, size), dot(&expected, weights.iter().copied()))]
             }
             Derivative::Jacobian => {
                 let expected = slope(function.name, &case.model, &state, &other);

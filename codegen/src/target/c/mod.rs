@@ -6,6 +6,7 @@
 mod ascii;
 mod batch;
 mod casadi;
+pub(super) use casadi::with_derivatives;
 mod columns;
 mod constants;
 mod lanes;
@@ -51,6 +52,9 @@ pub struct COptions {
     pub header_only: bool,
     /// The source also has each function in the interface of CasADi's `external`.
     pub casadi: bool,
+    /// The derivatives that each function has there: 0 none, 1 those of the first order, 2 those of
+    /// the second too. `None` means 1.
+    pub derivatives: Option<u8>,
     /// Sines, square roots and arctangents of the module's own in place of `math.h`.
     pub no_libm: bool,
 }
