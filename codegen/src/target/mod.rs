@@ -119,7 +119,7 @@ impl Target {
     /// A function with those that the language makes of it beside it; `names`: those of all.
     pub(crate) fn with_derivatives(&self, function: FunctionSpec, names: &[String]) -> Vec<FunctionSpec> {
         match self {
-            Self::C(options) if options.casadi => c::with_derivatives(function, names, options.derivatives.unwrap_or(1).into()),
+            Self::C(options) if options.casadi => c::with_derivatives(&function, names, options.derivatives.unwrap_or(1).into()),
             _ => vec![function],
         }
     }

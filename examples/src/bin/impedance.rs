@@ -30,7 +30,9 @@ fn by_hand(q: &[f64; arm::NQ], v: &[f64; arm::NV], target: &Place, gains: &[f64;
 fn time(mut call: impl FnMut() -> [f64; arm::NV]) -> f64 {
     let mut round = || {
         let start = Instant::now();
-        (0..1000).for_each(|_| drop(black_box(call())));
+        for _ in 0..1000 {
+            black_box(call());
+        }
         start.elapsed().as_secs_f64() * 1e6
     };
     let mut rounds: Vec<f64> = (0..101).map(|_| round()).collect();

@@ -26,6 +26,7 @@ fn robots(header_only: bool) -> Vec<Robot> {
             prefix: Some(name.to_owned()),
             header_only,
             casadi: false,
+            derivatives: None,
             no_libm: header_only || name.contains("own_math"),
         });
         // Headers are checked for warnings with all that they can have.
