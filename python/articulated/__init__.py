@@ -9,12 +9,14 @@
 """
 
 from ._compiled import CompiledRobot
+from ._derivative import Derivative
 from ._errors import RobotError, RobotWarning
 from ._robot import Function, Joint, Robot, bundled, bundled_names, functions, load, loads
 from ._scene import Motion, Scene, bundled_scene_names
 
 __all__ = [
     "CompiledRobot",
+    "Derivative",
     "Function",
     "Joint",
     "Motion",
@@ -30,5 +32,5 @@ __all__ = [
     "loads",
 ]
 __version__ = "0.1.0"
-for _class in (RobotError, RobotWarning, Robot, CompiledRobot, Joint, Function, Scene, Motion):
+for _class in (RobotError, RobotWarning, Robot, CompiledRobot, Derivative, Joint, Function, Scene, Motion):
     _class.__module__ = __name__

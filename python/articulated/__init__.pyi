@@ -278,6 +278,7 @@ class Robot(_Functions):
     ) -> Robot: ...
     def call(self, name: str, *arguments: ArrayLike, threads: Optional[int] = None, out: Optional[_Array] = None) -> Any: ...
     def compile(self, functions: Iterable[str], *, flags: Iterable[str] = ..., batch: bool = False) -> CompiledRobot: ...
+    def derivative(self, request: str) -> Derivative: ...
     def wheel(
         self,
         folder: Union[str, PathLike[str]],
@@ -297,6 +298,13 @@ class Robot(_Functions):
         uniform: Optional[ArrayLike] = None,
         threads: Optional[int] = None,
     ) -> NDArray[np.float64]: ...
+
+class Derivative:
+    request: str
+    takes: tuple[tuple[str, tuple[int, ...], str], ...]
+    gives: tuple[tuple[str, tuple[int, ...], str], ...]
+
+    def __call__(self, *arguments: ArrayLike, threads: Optional[int] = None) -> Any: ...
 
 class CompiledRobot(_Functions):
     robot: Robot

@@ -1,12 +1,13 @@
-"""Vector-Jacobian products of functions, from the library's derivative functions. For ``torch`` and ``jax``.
+"""Derivatives of the functions of a robot, for ``torch`` and ``jax``.
 
-Derivatives with respect to q are along q ⊕ δ, of nv numbers. Gradients here have the nq numbers of q.
-They are those of the function of q with its quaternions normalised, so that they are exact for any
-quaternion, and orthogonal to it.
+They are transforms of the traced functions: ``vjp``, ``jvp`` and ``hvp`` by the numbers of q, of the
+function of q with its quaternions normalised. So they are exact for any quaternion, and orthogonal to
+it.
 """
 
+import functools
 import math
-from typing import Callable, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,38 +16,23 @@ from ._robot import _TABLE, Robot
 
 
 class Rule(NamedTuple):
-    """The derivative of a function: of a gradient of its result, those of its arguments."""
+    """Arguments and result of a function that has derivatives."""
 
     takes: tuple
     gives: tuple
-    gradients: Callable
+
+
+# Where numbers at random become a configuration, the path has no derivative of use.
+RULES = {f.name: Rule(f.takes, f.gives) for f in _TABLE if f.name != "random_configuration"}
 
 
 def _quaternions(robot):
-    """Where q has quaternions, and v their rates, with the position and its rate if there is one."""
+    """Where q has quaternions."""
     for joint in robot.joints:
         if joint.kind == "floating":
-            q, v = joint.q.start, joint.v.start
-            yield slice(q + 3, q + 7), slice(v, v + 3), (slice(q, q + 3), slice(v + 3, v + 6))
+            yield slice(joint.q.start + 3, joint.q.start + 7)
         elif joint.kind == "spherical":
-            yield joint.q, joint.v, None
-
-
-def _rotation(x):
-    """The rotation matrices of unit quaternions (x, y, z, w)."""
-    i, j, k, w = np.moveaxis(x, -1, 0)
-    rows = [
-        [1 - 2 * (j * j + k * k), 2 * (i * j - k * w), 2 * (i * k + j * w)],
-        [2 * (i * j + k * w), 1 - 2 * (i * i + k * k), 2 * (j * k - i * w)],
-        [2 * (i * k - j * w), 2 * (j * k + i * w), 1 - 2 * (i * i + j * j)],
-    ]
-    return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
-
-
-def _rates(x):
-    """E(x), (…, 4, 3): a quaternion's rate is ½ E(x) ω, with ω in the body's axes. EᵀE = 1 for unit quaternions."""
-    i, j, k, w = np.moveaxis(x, -1, 0)
-    return np.moveaxis(np.array([[w, -k, j], [k, w, -i], [-j, i, w], [-i, -j, -k]]), (0, 1), (-2, -1))
+            yield joint.q
 
 
 def normalized(robot, q):
@@ -56,38 +42,9 @@ def normalized(robot, q):
         return q
     q = np.array(q)
     with np.errstate(invalid="ignore", divide="ignore"):
-        for at, _, _ in places:
+        for at in places:
             q[..., at] /= np.linalg.norm(q[..., at], axis=-1, keepdims=True)
     return q
-
-
-def _to_coordinates(robot, q, gradient):
-    """The gradient by q, (…, nq), of one along q ⊕ δ, (…, nv)."""
-    out = np.zeros(np.broadcast_shapes(q.shape[:-1], gradient.shape[:-1]) + (robot.nq,))
-    for joint in robot.joints:
-        if joint.kind not in ("floating", "spherical"):
-            out[..., joint.q] = gradient[..., joint.v]
-    for at, rate, position in _quaternions(robot):
-        size = np.linalg.norm(q[..., at], axis=-1, keepdims=True)
-        unit = q[..., at] / size
-        # The inverse of ½ E on its range is 2 Eᵀ.
-        out[..., at] = 2 * np.einsum("...ij,...j->...i", _rates(unit), gradient[..., rate]) / size
-        if position:
-            out[..., position[0]] = np.einsum("...ij,...j->...i", _rotation(unit), gradient[..., position[1]])
-    return out
-
-
-def _to_tangent(robot, q, gradient):
-    """The gradient along q ⊕ δ, (…, nv), of one by q, (…, nq), at unit quaternions."""
-    out = np.zeros(gradient.shape[:-1] + (robot.nv,))
-    for joint in robot.joints:
-        if joint.kind not in ("floating", "spherical"):
-            out[..., joint.v] = gradient[..., joint.q]
-    for at, rate, position in _quaternions(robot):
-        out[..., rate] = np.einsum("...ij,...i->...j", _rates(q[..., at]), gradient[..., at]) / 2
-        if position:
-            out[..., position[1]] = np.einsum("...ij,...i->...j", _rotation(q[..., at]), gradient[..., position[0]])
-    return out
 
 
 class _Calls:
@@ -102,63 +59,24 @@ class _Calls:
         robot = self.fast if self.fast and name in self.fast.functions else self.robot
         return np.asarray(getattr(robot, name)(*arguments, threads=self.threads))
 
-    def jacobians(self, q):
-        """Those that external wrenches act along."""
-        return self("jacobians_" + self.robot.wrenches_in, q)
+
+@functools.lru_cache(maxsize=1024)
+def _derived(robot, kind, name):
+    """A derivative of a function by all of its arguments, traced for the robot."""
+    takes = " ".join(argument for argument, _, _ in RULES[name].takes)
+    return robot._derived(f"derivative = {kind}({name}, {takes} in coordinates)")
 
 
-def _rows(gradient, jacobian):
-    return np.einsum("ni,nij->nj", gradient, jacobian)
+def _run(robot, kind, name, threads, arrays):
+    """The results of a derivative, for arrays with one batch dimension."""
+    robot = check(robot)
+    derived = _derived(robot, kind, name)
+    flat = [np.ascontiguousarray(array.reshape(len(array), math.prod(array.shape[1:])), dtype=np.float64) for array in arrays]
+    found = derived.run(flat, 1 if threads in (None, 1) else 0)
+    shapes = [lengths(robot, dims) for _, dims, _ in derived.gives()]
+    ends = np.cumsum([math.prod(shape) for shape in shapes])
+    return [part.reshape((len(found), *shape)) for part, shape in zip(np.split(found, ends[:-1], axis=1), shapes)]
 
-
-def _of_dynamics(call, name, gradient, q, *rest):
-    """Of functions with a (3, nv, nv) of derivatives; wrenches w act as Jᵀ w."""
-    derivatives = call(name, q, *rest)
-    first = [_rows(gradient, derivatives[:, k]) for k in range(3)]
-    if len(rest) < 3:
-        return first
-    # Of inverse dynamics τ = … − Jᵀ w, of forward dynamics a = M⁻¹ (… + Jᵀ w).
-    force = first[2] if name.startswith("forward") else -gradient
-    return [*first, np.einsum("nfij,nj->nfi", call.jacobians(q), force)]
-
-
-def _of_static_torque(call, gradient, q, wrenches):
-    derivative = call("static_torque_derivative", q, wrenches)
-    return [_rows(gradient, derivative), -np.einsum("nfij,nj->nfi", call.jacobians(q), gradient)]
-
-
-def _at_rest(call, q, *rest):
-    return [q, *rest, *([np.zeros((len(q), call.robot.nv))] * (2 - len(rest)))]
-
-
-def _of_integrate(call, gradient, q, step):
-    end = call("integrate", q, step)
-    derivatives = call("integrate_derivatives", step)
-    along = _to_tangent(call.robot, end, gradient)
-    return [_rows(along, derivatives[:, 0]), _rows(along, derivatives[:, 1])]
-
-
-def _of_difference(call, gradient, q, target):
-    derivatives = call("difference_derivatives", q, target)
-    return [_rows(gradient, derivatives[:, 0]), _rows(gradient, derivatives[:, 1])]
-
-
-_DERIVATIVES = {
-    "inverse_dynamics": lambda call, g, *x: _of_dynamics(call, "inverse_dynamics_derivatives", g, *x),
-    "inverse_dynamics_with_wrenches": lambda call, g, *x: _of_dynamics(call, "inverse_dynamics_derivatives_with_wrenches", g, *x),
-    "forward_dynamics": lambda call, g, *x: _of_dynamics(call, "forward_dynamics_derivatives", g, *x),
-    "forward_dynamics_with_wrenches": lambda call, g, *x: _of_dynamics(call, "forward_dynamics_derivatives_with_wrenches", g, *x),
-    "bias_forces": lambda call, g, *x: _of_dynamics(call, "inverse_dynamics_derivatives", g, *_at_rest(call, *x))[:2],
-    "gravity_torque": lambda call, g, *x: _of_dynamics(call, "inverse_dynamics_derivatives", g, *_at_rest(call, *x))[:1],
-    "static_torque": _of_static_torque,
-    "placements": lambda call, g, q: [np.einsum("nfi,nfij->nj", g, call("placement_derivatives", q))],
-    "center_of_mass": lambda call, g, q: [_rows(g, call("center_of_mass_jacobian", q))],
-    "potential_energy": lambda call, g, q: [g[:, None] * call("gravity_torque", q)],
-    "integrate": _of_integrate,
-    "difference": _of_difference,
-}
-
-RULES = {f.name: Rule(f.takes, f.gives, _DERIVATIVES[f.name]) for f in _TABLE if f.name in _DERIVATIVES}
 
 # Arguments that are configurations.
 _CONFIGURATIONS = ("q", "target")
@@ -216,19 +134,37 @@ def value(robot, name, threads, arguments):
     return call(name, *flat).reshape(batch + gives)
 
 
+def _whole(robot, name, arguments, more):
+    """Arguments and further arrays in float64, (N, …), and the dimensions that they had."""
+    takes, _ = sizes(robot, name)
+    shapes = [shape for _, shape in takes]
+    pairs = [(np.asarray(array, dtype=np.float64), shape) for array, shape in [*zip(arguments, shapes), *more(shapes)]]
+    batch = batch_shape([array for array, _ in pairs], [*takes, *(("weights", shape) for _, shape in pairs[len(takes) :])])
+    flat = [np.broadcast_to(array, batch + shape).reshape((math.prod(batch), *shape)) for array, shape in pairs]
+    return batch, flat
+
+
 def gradients(robot, name, threads, arguments, gradient):
     """Gradients of all arguments, of the gradient of the result, in float64."""
-    call = _Calls(robot, threads)
-    takes, gives = sizes(robot, name)
-    arguments = [np.asarray(array, dtype=np.float64) for array in arguments]
-    batch, flat = _flat(call.robot, takes, arguments)
-    gradient = np.broadcast_to(np.asarray(gradient, dtype=np.float64), batch + gives).reshape((math.prod(batch), *gives))
-    out = RULES[name].gradients(call, gradient, *flat)
-    for k, (argument, shape) in enumerate(takes):
-        if argument in _CONFIGURATIONS:
-            given = np.broadcast_to(arguments[k], batch + shape).reshape((math.prod(batch), *shape))
-            out[k] = _to_coordinates(call.robot, given, out[k])
-    return [part.reshape(batch + shape) for part, (_, shape) in zip(out, takes)]
+    _, gives = sizes(robot, name)
+    batch, flat = _whole(robot, name, arguments, lambda _: [(gradient, gives)])
+    found = _run(robot, "vjp", name, threads, flat)
+    return [part.reshape(batch + part.shape[1:]) for part in found]
+
+
+def along(robot, name, threads, arguments, directions):
+    """The derivative of the result along directions of all arguments, in float64."""
+    _, gives = sizes(robot, name)
+    batch, flat = _whole(robot, name, arguments, lambda shapes: zip(directions, shapes))
+    return _run(robot, "jvp", name, threads, flat)[0].reshape(batch + gives)
+
+
+def second(robot, name, threads, arguments, gradient, directions):
+    """Gradients of <directions, ``gradients(…)``>: by the gradient of the result, and by all arguments."""
+    _, gives = sizes(robot, name)
+    batch, flat = _whole(robot, name, arguments, lambda shapes: [(gradient, gives), *zip(directions, shapes)])
+    found = _run(robot, "hvp", name, threads, flat)
+    return along(robot, name, threads, arguments, directions), [part.reshape(batch + part.shape[1:]) for part in found]
 
 
 def document(function, name, tensor):

@@ -8,6 +8,7 @@ import numpy as np
 
 from . import _native, _wheel
 from ._compiled import CompiledRobot
+from ._derivative import Derivative
 from ._errors import RobotWarning, as_numbers
 
 
@@ -330,6 +331,26 @@ class Robot(_native.Robot):
         """
         rows = [(index, _TABLE[index]) for index in self._chosen("compile", functions)]
         return CompiledRobot(self, rows, tuple(_names("flags", flags)), bool(batch), _text)
+
+    def derivative(self, request):
+        """A derivative of a function by name, as a function on NumPy arrays.
+
+        >>> robot = articulated.bundled("panda_like")                          # doctest: +SKIP
+        >>> pull = robot.derivative("vjp(inverse_dynamics, q v)")              # doctest: +SKIP
+        >>> pull(q, v, a, weights).grad_q                                      # doctest: +SKIP
+
+        Args:
+            request: ``vjp``, ``jvp``, ``hvp``, ``hessian``, ``jacobian`` or ``gradient`` of a function, and the
+                arguments that it is taken with respect to; all if there are none. By q it is in the tangent
+                space, with nv numbers, or by the nq numbers behind ``q in coordinates``.
+
+        Returns:
+            Derivative, which is called with arrays. It is traced now, and needs no compiler.
+
+        Raises:
+            ValueError: The text is no such request, or names no function.
+        """
+        return Derivative(self, request)
 
     def wheel(self, folder, functions=_wheel.FUNCTIONS, *, name=None, version="0.1.0", flags=(), batch=False):
         """Writes a wheel of this robot: a package of its functions that needs NumPy alone, neither

@@ -1,4 +1,4 @@
-"""Functions of a robot on tensors of PyTorch, with exact derivatives for ``backward``.
+"""Functions of a robot on tensors of PyTorch, with exact first and second derivatives for ``backward``.
 
 >>> import articulated, articulated.torch, torch                        # doctest: +SKIP
 >>> robot = articulated.bundled("panda_like")                           # doctest: +SKIP
@@ -6,9 +6,11 @@
 >>> articulated.torch.gravity_torque(robot, q).sum().backward()         # doctest: +SKIP
 
 Tensors are of float64 or float32 on the CPU, and shared with NumPy without a copy. Functions of
-tensors of float32 compute in float32; gradients are computed in float64 and rounded. Derivatives
-are first ones: a second one is an error.
+tensors of float32 compute in float32; gradients are computed in float64 and rounded. A derivative is
+traced when it is first needed. A third derivative is an error.
 """
+
+import numpy as np
 
 try:
     import torch
@@ -32,20 +34,42 @@ class _Function(torch.autograd.Function):
         return None, None, None, *(one if is_needed else None for one, is_needed in zip(found, needed))
 
 
+def _numbers(tensors):
+    return [tensor.detach().numpy() for tensor in tensors]
+
+
 class _Gradients(torch.autograd.Function):
-    """The gradients of a function: a node of its own, so that their derivatives are an error, not zero."""
+    """The gradients of a function: a node of its own, which has derivatives."""
 
     @staticmethod
     def forward(ctx, robot, name, threads, gradient, *tensors):
-        ctx.of = name
-        found = _gradients.gradients(robot, name, threads, [tensor.detach().numpy() for tensor in tensors], gradient.detach().numpy())
+        ctx.of = robot, name, threads
+        ctx.save_for_backward(gradient, *tensors)
+        found = _gradients.gradients(robot, name, threads, _numbers(tensors), gradient.detach().numpy())
         return tuple(torch.from_numpy(one).to(tensor.dtype) for one, tensor in zip(found, tensors))
 
     @staticmethod
+    def backward(ctx, *directions):
+        gradient, *tensors = ctx.saved_tensors
+        directions = [torch.zeros_like(tensor) if one is None else one for one, tensor in zip(directions, tensors)]
+        found = _Second.apply(*ctx.of, gradient, len(tensors), *tensors, *directions)
+        return None, None, None, *found
+
+
+class _Second(torch.autograd.Function):
+    """Derivatives of gradients: a node of its own, so that their derivatives are an error, not zero."""
+
+    @staticmethod
+    def forward(ctx, robot, name, threads, gradient, count, *tensors):
+        ctx.of = name
+        arguments, directions = tensors[:count], tensors[count:]
+        first, second = _gradients.second(robot, name, threads, _numbers(arguments), gradient.detach().numpy(), _numbers(directions))
+        found = zip([first, *second], [gradient, *arguments])
+        return tuple(torch.from_numpy(np.ascontiguousarray(one)).to(tensor.dtype) for one, tensor in found)
+
+    @staticmethod
     def backward(ctx, *_):
-        raise NotImplementedError(
-            f"articulated.torch.{ctx.of}: found a second derivative, expected first ones: differentiate once, without create_graph=True"
-        )
+        raise NotImplementedError(f"articulated.torch.{ctx.of}: found a third derivative, expected first and second ones")
 
 
 def _tensor(name, value):

@@ -7,6 +7,7 @@
 mod arrays;
 mod batch;
 mod compiled;
+mod derived;
 mod errors;
 mod method;
 mod robot;

@@ -20,6 +20,7 @@ use pyo3::types::{PyList, PyTuple};
 
 use crate::arrays::{self, Argument, Real as _};
 use crate::batch::{self, Call, Compute, Generic, Kernel, Workspaces};
+use crate::derived::Derived;
 use crate::errors;
 use crate::method::Keywords;
 use crate::signature::{Signature, signatures};
@@ -383,6 +384,11 @@ impl Robot {
         let generated = py.detach(|| catch_unwind(AssertUnwindSafe(|| generate(&request)))).map_err(|_| batch::mistake())?;
         let generated = generated.map_err(|findings| errors::refused(py, &findings))?;
         Ok(generated.files.into_iter().map(|file| (file.name, file.text)).collect())
+    }
+
+    /// The derivative of this request, such as `g = vjp(inverse_dynamics)`, traced for the robot.
+    fn _derived(&self, py: Python<'_>, text: String) -> PyResult<Derived> {
+        Derived::of(py, self.request.clone(), text)
     }
 
     /// Row `index` of the table at these arguments, one state or many.

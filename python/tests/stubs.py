@@ -183,6 +183,7 @@ class Robot(_Functions):
     ) -> Robot: ...
     def call(self, name: str, *arguments: ArrayLike, threads: Optional[int] = None, out: Optional[_Array] = None) -> Any: ...
     def compile(self, functions: Iterable[str], *, flags: Iterable[str] = ..., batch: bool = False) -> CompiledRobot: ...
+    def derivative(self, request: str) -> Derivative: ...
     def wheel(
         self,
         folder: Union[str, PathLike[str]],
@@ -218,6 +219,13 @@ def method(function):
 
 # A compiled robot has the functions that the call of `compile` lists.
 COMPILED = """
+class Derivative:
+    request: str
+    takes: tuple[tuple[str, tuple[int, ...], str], ...]
+    gives: tuple[tuple[str, tuple[int, ...], str], ...]
+
+    def __call__(self, *arguments: ArrayLike, threads: Optional[int] = None) -> Any: ...
+
 class CompiledRobot(_Functions):
     robot: Robot
     functions: tuple[str, ...]

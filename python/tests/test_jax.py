@@ -11,6 +11,13 @@ from articulated import _gradients  # noqa: E402
 
 ROBOTS = ["double_pendulum", "panda_like", "quadruped", "spinning_top", "gripper_arm"]
 
+# Functions with all kinds of arguments and results; of the others the derivatives are made alike.
+NAMES = [
+    *("inverse_dynamics", "inverse_dynamics_with_wrenches", "forward_dynamics", "forward_dynamics_with_wrenches", "bias_forces"),
+    *("gravity_torque", "static_torque", "placements", "center_of_mass", "potential_energy", "integrate", "difference"),
+    *("kinetic_energy", "mass_matrix", "solve_mass_matrix", "twists_world", "centroidal_momentum", "joint_wrenches"),
+]
+
 
 def draw(robot, name, rng):
     out = []
@@ -40,7 +47,7 @@ def differences(function, arguments, k):
 
 
 @pytest.mark.parametrize("robot", ROBOTS)
-@pytest.mark.parametrize("name", _gradients.RULES)
+@pytest.mark.parametrize("name", NAMES)
 def test_jacobians_are_those_of_differences(robot, name):
     robot = articulated.bundled(robot)
     robot = robot.with_frames(robot.frames[-2:])
@@ -53,6 +60,43 @@ def test_jacobians_are_those_of_differences(robot, name):
         expected = differences(value, arguments, k)
         assert jacobian.shape == expected.shape
         np.testing.assert_allclose(jacobian, expected, rtol=0, atol=1e-7 * max(1.0, np.abs(expected).max()))
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("name", ["forward_dynamics", "placements", "integrate"])
+def test_forward_mode_is_reverse_mode(robot, name):
+    robot = articulated.bundled(robot)
+    robot = robot.with_frames(robot.frames[-2:])
+    arguments = draw(robot, name, np.random.default_rng(6))
+    function = lambda *x: getattr(articulated.jax, name)(robot, *x)  # noqa: E731
+    every = tuple(range(len(arguments)))
+    for forward, reverse in zip(jax.jacfwd(function, every)(*arguments), jax.jacrev(function, every)(*arguments)):
+        np.testing.assert_allclose(forward, reverse, rtol=0, atol=1e-9 * max(1.0, np.abs(reverse).max()))
+    directions = [np.ones_like(x) for x in arguments]
+    _, along = jax.jvp(function, arguments, directions)
+    steps = sum(jax.jacrev(function, every)(*arguments)[k].reshape(*along.shape, -1).sum(axis=-1) for k in every)
+    np.testing.assert_allclose(along, steps, rtol=0, atol=1e-9 * max(1.0, np.abs(along).max()))
+
+
+def test_hessians_are_those_of_differences():
+    for name in ("panda_like", "spinning_top"):
+        robot = articulated.bundled(name)
+        energy = lambda q, v: articulated.jax.kinetic_energy(robot, q, v) + articulated.jax.potential_energy(robot, q)  # noqa: E731
+        q, v = draw(robot, "kinetic_energy", np.random.default_rng(2))
+        found = jax.hessian(energy, argnums=(0, 1))(q, v)
+        gradient = lambda k: lambda *x: jax.grad(energy, argnums=k)(*x)  # noqa: E731
+        for k in range(2):
+            for i in range(2):
+                expected = differences(gradient(k), [q, v], i)
+                np.testing.assert_allclose(found[k][i], expected, rtol=0, atol=1e-7 * max(1.0, np.abs(expected).max()))
+
+
+def test_other_second_derivatives_are_errors_and_not_zero():
+    robot = articulated.bundled("panda_like")
+    energy = lambda q: articulated.jax.potential_energy(robot, q)  # noqa: E731
+    for twice in (jax.jacrev(jax.jacrev(energy)), jax.jacfwd(jax.jacfwd(energy))):
+        with pytest.raises((NotImplementedError, ValueError)):
+            twice(robot.neutral)
 
 
 def test_batches_and_transformations():
@@ -102,7 +146,7 @@ def test_bad_calls():
         (lambda: articulated.jax.gravity_torque("panda", q), TypeError, "robot: found str"),
         (lambda: articulated.jax.gravity_torque(robot, q * 1j), TypeError, "q: found dtype complex128"),
         (lambda: articulated.jax.bias_forces(robot, np.zeros((2, 7)), np.zeros((3, 7))), ValueError, "do not fit"),
-        (lambda: articulated.jax.mass_matrix, AttributeError, "found 'mass_matrix', which has no derivative here"),
+        (lambda: articulated.jax.random_configuration, AttributeError, "found 'random_configuration', which has no derivative here"),
     ):
         with pytest.raises(error, match=message):
             call()

@@ -11,6 +11,13 @@ from articulated import _gradients  # noqa: E402
 # Fixed; floating; a ball joint; joints that follow others.
 ROBOTS = ["double_pendulum", "panda_like", "quadruped", "spinning_top", "gripper_arm"]
 
+# Functions with all kinds of arguments and results; of the others the derivatives are made alike.
+NAMES = [
+    *("inverse_dynamics", "inverse_dynamics_with_wrenches", "forward_dynamics", "forward_dynamics_with_wrenches", "bias_forces"),
+    *("gravity_torque", "static_torque", "placements", "center_of_mass", "potential_energy", "integrate", "difference"),
+    *("kinetic_energy", "mass_matrix", "solve_mass_matrix", "twists_world", "centroidal_momentum", "joint_wrenches"),
+]
+
 
 def draw(robot, name, rng, count):
     out = []
@@ -25,7 +32,7 @@ def draw(robot, name, rng, count):
 
 
 @pytest.mark.parametrize("robot", ROBOTS)
-@pytest.mark.parametrize("name", _gradients.RULES)
+@pytest.mark.parametrize("name", NAMES)
 def test_gradients_are_those_of_differences(robot, name):
     robot = articulated.bundled(robot)
     robot = robot.with_frames(robot.frames[-2:])
@@ -78,18 +85,34 @@ def test_float32_in_is_float32_out():
     assert articulated.torch.bias_forces(robot, q, wide).dtype == torch.float64
 
 
-@pytest.mark.parametrize("name", ["potential_energy", "gravity_torque"])
-def test_a_second_derivative_is_an_error_and_not_zero(name):
+@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("name", ["inverse_dynamics", "forward_dynamics", "potential_energy", "placements", "integrate", "mass_matrix"])
+def test_second_derivatives_are_those_of_differences(robot, name):
+    robot = articulated.bundled(robot)
+    robot = robot.with_frames(robot.frames[-1:])
+    arguments = draw(robot, name, np.random.default_rng(7), 1)
+    function = getattr(articulated.torch, name)
+    scale = 1 / max(1.0, float(function(robot, *arguments).detach().abs().max()))
+    assert torch.autograd.gradgradcheck(lambda *x: scale * function(robot, *x), arguments, eps=1e-6, atol=5e-6, rtol=1e-4)
+
+
+def test_the_hessian_of_potential_energy_is_the_derivative_of_gravity_torque():
     robot = articulated.bundled("panda_like")
     q = torch.tensor(robot.random_configuration(1), requires_grad=True)
-    function = getattr(articulated.torch, name)
-    with pytest.raises(NotImplementedError, match=f"{name}: found a second derivative, expected first ones"):
-        torch.autograd.functional.hessian(lambda q: function(robot, q).sum(), q)
-    with pytest.raises(NotImplementedError, match="second derivative"):
-        torch.autograd.grad(torch.autograd.grad(function(robot, q).sum(), q, create_graph=True)[0].sum(), q)
-    # A first one that keeps its graph is right.
+    found = torch.autograd.functional.hessian(lambda q: articulated.torch.potential_energy(robot, q), q)
+    expected = robot.static_torque_derivative(q.detach().numpy(), np.zeros((len(robot.frames), 6)))
+    np.testing.assert_allclose(found.numpy(), expected, rtol=0, atol=1e-10)
     (first,) = torch.autograd.grad(articulated.torch.potential_energy(robot, q), q, create_graph=True)
     np.testing.assert_allclose(first.detach().numpy(), robot.gravity_torque(q.detach().numpy()), rtol=1e-12, atol=1e-10)
+
+
+def test_a_third_derivative_is_an_error_and_not_zero():
+    robot = articulated.bundled("panda_like")
+    q = torch.tensor(robot.random_configuration(1), requires_grad=True)
+    (first,) = torch.autograd.grad(articulated.torch.potential_energy(robot, q), q, create_graph=True)
+    (second,) = torch.autograd.grad(first.sum(), q, create_graph=True)
+    with pytest.raises(NotImplementedError, match="potential_energy: found a third derivative, expected first and second ones"):
+        torch.autograd.grad(second.sum(), q)
 
 
 def test_bad_calls():
@@ -105,7 +128,7 @@ def test_bad_calls():
         (lambda: articulated.torch.gravity_torque(robot, "q"), TypeError, "q: found str"),
         (lambda: articulated.torch.gravity_torque(robot, q * float("nan")), ValueError, "q: found nan"),
         (lambda: articulated.torch.bias_forces(robot, q.expand(2, 7), q.expand(3, 7)), ValueError, "do not fit"),
-        (lambda: articulated.torch.mass_matrix, AttributeError, "found 'mass_matrix', which has no derivative here"),
+        (lambda: articulated.torch.random_configuration, AttributeError, "found 'random_configuration', which has no derivative here"),
         (lambda: articulated.torch.nothing, AttributeError, "no attribute 'nothing'"),
     ):
         with pytest.raises(error, match=message):

@@ -4,6 +4,7 @@ mod counts;
 mod evaluate;
 mod fold;
 mod lanes;
+mod many;
 mod op;
 mod table;
 
