@@ -52,6 +52,12 @@ fn a_controller_of_ones_own_is_that_by_hand_in_fewer_instructions() {
 }
 
 #[test]
+fn products_with_jacobians_agree_from_both_sides() {
+    let text = printed(env!("CARGO_BIN_EXE_gradients"));
+    assert!(number(&text, "arm: ") < 1e-12 && number(&text, "legs: ") < 1e-12, "{text}");
+}
+
+#[test]
 fn the_quadruped_stands() {
     let text = printed(env!("CARGO_BIN_EXE_quadruped"));
     assert!(number(&text, "it stands at") < 1e-2, "{text}");
