@@ -42,6 +42,7 @@ pub(crate) enum Command {
         "articulated generate arm.urdf --functions inverse_dynamics,forward_dynamics --batch f64,f32 -o src/arm.rs",
         "articulated generate arm.urdf --functions 'hold = gravity_torque + jacobians_body, bias = inverse_dynamics(a = 0)'",
         "articulated generate arm.urdf --functions 'still=inverse_dynamics(v=0,a=0)' --parameters 'payload(tool)'",
+        "articulated generate arm.urdf --functions 'pull = vjp(inverse_dynamics, q v), slope = gradient(potential_energy)'",
         "articulated generate arm.toml --functions motion --runtime ::articulated -o src/arm.rs",
         "articulated generate arm.urdf --level double_double -o src/arm_exact.rs",
         "articulated generate arm.urdf --language c -o arm.h",

@@ -227,7 +227,8 @@ impl Build {
     ///         cost[0] *= k[0];
     ///     }
     /// }
-    /// Build::new("robots/arm.urdf").functions(["slope = gradient(weighed, q)"]).function(Weighed).write("arm");
+    /// let build = Build::new("robots/arm.urdf").functions(["slope = gradient(weighed, q)"]);
+    /// build.function(Weighed).write("arm");
     /// ```
     #[must_use]
     pub fn function<F: UserFunction>(mut self, function: F) -> Self {

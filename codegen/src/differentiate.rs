@@ -38,15 +38,15 @@ impl<'a> Steps<'a> {
         Some(Self { transform, arguments, weights: weights(part), results, shape })
     }
 
-    /// The number of the argument δ of a configuration; `None` for arguments that are differentiated
-    /// by themselves. Numbers above those of the arguments and of parameters are free.
+    /// The number of the argument δ of a configuration; `None` for arguments that are
+    /// differentiated by themselves. Numbers above those of the arguments and of parameters are free.
     fn step(&self, argument: Argument) -> Option<usize> {
         let place = self.transform.wrt.iter().position(|a| *a == argument)?;
         (argument.is_configuration() && !self.transform.in_coordinates).then_some(self.arguments.len() + 1 + place)
     }
 
-    /// The same for a part of the derivative that is evaluated, and not differentiated: in coordinates
-    /// it takes q/|q| too.
+    /// The same for a part of the derivative that is evaluated, and not differentiated: in
+    /// coordinates it takes q/|q| too.
     pub(crate) fn in_coordinates(&self) -> Option<&Self> {
         Some(self).filter(|_| self.transform.in_coordinates)
     }
@@ -123,8 +123,8 @@ impl<'a> Steps<'a> {
         self.at_rest(&found)
     }
 
-    /// The columns of the derivative of the gradient by forward mode, on and below the diagonal. The
-    /// matrix is symmetric.
+    /// The columns of the derivative of the gradient by forward mode, on and below the diagonal.
+    /// The matrix is symmetric.
     fn hessian(&self, gradient: &Graph, inputs: &[(usize, usize)]) -> Graph {
         let (count, n) = (gradient.nodes().len(), inputs.len());
         let mut graph = gradient.clone();

@@ -1,5 +1,5 @@
-//! Functions that are traced for a robot when they are first requested: derivatives by name. They run
-//! node by node on blocks of states, without a compiler.
+//! Functions that are traced for a robot when they are first requested: derivatives by name. They
+//! run node by node on blocks of states, without a compiler.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

@@ -1,5 +1,5 @@
-//! A graph on many states: node by node, on a block of states at a time, so that the cost of finding
-//! out what to do is shared.
+//! A graph on many states: node by node, on a block of states at a time, which shares the cost of
+//! finding out what to do.
 
 use super::evaluate::value;
 use super::{Graph, Op};

@@ -31,8 +31,8 @@ impl Strategy {
         Self { way, passes, folded: None, unit: None, shifted: false, axes: false }
     }
 
-    /// The strategy for a term that serves another function: its way of this name, or else its first.
-    /// A part before a loop is no way of the table, and serves no other.
+    /// The strategy for a term that serves another function: its way of this name, or else its
+    /// first. A part before a loop is no way of the table, and serves no other.
     pub(crate) fn for_function(&self, function: &'static Function<Sym>) -> Self {
         let serves = self.way.name != "columns in a loop";
         let named = function.ways.iter().find(|way| way.name == self.way.name);

@@ -7,7 +7,7 @@ use articulated_core::algorithm::{placements, static_torque, twists_world_aligne
 use articulated_core::user_function;
 
 user_function! {
-    /// τ = g(q) + Jᵀ f with f = k (target − p) − d ṗ: gravity is held, and the only frame is pulled to a place.
+    /// τ = g(q) + Jᵀ f, f = k (target − p) − d ṗ: gravity is held, the frame is pulled to a place.
     pub struct Impedance;
     fn impedance<S>(robot, work, q: [Nq] "rad", v: [Nv] "rad/s", target: [Of(3)] "m, world axes", gains: [Of(2)] "k in N/m, d in N·s/m")
         -> (torque: [Nv] "N·m") {

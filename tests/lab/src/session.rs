@@ -115,7 +115,7 @@ impl Session {
     }
 }
 
-/// Implementation of the functions of a motion. The runs of all are compiled in this crate, which is
+/// Implementation of the functions of a motion. All runs are compiled in this crate, which is
 /// optimised more than the command.
 pub trait Code {
     /// Runs the motion of a scene; `look` gets the time and the counts after each step, and returns

@@ -12,7 +12,7 @@ use articulated_tests::case::{Case, cast, read};
 use articulated_tests::random::Random;
 
 user_function! {
-    /// c = ½ τᵀ W τ + |p − place|, n = how many masses are above 0.1: a cost with an output that has a kink.
+    /// c = ½ τᵀ W τ + |p − place|, and the diagonal of M, at least 0.1.
     pub(crate) struct Effort {
         pub(crate) offset: f64,
     }

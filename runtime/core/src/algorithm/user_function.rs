@@ -10,8 +10,8 @@ use super::{Argument, Dim, Function, FunctionError, FunctionId, Group, Needs, Po
 use crate::Scalar;
 use crate::model::Model;
 
-/// A function of a robot beyond the table. [`user_function!`](crate::user_function) makes one from a
-/// generic function.
+/// A function of a robot beyond the table. [`user_function!`](crate::user_function) makes one from
+/// a generic function.
 ///
 /// It runs with `f64` and `f32`; with symbols it becomes generated code, with all derivatives; with
 /// dual numbers and big floats it is checked. A comparison of values is
@@ -86,8 +86,8 @@ impl<S: Scalar> Function<S> {
 
 /// Makes a [`UserFunction`](crate::algorithm::UserFunction) from a generic function.
 ///
-/// An argument with a name and dimensions of the table (`q: [Nq]`, `v: [Nv]`, …) is that of the table. Dimensions
-/// are those of [`Dim`](crate::algorithm::Dim). Arguments are slices, results mutable slices of
+/// An argument with a name and dimensions of the table (`q: [Nq]`, `v: [Nv]`, …) is that of the
+/// table. Dimensions are those of [`Dim`](crate::algorithm::Dim). Arguments are slices, results mutable slices of
 /// zeros, all row by row; `S` is the scalar.
 ///
 /// ```
@@ -99,7 +99,8 @@ impl<S: Scalar> Function<S> {
 /// user_function! {
 ///     /// c = ½ |p − target|²: how far the centre of mass is from a place.
 ///     pub struct Reach;
-///     fn reach<S>(robot, work, q: [Nq] "rad", target: [Of(3)] "m, world axes") -> (cost: [] "m²") {
+///     fn reach<S>(robot, work, q: [Nq] "rad", target: [Of(3)] "m, world axes")
+///         -> (cost: [] "m²") {
 ///         let mut p = [S::zero(); 3];
 ///         center_of_mass(robot, work, q, &mut p);
 ///         for (p, target) in p.iter().zip(target) {
