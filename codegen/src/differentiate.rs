@@ -9,9 +9,9 @@ use articulated_core::algorithm::{Argument, FunctionId, Shape, small_step};
 use articulated_core::model::{JointInfo, Model};
 use num_traits::{One, Zero};
 
+use crate::function_spec::{Derivative, FunctionSpec, FunctionTerm, Output, Transform, weights};
 use crate::graph::{Graph, NodeId, Op};
 use crate::pass::{self, adjoint, dce, tangent};
-use crate::spec::{Derivative, FunctionSpec, FunctionTerm, Output, Transform, weights};
 use crate::sym::Sym;
 
 /// The arguments of the matrices of derivatives of inverse and forward dynamics.

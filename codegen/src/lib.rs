@@ -40,7 +40,9 @@ mod capabilities;
 mod checked;
 mod differentiate;
 pub mod function_groups;
+mod function_spec;
 pub mod graph;
+pub mod language;
 pub mod ledger;
 mod limbs;
 pub mod lir;
@@ -52,9 +54,7 @@ mod program;
 mod request;
 pub mod scene;
 mod size;
-mod spec;
 pub mod sym;
-pub mod target;
 mod trace;
 
 use std::fmt::Write as _;
@@ -80,14 +80,14 @@ pub use articulated_formats::{LeaveOut, MOST_SNAPPED};
 pub use articulated_scene::{Appended, RobotOptions, RobotRequest};
 pub use build::{BatchType, Build, Written};
 pub use checked::checked_cost;
+pub use function_spec::{Constant, Derivative, FunctionSpec, FunctionTerm, Output, Transform, UserFunctions};
+pub use language::{COptions, File, RustOptions, Target, identifier, is_keyword};
 pub use ledger::Ledger;
 pub use parameters::Parameter;
 pub use plan::{MOST_FREEDOMS, check_names, check_words, defined, massless, undefined};
 pub use request::{Options, Request};
 pub use size::MAX_CODE_SIZE;
-pub use spec::{Constant, Derivative, FunctionSpec, FunctionTerm, Output, Transform, UserFunctions};
 pub use sym::Sym;
-pub use target::{COptions, File, RustOptions, Target, identifier, is_keyword};
 
 /// Generated code, with its ledger and warnings.
 #[derive(Clone, Debug)]
@@ -184,7 +184,7 @@ pub fn generate(request: &Request) -> Result<Generated, Diagnostics> {
     }
     warnings.extend(ledger.functions.iter().filter_map(|entry| long_code(&request.file, entry)));
     let functions = programs.iter().map(|p| lir::function::Function::of(p, model.shape(), !parameters.is_empty(), can)).collect();
-    let module = target::Module {
+    let module = language::Module {
         request,
         effects: &effects,
         model: &model,

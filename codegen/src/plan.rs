@@ -9,8 +9,8 @@ use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Spanned
 use articulated_core::model::Model;
 use articulated_scene::BuiltRobot;
 
+use crate::function_spec::{FunctionSpec, wrong_entry};
 use crate::parameters::Parameter;
-use crate::spec::{FunctionSpec, wrong_entry};
 use crate::{Options, Request, parameters, size};
 
 /// Robots with more degrees of freedom get no code: a workspace has room for a matrix of their

@@ -8,9 +8,9 @@ use articulated_core::precision::Precision;
 use articulated_scene::{BuiltRobot, RobotOptions, RobotRequest, Scene};
 
 use crate::function_groups;
-use crate::spec::UserFunctions;
-use crate::target::Target;
-use crate::target::rust::is_name;
+use crate::function_spec::UserFunctions;
+use crate::language::Target;
+use crate::language::rust::is_name;
 
 /// A robot's document and the options of generation. Macro, build script and command line all fill
 /// one of these.

@@ -9,8 +9,8 @@ use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::index::{BodyId, ById};
 use articulated_core::model::Model;
 
+use crate::function_spec::{Derivative, FunctionSpec, FunctionTerm};
 use crate::limbs::IsomorphicLimbs;
-use crate::spec::{Derivative, FunctionSpec, FunctionTerm};
 use crate::{Options, Request, program};
 
 /// Default limit of generated source, megabytes (10⁶ bytes). For more, a compiler takes minutes and

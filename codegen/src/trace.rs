@@ -8,13 +8,13 @@ use articulated_core::model::Model;
 use num_traits::Zero;
 
 use crate::differentiate::{ImplicitRule, Steps, of_length_one};
+use crate::function_spec::{FunctionSpec, FunctionTerm};
 use crate::graph::{Graph, Op};
 use crate::limbs::{Constants, IsomorphicLimbs, pack};
 use crate::model_pass::{FoldedRotations, View, model_passes, no_joint_moves_origin};
 use crate::parameters::Parameter;
 use crate::pass::{self, copy, dce, rebuild};
 use crate::program::Strategy;
-use crate::spec::{FunctionSpec, FunctionTerm};
 use crate::sym::{self, Sym};
 
 /// The graph of a function on `model`: its argument k is argument k of the graph, parameters come

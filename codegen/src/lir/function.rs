@@ -5,6 +5,7 @@ use articulated_core::algorithm::{Dim, Shape};
 use articulated_core::lanes::Real;
 
 use crate::capabilities::Capabilities;
+use crate::function_spec::{FunctionSpec, Output};
 use crate::graph::Graph;
 use crate::ledger::Entry;
 use crate::lir::lower::{Lowering, SinCosGrouping};
@@ -15,7 +16,6 @@ use crate::lir::pass::rows::WIDTH;
 use crate::lir::pass::spill::{self, spill};
 use crate::lir::{Array, Bodies, Body, Stmt, Ty};
 use crate::program::{MultiRhsSolve, Program};
-use crate::spec::{FunctionSpec, Output};
 use crate::{Arithmetic, Precision};
 
 /// An argument of a function.

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::Request;
+use crate::function_spec::FunctionSpec;
 use crate::program::Strategy;
-use crate::spec::FunctionSpec;
 use crate::trace::{trace, ways};
 
 /// A table that slides and turns in a plane, and on it an arm with a tool; these numbers are the

@@ -7,13 +7,13 @@ use articulated_core::model::Model;
 
 use super::forms::Form;
 use super::strategy::{self, Strategy};
+use crate::function_spec::{Derivative, FunctionSpec, FunctionTerm, Transform};
 use crate::graph::{Counts, Graph};
 use crate::ledger::{Entry, depth};
 use crate::limbs::IsomorphicLimbs;
 use crate::model_pass::{FoldedRotations, model_passes};
 use crate::parameters::Parameter;
 use crate::pass;
-use crate::spec::{Derivative, FunctionSpec, FunctionTerm, Transform};
 use crate::sym::Sym;
 use crate::trace::{foldable_rotations, trace, trace_in_lanes, units, ways};
 

@@ -5,9 +5,9 @@ use std::ops::RangeInclusive;
 use articulated_core::model::Model;
 
 use crate::capabilities::Capabilities;
+use crate::function_spec::FunctionSpec;
 use crate::graph::Op;
 use crate::ledger::Entry;
-use crate::spec::FunctionSpec;
 use crate::trace::applies;
 
 /// The solution of M X = B column by column, which is the same for each.

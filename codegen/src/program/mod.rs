@@ -9,12 +9,12 @@ use articulated_core::model::Model;
 
 use crate::Options;
 use crate::capabilities::Capabilities;
+use crate::function_spec::FunctionSpec;
 use crate::graph::{Graph, Op};
 use crate::ledger::Entry;
 use crate::limbs::IsomorphicLimbs;
 use crate::parameters::Parameter;
 use crate::pass;
-use crate::spec::FunctionSpec;
 use candidate::Candidate;
 
 pub(crate) use columns::{MultiRhsSolve, has_columns};

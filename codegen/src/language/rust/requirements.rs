@@ -2,9 +2,9 @@
 
 use std::collections::HashSet;
 
+use crate::language::rust::several;
+use crate::language::rust::statements::function;
 use crate::lir::{Body, Expr, Operand, Rows, Stmt, Store, Ty};
-use crate::target::rust::several;
-use crate::target::rust::statements::function;
 
 /// Names of functions that are called.
 #[derive(Clone, Debug, Default)]

@@ -8,9 +8,9 @@ use articulated_core::effect::{Applied, Field};
 use articulated_core::spatial::Reference;
 
 use crate::Precision;
-use crate::target::Module;
-use crate::target::heads::{self, printable};
-use crate::target::rust::RustOptions;
+use crate::language::Module;
+use crate::language::heads::{self, printable};
+use crate::language::rust::RustOptions;
 
 /// Origin, warnings, contract, and unused content of the robot's file, as comments.
 pub(crate) fn header(out: &mut String, module: &Module<'_>, rust: &RustOptions) {

@@ -24,14 +24,14 @@ use self::arrays::{Array, each, inputs, results};
 use self::text::{PUBLIC, SUPPORT};
 use self::ways::{SAFE, Variant, WAYS};
 use crate::Precision;
+use crate::language::rust::RustOptions;
+use crate::language::rust::function::body::{beginning, kept_types, nothing_kept};
+use crate::language::rust::requirements::Requirements;
+use crate::language::rust::spills;
+use crate::language::rust::statements::{Place, Printer, ty};
+use crate::language::rust::tree_shake::tree_shake;
 use crate::lir::Body;
 use crate::lir::function::{Function, States};
-use crate::target::rust::RustOptions;
-use crate::target::rust::function::body::{beginning, kept_types, nothing_kept};
-use crate::target::rust::requirements::Requirements;
-use crate::target::rust::spills;
-use crate::target::rust::statements::{Place, Printer, ty};
-use crate::target::rust::tree_shake::tree_shake;
 
 /// A function as batches have it.
 pub(crate) struct Batch<'a> {

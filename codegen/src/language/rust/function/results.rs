@@ -1,6 +1,6 @@
 //! Numbers as arrays, as text.
 
-use crate::target::rust::statements::ZERO;
+use crate::language::rust::statements::ZERO;
 
 /// An array of zeros of these lengths.
 pub(crate) fn zeros(lengths: &[usize]) -> String {

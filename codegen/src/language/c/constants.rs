@@ -9,7 +9,7 @@ use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::model::{JointInfo, Model};
 
 use crate::Request;
-use crate::target::Module;
+use crate::language::Module;
 
 /// A name in upper case: letters and digits of ASCII stay, everything else is `_`.
 fn upper(name: &str) -> String {
@@ -33,7 +33,7 @@ fn distinct<'a>(names: impl Iterator<Item = &'a str> + Clone, request: &Request)
 }
 
 /// Reports renames of unknown names, and equal new names of two joints or two links.
-pub(in crate::target) fn check_names(model: &Model<f64>, request: &Request, log: &mut Diagnostics) {
+pub(in crate::language) fn check_names(model: &Model<f64>, request: &Request, log: &mut Diagnostics) {
     let groups = [("joint", joints(model)), ("link", frames(model))];
     let mut error = |code, found: String, expected: &str| {
         log.push(Diagnostic::error(&request.file, (Default::default(), "rename"), code, found, expected));

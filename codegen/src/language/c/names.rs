@@ -8,7 +8,7 @@ use super::{COptions, columns, constants, lanes, math};
 use crate::FunctionSpec;
 
 /// Why a function cannot have its name beside the others, if it cannot.
-pub(in crate::target) fn refusal(function: &FunctionSpec, others: &[&FunctionSpec], c: &COptions) -> Option<String> {
+pub(in crate::language) fn refusal(function: &FunctionSpec, others: &[&FunctionSpec], c: &COptions) -> Option<String> {
     let name = function.name.as_str();
     if reserved().contains(name) {
         return Some("is a name that generated C has already: expected another name".into());

@@ -6,7 +6,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::target::rust::requirements::Requirements;
+use crate::language::rust::requirements::Requirements;
 
 /// A function in a text: its name and its lines, attributes and comments above it included.
 struct Item<'a> {

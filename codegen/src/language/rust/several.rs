@@ -3,8 +3,8 @@
 
 use std::fmt::Write;
 
+use crate::language::rust::instructions::{COMPILED_FOR_AVX512_BESIDE_AVX2, NOT_COMPILED_FOR_AVX2, OTHERS};
 use crate::lir::{Body, Stmt};
-use crate::target::rust::instructions::{COMPILED_FOR_AVX512_BESIDE_AVX2, NOT_COMPILED_FOR_AVX2, OTHERS};
 
 /// Whether a body of vectors computes sines of more than one at once.
 pub(crate) fn is_used(body: &Body) -> bool {

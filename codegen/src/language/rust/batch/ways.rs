@@ -2,7 +2,7 @@
 
 use articulated_core::lanes::Set;
 
-use crate::target::rust::instructions::HAS_AVX2;
+use crate::language::rust::instructions::HAS_AVX2;
 
 /// An instruction set as batches use it.
 pub(super) struct Variant {

@@ -3,11 +3,11 @@
 use std::fmt::Write;
 
 use crate::Precision;
+use crate::language::rust::function::signature::Signature;
+use crate::language::rust::spills;
+use crate::language::rust::statements::{FIELDS, Place, Printer, ty};
 use crate::lir::function::Ending;
 use crate::lir::{Body, Stmt, Ty};
-use crate::target::rust::function::signature::Signature;
-use crate::target::rust::spills;
-use crate::target::rust::statements::{FIELDS, Place, Printer, ty};
 
 /// Aligns the function's frame with a cache line. Otherwise vectors in the frame may cross lines,
 /// depending on where the stack begins: a function takes up to a seventh longer.
@@ -165,7 +165,7 @@ pub(crate) fn nothing_kept(name: &str, body: &Body) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::target::rust::statements::kept;
+    use crate::language::rust::statements::kept;
 
     #[test]
     fn every_slot_is_a_field_and_no_struct_is_long() {

@@ -4,11 +4,11 @@ use std::fmt::Write;
 
 use articulated_core::algorithm::Dim;
 
+use crate::function_spec::{Output, array_of};
+use crate::language::rust::function::results::{index, is_sparse, nested, zeros};
+use crate::language::rust::literal::bare;
+use crate::language::rust::statements::Place;
 use crate::lir::function::{Argument, Ending, Function};
-use crate::spec::{Output, array_of};
-use crate::target::rust::function::results::{index, is_sparse, nested, zeros};
-use crate::target::rust::literal::bare;
-use crate::target::rust::statements::Place;
 
 /// A list and its last item; the list is empty if all arguments are constants.
 fn joined(list: &str, last: &str) -> String {
@@ -251,10 +251,10 @@ mod tests {
     use super::*;
     use crate::Precision;
     use crate::capabilities::Capabilities;
+    use crate::function_spec::{FunctionSpec, FunctionTerm};
     use crate::graph::Graph;
     use crate::ledger::Entry;
     use crate::program::Program;
-    use crate::spec::{FunctionSpec, FunctionTerm};
 
     const SHAPE: Shape = Shape { nq: 9, nv: 9, frames: 0, links: 0 };
 

@@ -13,9 +13,9 @@ use std::fmt::Write;
 
 use articulated_core::algorithm::{Argument, Group};
 
+use crate::function_spec::{Derivative, FunctionSpec, Transform};
 use crate::lir::function::Function;
 use crate::lir::{Operand, Stmt, Store};
-use crate::spec::{Derivative, FunctionSpec, Transform};
 
 /// A matrix whose entries are somewhere in an array of ours.
 #[derive(Clone)]
@@ -125,7 +125,7 @@ const ORDERS: [&[(&str, Derivative)]; 2] =
 /// A function with its derivatives up to an order, of functions other than sums, derivatives and
 /// regressors. In coordinates, since CasADi knows no others; quaternions are divided by their
 /// length. `names`: those of all functions.
-pub(in crate::target) fn with_derivatives(function: &FunctionSpec, names: &[String], order: usize) -> Vec<FunctionSpec> {
+pub(in crate::language) fn with_derivatives(function: &FunctionSpec, names: &[String], order: usize) -> Vec<FunctionSpec> {
     let mut all = vec![FunctionSpec { normalises: function.transform.is_none(), ..function.clone() }];
     if let ([part], None) = (function.parts.as_slice(), &function.transform)
         && !matches!(part.function.group, Group::Derivatives | Group::Regressors)

@@ -8,14 +8,14 @@ pub(crate) mod signature;
 use std::fmt::Write;
 
 use crate::Precision;
+use crate::language::rust::function::body::{body, pieces};
+use crate::language::rust::function::signature::Signature;
+use crate::language::rust::instructions::{self, needs_choice};
+use crate::language::rust::module::style;
+use crate::language::rust::several;
+use crate::language::rust::spills;
 use crate::lir::Body;
 use crate::lir::function::{Ending, Function};
-use crate::target::rust::function::body::{body, pieces};
-use crate::target::rust::function::signature::Signature;
-use crate::target::rust::instructions::{self, needs_choice};
-use crate::target::rust::module::style;
-use crate::target::rust::several;
-use crate::target::rust::spills;
 use precision::real;
 
 /// Context of the printer besides the functions.

@@ -3,7 +3,7 @@
 use crate::FunctionSpec;
 
 /// Why a function cannot have its name, if it cannot.
-pub(in crate::target) fn refuses_name(function: &FunctionSpec) -> Option<String> {
+pub(in crate::language) fn refuses_name(function: &FunctionSpec) -> Option<String> {
     let (name, group) = (function.name.as_str(), function.group());
     // The type of several results has the name of the function: `self_` would be `Self`.
     if is_keyword(name) || name.trim_end_matches('_') == "self" {

@@ -23,13 +23,13 @@ use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::lanes::Real;
 
 use crate::capabilities::Capabilities;
+use crate::language::{File, Module, heads};
 use crate::lir::function::{Argument, Ending, Function};
 use crate::lir::{Body, Stmt, Ty};
-use crate::target::{File, Module, heads};
 use crate::{Arithmetic, Options, Precision, TrigAccuracy};
 use ascii::ascii;
-pub(in crate::target) use constants::check_names;
-pub(in crate::target) use names::refusal as refuses_name;
+pub(in crate::language) use constants::check_names;
+pub(in crate::language) use names::refusal as refuses_name;
 use requirements::Requirements;
 use statements::{Numbers, Printer, infinity};
 
@@ -294,7 +294,7 @@ impl Source<'_> {
                 self.array(&format!("const {outside}"), a.name, &a.dims, function)
             }
         };
-        let result = |(name, output): (&&str, &crate::spec::Output)| self.array(outside, name, &output.dims, function);
+        let result = |(name, output): (&&str, &crate::function_spec::Output)| self.array(outside, name, &output.dims, function);
         function.arguments.iter().map(argument).chain(results.iter().zip(&function.outputs).map(result)).collect()
     }
 

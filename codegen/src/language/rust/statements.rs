@@ -3,10 +3,10 @@
 use std::fmt::{self, Display, Formatter, Write};
 
 use crate::graph::Op;
+use crate::language::rust::literal::{bare, literal, operand, single};
+use crate::language::rust::several;
 use crate::lir::function::Argument;
 use crate::lir::{Angle, Body, Expr, Number, Operand, Rows, Slot, Stmt, Store, Temp, Ty};
-use crate::target::rust::literal::{bare, literal, operand, single};
-use crate::target::rust::several;
 use crate::{Arithmetic, Precision, TrigAccuracy};
 
 /// As zero is written.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use articulated_core::precision::source;
 
-use crate::target::rust::module::bare;
+use crate::language::rust::module::bare;
 use crate::{Arithmetic, Precision, TrigAccuracy};
 
 /// The type of arguments and results.

@@ -18,12 +18,12 @@ mod words;
 
 use crate::Options;
 use crate::capabilities::Capabilities;
-use crate::target::{File, Module, Target};
+use crate::language::{File, Module, Target};
 
 pub use module::names::identifier;
 pub(crate) use module::names::{Names, is_name};
 pub use words::is_keyword;
-pub(in crate::target) use words::refuses_name;
+pub(in crate::language) use words::refuses_name;
 
 /// Choices for Rust.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -14,17 +14,17 @@ use articulated_core::description::Limit;
 use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
 
 use crate::Parameter;
+use crate::language::Module;
+use crate::language::rust::RustOptions;
+use crate::language::rust::batch::{Batch, batches};
+use crate::language::rust::function::precision::real;
+use crate::language::rust::function::{Context, IMPLEMENTATION, Text, function};
+use crate::language::rust::literal::literal;
+use crate::language::rust::module::header::header;
+use crate::language::rust::module::names::Names;
+use crate::language::rust::module::sets::support;
+use crate::language::rust::spills;
 use crate::lir::function::Function;
-use crate::target::Module;
-use crate::target::rust::RustOptions;
-use crate::target::rust::batch::{Batch, batches};
-use crate::target::rust::function::precision::real;
-use crate::target::rust::function::{Context, IMPLEMENTATION, Text, function};
-use crate::target::rust::literal::literal;
-use crate::target::rust::module::header::header;
-use crate::target::rust::module::names::Names;
-use crate::target::rust::module::sets::support;
-use crate::target::rust::spills;
 
 /// The contents of the module.
 pub(crate) fn module(module: &Module, rust: &RustOptions) -> String {

@@ -7,16 +7,16 @@ use articulated_core::lanes::{Real, Set, source};
 use articulated_core::precision::with_sines;
 
 use crate::Precision;
-use crate::lir::function::Function;
-use crate::target::rust::columns::Layout;
-use crate::target::rust::function::precision;
-use crate::target::rust::instructions::{
+use crate::language::rust::columns::Layout;
+use crate::language::rust::function::precision;
+use crate::language::rust::instructions::{
     COMPILED_FOR_AVX512, COMPILED_FOR_AVX512_BESIDE_AVX2, MAY_LACK_AVX2, NOT_COMPILED_FOR_AVX2, OTHERS, has_batch, needs_choice,
 };
-use crate::target::rust::module::bare;
-use crate::target::rust::requirements::Requirements;
-use crate::target::rust::several;
-use crate::target::rust::tree_shake::tree_shake;
+use crate::language::rust::module::bare;
+use crate::language::rust::requirements::Requirements;
+use crate::language::rust::several;
+use crate::language::rust::tree_shake::tree_shake;
+use crate::lir::function::Function;
 
 /// Support that the functions call: multiply-adds, sines, lanes.
 pub(crate) fn support(out: &mut String, functions: &[Function], (forbid_unsafe, no_std): (bool, bool), level: Precision) {
