@@ -12,12 +12,12 @@
 
 use articulated_core::diagnostic::{At, Code, Diagnostics, quote};
 mod collision;
+mod file;
 mod index;
 mod placed;
 mod plane;
 mod resolve;
 mod still;
-mod urdf;
 
 use std::ops::Range;
 
@@ -30,10 +30,10 @@ use crate::tree::Value;
 use articulated_core::effect::{Effect, EffectId, Field, On, effect, effects};
 
 pub(crate) use collision::is_of_shape;
+pub(crate) use file::{sources, tag};
 pub(crate) use index::indices;
 pub use resolve::{Edited, Resolved};
 pub use still::still;
-pub(crate) use urdf::{sources, tag};
 
 /// A request of an effect.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,7 +114,7 @@ fn on(row: &'static Effect, selector: &Selector, spot: &Cursor<'_>, log: &mut Di
     let before = log.count();
     let says = match &spot.node.value {
         Value::Text(word) if word == "off" => vec![asked(None, spot)],
-        Value::Text(word) if urdf::source(word) == "urdf" && urdf::offers(row) => {
+        Value::Text(word) if file::source(word) == "urdf" && file::offers(row) => {
             vec![asked(Some(Numbers { from_urdf: true, ..empty(row) }), spot)]
         }
         Value::Text(word) if word == collision::WORD && collision::offers(row) => {
@@ -221,7 +221,7 @@ fn from(row: &Effect, spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<&'stat
         spot.wrong(log, expected);
         return None;
     };
-    let source = sources(row).find(|source| *source == urdf::source(word));
+    let source = sources(row).find(|source| *source == file::source(word));
     if source.is_none() {
         log.error((spot.node.at, &spot.key), Code::Word, quoted_with_reason(word), expected);
     }
@@ -230,7 +230,7 @@ fn from(row: &Effect, spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<&'stat
 
 /// A word for a source of numbers that an effect does not have.
 fn quoted_with_reason(word: &str) -> String {
-    let why = match urdf::source(word) {
+    let why = match file::source(word) {
         "urdf" => ", which has no numbers for it",
         collision::WORD => ", which has no geometry for it",
         _ => "",

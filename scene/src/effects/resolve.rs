@@ -9,7 +9,7 @@ use articulated_core::description::{Base, ById, Description, Joint, JointId, Joi
 
 use super::index::{Index, Named};
 use super::still::{moving, still};
-use super::{EffectRequest, Numbers, Selector, collision, placed, plane, urdf};
+use super::{EffectRequest, Numbers, Selector, collision, file, placed, plane};
 use crate::report::{EffectOff, EffectOn, Number, Report, Why};
 use crate::scene::Scene;
 use crate::shaft;
@@ -218,16 +218,16 @@ impl<'a> Resolving<'a> {
             let Some(one) = named.or(spread).filter(fits) else { continue };
             let layers = [named, all].map(|asked| asked.and_then(|a| a.says.as_ref()));
             let Some(layers) = one.says.as_ref().map(|_| layers) else { continue };
-            match fill((row, fields_on(row, joint.kind)), &layers, &|tag: &str| urdf::number(joint, tag)) {
+            match fill((row, fields_on(row, joint.kind)), &layers, &|tag: &str| file::number(joint, tag)) {
                 Ok(mut filled) => {
                     if named.is_some() {
                         self.warn_of_zero(row, one, joint, &filled);
                     }
-                    urdf::before_the_gear(row.id, &mut filled);
+                    file::before_the_gear(row.id, &mut filled);
                     self.put_filled(row, &joint.name, Origin::default(), one, &filled);
                 }
                 // A request for all joints skips those without numbers in the file.
-                Err(field) if named.is_none() && urdf::tag(row.id, field).is_some() => {}
+                Err(field) if named.is_none() && file::tag(row.id, field).is_some() => {}
                 Err(field) => missing(row, field, one, &format!("joint {:?}", joint.name), log),
             }
         }
@@ -271,7 +271,7 @@ impl<'a> Resolving<'a> {
         let Some((one, says)) = for_all(asked).and_then(|one| Some((one, one.says.as_ref()?))).filter(|(_, says)| says.from_urdf) else {
             return;
         };
-        let of = |joint: &Joint| fill((row, fields_on(row, joint.kind)), &[Some(says)], &|tag: &str| urdf::number(joint, tag)).ok();
+        let of = |joint: &Joint| fill((row, fields_on(row, joint.kind)), &[Some(says)], &|tag: &str| file::number(joint, tag)).ok();
         let mut all = self.robot.description.joints.iter().filter_map(|joint| Some((joint, of(joint)?)));
         let has_tag = |filled: &[Filled]| filled.iter().any(|(_, tag)| tag.is_some());
         if all.any(|(joint, filled)| has_tag(&filled) && !is_zero_in_file(fields_on(row, joint.kind), &filled)) {
@@ -279,7 +279,7 @@ impl<'a> Resolving<'a> {
         }
         let has_zeros = self.robot.description.joints.iter().filter_map(of).any(|filled| has_tag(&filled));
         let other = if has_zeros { " other than 0" } else { "" };
-        let tags: Vec<String> = row.fields.iter().filter_map(|field| Some(format!("<{}>", urdf::tag(row.id, field.name)?))).collect();
+        let tags: Vec<String> = row.fields.iter().filter_map(|field| Some(format!("<{}>", file::tag(row.id, field.name)?))).collect();
         let found = format!("no joint of {} has numbers{other} for effects.{}", self.robot.file, row.name);
         let expected = format!("joints with {}, or numbers in the scene: the effect does nothing", tags.join(" or "));
         self.warn(one, &Subject::Document, Code::NoNumbers, &found, &expected);
@@ -346,7 +346,7 @@ impl<'a> Resolving<'a> {
         for joint in self.moving_joints() {
             let bounds = [("limit lower", "limit"), ("limit upper", "limit"), ("limit effort", "motor"), ("limit velocity", "motor")];
             for (tag, effect) in bounds {
-                if urdf::number(joint, tag).is_some() && !used(&joint.name, tag) {
+                if file::number(joint, tag).is_some() && !used(&joint.name, tag) {
                     let why = format!("kept by nothing: the effect {effect} is off here or has numbers of its own");
                     ignored.push(Unused { line: None, subject: Subject::Joint(joint.name.clone()), tag: tag.to_owned(), why });
                 }
@@ -425,7 +425,7 @@ pub(super) fn fill(
             if let Some(numbers) = i.and_then(|i| layer.fields[i].as_ref()) {
                 return Ok((numbers.clone(), None));
             }
-            let tag = urdf::tag(row.id, field.name).filter(|_| layer.from_urdf && field.len == 1);
+            let tag = file::tag(row.id, field.name).filter(|_| layer.from_urdf && field.len == 1);
             if let Some((tag, x)) = tag.and_then(|tag| Some((tag, number(tag)?))) {
                 return Ok((vec![x], Some(tag)));
             }
@@ -451,7 +451,7 @@ pub(super) fn missing(row: &Effect, field: &str, one: &EffectRequest, on: &str, 
     let lacking = row.fields.iter().find(|f| f.name == field);
     let unit = lacking.map_or("", |f| f.unit);
     let or_other = lacking.and_then(|f| f.unless).map(|other| format!(", or {other}")).unwrap_or_default();
-    let found = match urdf::tag(row.id, field).filter(|_| one.says.as_ref().is_some_and(|s| s.from_urdf)) {
+    let found = match file::tag(row.id, field).filter(|_| one.says.as_ref().is_some_and(|s| s.from_urdf)) {
         Some(tag) => format!("no {field} for {on}, whose file has no <{tag}>"),
         None => format!("no {field} for {on}"),
     };
