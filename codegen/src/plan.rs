@@ -9,7 +9,7 @@ use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Spanned
 use articulated_core::model::Model;
 use articulated_scene::BuiltRobot;
 
-use crate::function_spec::{FunctionSpec, wrong_entry};
+use crate::function_spec::{FunctionSpec, UserFunctions, wrong_entry};
 use crate::parameters::Parameter;
 use crate::{Options, Request, parameters, size};
 
@@ -65,6 +65,11 @@ pub(crate) fn plan(request: &Request, members: &BTreeMap<String, String>, log: &
 /// The readable functions. Reports invalid words of the options, which do not depend on the robot.
 fn words(options: &Options, log: &mut Diagnostics) -> Vec<Entry> {
     options.target.check(options, log);
+    for function in options.users.iter() {
+        if let Err(error) = UserFunctions::check(function) {
+            log.push(error);
+        }
+    }
     let read = |(k, text): (usize, &Spanned<String>)| match FunctionSpec::parse_with(text, &options.users) {
         Ok(function) => Some((k, function)),
         Err(error) => {

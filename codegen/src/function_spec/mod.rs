@@ -22,6 +22,7 @@ pub use transform::{Derivative, Transform};
 
 use constant::{constant, entries};
 
+use crate::language::refuses_port;
 use crate::{Sym, function};
 
 /// One function to generate.
@@ -69,6 +70,25 @@ impl UserFunctions {
     pub fn push<F: UserFunction>(&mut self, function: F) {
         self.0.retain(|other| other.name != F::NAME);
         self.0.push(Function::of_user(function));
+    }
+
+    /// Checks the names of the ports of a function, and that it has a result.
+    pub(crate) fn check(function: &Function<Sym>) -> Result<(), Diagnostic> {
+        let wrong = |reason: String| Err(wrong_entry(function.name, &reason));
+        let mut names: Vec<&str> = function.takes.iter().map(|argument| argument.name()).collect();
+        names.extend(function.outputs.iter().map(|output| output.name));
+        for (k, name) in names.iter().enumerate() {
+            if let Some(reason) = refuses_port(name) {
+                return wrong(format!("`{name}` {reason}"));
+            }
+            if names[..k].contains(name) {
+                return wrong(format!("two arguments or results are called `{name}`: expected names of their own"));
+            }
+        }
+        if function.outputs.is_empty() && function.gives.is_empty() && function.unit.is_empty() {
+            return wrong("found no result, expected one at least".into());
+        }
+        Ok(())
     }
 
     /// The functions.

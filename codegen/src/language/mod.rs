@@ -66,6 +66,24 @@ fn check_batch(batch: &[Real], log: &mut Diagnostics) {
     }
 }
 
+/// Words that the text around a function uses, beside its arguments.
+const AROUND: &str =
+    "out parameters parameter_sets count blocks states sets slots shelves first this row rows given steps kept b i k m n p";
+
+/// Why an argument or a result of a user's function cannot have its name in some language.
+pub(crate) fn refuses_port(name: &str) -> Option<&'static str> {
+    let is_plain = name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+    let is_counted = name.len() > 1 && name.starts_with(|c: char| c.is_ascii_lowercase()) && name[1..].bytes().all(|b| b.is_ascii_digit());
+    if !is_plain || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
+        return Some("is not a valid name: expected lower case letters, digits and _");
+    }
+    if is_keyword(name) || c::is_word_of_c(name) {
+        return Some("is a word of Rust or of C: expected another name");
+    }
+    let is_around = is_counted || AROUND.split(' ').any(|word| word == name);
+    is_around.then_some("is a name that generated code uses for itself: expected another name")
+}
+
 impl Target {
     /// All targets, with default choices.
     #[must_use]

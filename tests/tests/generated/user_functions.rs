@@ -135,6 +135,26 @@ fn c_has_an_array_for_each_result() {
     }
 }
 
+user_function! {
+    /// An argument that generated code calls its results, another that it counts, and a keyword twice.
+    struct Odd;
+    fn odd<S>(robot, work, q: [Nq] "rad", out: [] "1", x12: [] "1", double: [] "1") -> (double: [] "1", fine: [] "1") {
+        fine[0] = q[0] + out[0] + x12[0];
+    }
+}
+
+#[test]
+fn ports_have_names_that_every_language_has_room_for() {
+    let told = |function: fn(&mut UserFunctions)| {
+        let mut request = request(&["mass_matrix"]);
+        function(&mut request.options.users);
+        generate(&request).map(|_| String::new()).unwrap_or_else(|e| e.to_string())
+    };
+    let odd = told(|users| users.push(Odd));
+    assert!(odd.contains("`odd`: `out` is a name that generated code uses for itself"), "{odd}");
+    assert_eq!(told(|users| users.push(Effort { offset: 1.0 })), "");
+}
+
 #[test]
 fn requests_may_name_it_and_others_may_not_be_called_like_it() {
     let mut users = UserFunctions::default();

@@ -7,6 +7,7 @@ mod ascii;
 mod batch;
 mod casadi;
 pub(super) use casadi::with_derivatives;
+pub(super) use names::is_word_of_c;
 mod columns;
 mod constants;
 mod lanes;

@@ -13,7 +13,7 @@ pub(in crate::language) fn refusal(function: &FunctionSpec, others: &[&FunctionS
     if reserved().contains(name) {
         return Some("is a name that generated C has already: expected another name".into());
     }
-    if c.casadi && OF_THE_LIBRARY.split_whitespace().any(|word| word == name) {
+    if c.casadi && is_word_of_c(name) {
         return Some("is a name of C's library or a keyword, and CasADi calls functions without a prefix: expected another name".into());
     }
     let is_part = |name: &str, of: &str| {
@@ -24,6 +24,11 @@ pub(in crate::language) fn refusal(function: &FunctionSpec, others: &[&FunctionS
     };
     let other = others.iter().find(|other| is_part(name, &other.name))?;
     Some(format!("is a name that generated C has for a part of {}: expected another name", other.name))
+}
+
+/// Whether it is a function of C's headers or a keyword.
+pub(in crate::language) fn is_word_of_c(name: &str) -> bool {
+    OF_THE_LIBRARY.split_whitespace().any(|word| word == name)
 }
 
 /// The names of helpers and constants, without the prefix.

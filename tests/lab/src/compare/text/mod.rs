@@ -92,7 +92,7 @@ fn stages_of(report: &Report) -> String {
     told.iter().map(|(names, does)| format!("{}: {does}", names.join(", "))).collect::<Vec<_>>().join("; ")
 }
 
-const SIZES: &str = "/time: bytes of machine code that a nanosecond of a call runs; far fewer than of a short function: the code waits for the instruction cache; depth: the longest chain of operations that wait for each other; way chosen: how it is computed, where there are several ways, by count (LTDL: by factors of the mass \
+const SIZES: &str = "depth: the longest chain of operations that wait for each other; /time: bytes of machine code for a nanosecond of a call: if they are far fewer than of a short function, the code waits for the instruction cache; way chosen: how it is computed, where there are several ways, by count (LTDL: by factors of the mass \
                      matrix; ABA: by the articulated-body algorithm)";
 
 /// A row for each function, under the name of its group if there are several groups.
