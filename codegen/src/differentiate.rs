@@ -17,7 +17,7 @@ use crate::sym::Sym;
 /// The arguments of the matrices of derivatives of inverse and forward dynamics.
 const BLOCKS: [&[Argument]; 3] = [&[Argument::Q], &[Argument::V], &[Argument::A, Argument::Tau]];
 
-/// The inputs by which a function is differentiated.
+/// A requested derivative, with the inputs by which the function is differentiated.
 pub(crate) struct Steps<'a> {
     transform: &'a Transform,
     arguments: &'a [Argument],
@@ -45,8 +45,7 @@ impl<'a> Steps<'a> {
         (argument.is_configuration() && !self.transform.in_coordinates).then_some(self.arguments.len() + 1 + place)
     }
 
-    /// The same for a part of the derivative that is evaluated, and not differentiated: in
-    /// coordinates it takes q/|q| too.
+    /// The steps, if this is in coordinates. A part that is only evaluated then takes q/|q| too.
     pub(crate) fn in_coordinates(&self) -> Option<&Self> {
         Some(self).filter(|_| self.transform.in_coordinates)
     }
@@ -153,9 +152,12 @@ impl<'a> Steps<'a> {
     /// All columns by forward mode, or all rows by reverse mode, whichever is cheaper.
     fn jacobian(&self, graph: &Graph, inputs: &[(usize, usize)]) -> Graph {
         let rows = graph.outputs.len();
+        // A mode with many times as many sweeps is not tried.
+        let (is_wide, is_tall) = (inputs.len() > 4 * rows.max(1), rows > 4 * inputs.len().max(1));
         let mut forward = graph.clone();
         let columns: Vec<Vec<NodeId>> = inputs
             .iter()
+            .filter(|_| !is_wide)
             .map(|input| {
                 let one = forward.constant(1.0);
                 pass::tangents(&mut forward, &graph.outputs, graph.nodes().len(), |_, argument, index| {
@@ -164,7 +166,7 @@ impl<'a> Steps<'a> {
             })
             .collect();
         let mut reverse = graph.clone();
-        let gradients: Vec<Vec<NodeId>> = (0..rows)
+        let gradients: Vec<Vec<NodeId>> = (0..if is_tall { 0 } else { rows })
             .map(|row| {
                 let one = reverse.constant(1.0);
                 pass::gradients(&mut reverse, &[graph.outputs[row]], graph.nodes().len(), inputs, |_, _| one)
@@ -177,8 +179,8 @@ impl<'a> Steps<'a> {
             for argument in &self.transform.wrt {
                 let count = self.transform.dims(*argument).iter().map(|d| d.len(self.shape)).product::<usize>();
                 for row in below..below + result {
-                    by_columns.extend((first..first + count).map(|column| columns[column][row]));
-                    by_rows.extend((first..first + count).map(|column| gradients[row][column]));
+                    by_columns.extend((first..first + count).filter_map(|column| Some(columns.get(column)?[row])));
+                    by_rows.extend((first..first + count).filter_map(|column| Some(gradients.get(row)?[column])));
                 }
                 first += count;
             }
@@ -186,6 +188,9 @@ impl<'a> Steps<'a> {
         }
         (forward.outputs, reverse.outputs) = (by_columns, by_rows);
         let [forward, reverse] = [forward, reverse].map(|graph| dce(&self.at_rest(&graph)));
+        if is_wide || is_tall {
+            return if is_wide { reverse } else { forward };
+        }
         if pass::cost(&reverse) < pass::cost(&forward) { reverse } else { forward }
     }
 

@@ -9,7 +9,7 @@ use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Spanned
 use articulated_core::model::Model;
 use articulated_scene::BuiltRobot;
 
-use crate::function_spec::{FunctionSpec, UserFunctions, wrong_entry};
+use crate::function_spec::{FunctionSpec, wrong_entry};
 use crate::parameters::Parameter;
 use crate::{Options, Request, parameters, size};
 
@@ -66,7 +66,7 @@ pub(crate) fn plan(request: &Request, members: &BTreeMap<String, String>, log: &
 fn words(options: &Options, log: &mut Diagnostics) -> Vec<Entry> {
     options.target.check(options, log);
     for function in options.users.iter() {
-        if let Err(error) = UserFunctions::check(function) {
+        if let Err(error) = options.users.check(function) {
             log.push(error);
         }
     }

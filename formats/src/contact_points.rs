@@ -1,9 +1,9 @@
 //! Points of meshes on which links touch the ground.
 //!
-//! Along a direction d a set of points reaches to h(d) = max dᵀx. A plane with the normal −d sees
-//! nothing else of it. Of the vertices those are chosen, one after another, that h(d) of the chosen
-//! ones falls short of most.
+//! h(d) = max dᵀx is how far points reach along d. Contact with a plane depends on h alone. Each step
+//! adds the vertex where h of the chosen points falls short most.
 
+use std::cmp::Ordering;
 use std::path::Path;
 
 use articulated_core::description::{CollisionShape, Description, Hull};
@@ -62,14 +62,18 @@ fn directions() -> Vec<Vector> {
 
 /// The vertices that reach farthest.
 fn points_of(vertices: &[Vector], scale: Vector) -> Hull {
-    let scaled: Vec<Vector> = vertices.iter().map(|x| [0, 1, 2].map(|k| x[k] * scale[k])).collect();
+    // A file of triangles has each vertex several times.
+    let mut scaled: Vec<Vector> = vertices.iter().map(|x| [0, 1, 2].map(|k| x[k] * scale[k])).collect();
+    let by_numbers = |a: &Vector, b: &Vector| (0..3).map(|k| a[k].total_cmp(&b[k])).find(|order| order.is_ne());
+    scaled.sort_unstable_by(|a, b| by_numbers(a, b).unwrap_or(Ordering::Equal));
+    scaled.dedup();
     // Per direction: its farthest vertex, and how far that and the chosen ones reach.
     let mut open: Vec<(Vector, usize, f64, f64)> = directions()
         .into_iter()
         .map(|d| {
-            let reach = |k: &usize| dot(d, scaled[*k]);
-            let far = (0..scaled.len()).max_by(|a, b| reach(a).total_cmp(&reach(b))).unwrap_or_default();
-            (d, far, reach(&far), f64::NEG_INFINITY)
+            let reach = scaled.iter().map(|x| dot(d, *x)).enumerate();
+            let (far, most) = reach.fold((0, f64::NEG_INFINITY), |most, next| if next.1 > most.1 { next } else { most });
+            (d, far, most, f64::NEG_INFINITY)
         })
         .collect();
     let size = scaled.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
@@ -79,7 +83,7 @@ fn points_of(vertices: &[Vector], scale: Vector) -> Hull {
         let Some(&(_, far, reach, chosen)) = worst else { return Hull::default() };
         let missing = reach - chosen;
         if missing <= LEAST * size || points.len() == MOST {
-            return Hull::Points { points, missing: missing.max(0.0), vertices: vertices.len() };
+            return Hull::Points { points, missing: missing.max(0.0), vertices: scaled.len() };
         }
         let point = scaled[far];
         open.iter_mut().for_each(|(d, _, _, chosen)| *chosen = chosen.max(dot(*d, point)));

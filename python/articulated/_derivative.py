@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from ._compiled import lengths
+from ._errors import as_numbers
 
 
 class Derivative:
@@ -44,10 +45,9 @@ class Derivative:
             raise TypeError(f"{self.request}: found {len(arguments)} arguments, expected {len(self.takes)}: {names}")
         arrays, batches = [], []
         for value, (name, shape, _) in zip(arguments, self.takes):
-            try:
-                array = np.asarray(value, dtype=np.float64)
-            except (TypeError, ValueError) as error:
-                raise TypeError(f"{name}: found {type(value).__name__} ({error}), expected an array of real numbers") from None
+            array = np.asarray(as_numbers(name, value), dtype=np.float64)
+            if not np.isfinite(array).all():
+                raise ValueError(f"{name}: found {array[~np.isfinite(array)].flat[0]}, expected finite numbers")
             if array.ndim < len(shape) or array.shape[array.ndim - len(shape) :] != shape:
                 raise ValueError(f"{name}: found shape {array.shape}, expected {shape}, or that behind dimensions of a batch")
             arrays.append(array)

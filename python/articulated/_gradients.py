@@ -5,8 +5,8 @@ function of q with its quaternions normalised. So they are exact for any quatern
 it.
 """
 
-import functools
 import math
+import weakref
 from typing import NamedTuple
 
 import numpy as np
@@ -60,11 +60,17 @@ class _Calls:
         return np.asarray(getattr(robot, name)(*arguments, threads=self.threads))
 
 
-@functools.lru_cache(maxsize=1024)
+# By robot, as long as it lives.
+_DERIVED = weakref.WeakKeyDictionary()
+
+
 def _derived(robot, kind, name):
     """A derivative of a function by all of its arguments, traced for the robot."""
-    takes = " ".join(argument for argument, _, _ in RULES[name].takes)
-    return robot._derived(f"derivative = {kind}({name}, {takes} in coordinates)")
+    known = _DERIVED.setdefault(robot, {})
+    if (kind, name) not in known:
+        takes = " ".join(argument for argument, _, _ in RULES[name].takes)
+        known[kind, name] = robot._derived(f"derivative = {kind}({name}, {takes} in coordinates)")
+    return known[kind, name]
 
 
 def _run(robot, kind, name, threads, arrays):
@@ -176,7 +182,7 @@ def document(function, name, tensor):
     Args:
         robot: A robot, or a compiled one, whose compiled functions are used where it has them.
         {takes}: {tensor}, of one state or behind any dimensions of a batch, which broadcast.
-        threads: None or 1 for one thread, 0 for all, or their number.
+        threads: None or 1 for one thread, 0 for all, or their number; derivatives take one thread or all.
 
     The gradient by q has nq numbers: it is that of the function of q with its quaternions normalised.
     """

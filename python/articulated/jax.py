@@ -100,8 +100,10 @@ mlir.register_lowering(_along, mlir.lower_fun(_directed, multiple_results=False)
 
 
 def _batched(arguments, axes, *, of):
-    # Functions take any batch dimensions before those of one state.
-    moved = [array if axis is None else jnp.moveaxis(array, axis, 0) for array, axis in zip(arguments, axes)]
+    # Functions take any batch dimensions before those of one state; all arguments have the same here.
+    count = next(array.shape[axis] for array, axis in zip(arguments, axes) if axis is not None)
+    whole = lambda array: jnp.broadcast_to(array, (count, *array.shape))  # noqa: E731
+    moved = [whole(array) if axis is None else jnp.moveaxis(array, axis, 0) for array, axis in zip(arguments, axes)]
     return _along.bind(*moved, of=of), 0
 
 

@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use articulated::algorithm::Argument;
 use articulated_codegen::graph::{Graph, Op};
-use articulated_codegen::{FunctionSpec, Output, Request, generate};
+use articulated_codegen::{COptions, FunctionSpec, Output, Request, Target, generate};
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -88,6 +88,9 @@ impl Derived {
         }
         request.options.functions = vec![text.into()];
         (request.options.limbs, request.options.stages) = (false, false);
+        // The text is not used: names are those of the target that has the fewest rules for them.
+        request.options.target = Target::C(COptions { prefix: Some("robot".into()), ..COptions::default() });
+        request.options.max_code_size = u64::MAX;
         let generated = py.detach(|| catch_unwind(AssertUnwindSafe(|| generate(&request)))).map_err(|_| batch::mistake())?;
         let mut generated = generated.map_err(|findings| errors::refused(py, &findings))?;
         let graph = generated.graphs.pop().unwrap_or_default();

@@ -54,6 +54,7 @@ def test_bad_requests_and_calls():
         (lambda: slope(), TypeError, "found 0 arguments, expected 1: q"),
         (lambda: slope(q[:6]), ValueError, "q: found shape"),
         (lambda: slope("q"), TypeError, "q: found str"),
+        (lambda: slope(q * float("nan")), ValueError, "q: found nan"),
     ):
         with pytest.raises(error, match=message):
             call()

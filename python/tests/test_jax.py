@@ -78,6 +78,17 @@ def test_forward_mode_is_reverse_mode(robot, name):
     np.testing.assert_allclose(along, steps, rtol=0, atol=1e-9 * max(1.0, np.abs(along).max()))
 
 
+def test_forward_mode_nests_in_batches():
+    robot, rng = articulated.bundled("panda_like"), np.random.default_rng(3)
+    q, v = robot.random_configuration(rng, 5), rng.normal(size=(5, 7))
+    function = lambda q, v: articulated.jax.bias_forces(robot, q, v)  # noqa: E731
+    forward = jax.vmap(jax.jacfwd(function, argnums=1))(q, v)
+    reverse = jax.vmap(jax.jacrev(function, argnums=1))(q, v)
+    np.testing.assert_allclose(forward, reverse, rtol=0, atol=1e-10)
+    seven = jax.vmap(jax.jacfwd(function), in_axes=(None, 0))(q[0], rng.normal(size=(7, 7)))
+    assert seven.shape == (7, 7, 7)
+
+
 def test_hessians_are_those_of_differences():
     for name in ("panda_like", "spinning_top"):
         robot = articulated.bundled(name)

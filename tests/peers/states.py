@@ -199,6 +199,8 @@ def main():
     arguments.add_argument("robots", nargs="*", default=list(ROBOTS), help="bundled robots")
     arguments.add_argument("--states", type=int, nargs="+", default=[1000, 1_000_000], help="multiples of 8")
     given = arguments.parse_args()
+    if min(given.states) < LANES:
+        arguments.error(f"--states: found {min(given.states)}, expected at least {LANES}")
     command, cores = REPOSITORY / "target" / "release" / "articulated", os.cpu_count() or 1
     columns = [("Rust", "blocks"), ("C", "blocks"), ("Rust", "states"), ("C", "states"), ("CasADi", "states")]
     titles = [f"{engine}, {layout}" if engine != "CasADi" else engine for engine, layout in columns]

@@ -22,6 +22,7 @@ pub use transform::{Derivative, Transform};
 
 use constant::{constant, entries};
 
+use crate::function_groups;
 use crate::language::refuses_port;
 use crate::{Sym, function};
 
@@ -63,18 +64,25 @@ pub struct FunctionTerm {
 
 /// Functions of the user, which requests may name beside those of the table.
 #[derive(Clone, Default)]
-pub struct UserFunctions(Vec<&'static Function<Sym>>);
+pub struct UserFunctions(Vec<&'static Function<Sym>>, Vec<&'static str>);
 
 impl UserFunctions {
     /// Adds a function, in place of an earlier one of the same name.
     pub fn push<F: UserFunction>(&mut self, function: F) {
         self.0.retain(|other| other.name != F::NAME);
+        if F::OUTPUTS.is_empty() {
+            self.1.push(F::NAME);
+        }
         self.0.push(Function::of_user(function));
     }
 
     /// Checks the names of the ports of a function, and that it has a result.
-    pub(crate) fn check(function: &Function<Sym>) -> Result<(), Diagnostic> {
+    pub(crate) fn check(&self, function: &Function<Sym>) -> Result<(), Diagnostic> {
         let wrong = |reason: String| Err(wrong_entry(function.name, &reason));
+        let is_group = function_groups::functions_of(function.name).is_some() || function.name == function_groups::MOTION;
+        if is_group || functions::<Sym>().iter().any(|other| other.name == function.name) {
+            return wrong("is a name of the table of functions, or of a group: expected a name of its own".into());
+        }
         let mut names: Vec<&str> = function.takes.iter().map(|argument| argument.name()).collect();
         names.extend(function.outputs.iter().map(|output| output.name));
         for (k, name) in names.iter().enumerate() {
@@ -85,7 +93,7 @@ impl UserFunctions {
                 return wrong(format!("two arguments or results are called `{name}`: expected names of their own"));
             }
         }
-        if function.outputs.is_empty() && function.gives.is_empty() && function.unit.is_empty() {
+        if self.1.contains(&function.name) {
             return wrong("found no result, expected one at least".into());
         }
         Ok(())
@@ -163,6 +171,12 @@ impl FunctionSpec {
             return Err(wrong(format!("`{}` is in it twice", parts[k].function.name)));
         }
         let wanted = Self { name: name.into(), parts, transform, normalises: false };
+        let mut names: Vec<&str> = wanted.arguments().iter().map(|a| a.name()).collect();
+        let outputs = wanted.outputs();
+        names.extend(outputs.iter().filter(|_| outputs.len() > 1).map(|output| output.name));
+        if let Some(k) = (1..names.len()).find(|&k| names[..k].contains(&names[k])) {
+            return Err(wrong(format!("two arguments or results are called `{}`: expected other names of ports", names[k])));
+        }
         match wanted.no_name() {
             Some(reason) => Err(wrong(format!("`{name}` {reason}"))),
             None => Ok(wanted),
@@ -170,7 +184,8 @@ impl FunctionSpec {
     }
 
     /// Its arguments: those that a part takes and that are not bound to constants there, in the
-    /// order of the table, then sines; last what a derivative takes beside them.
+    /// order of the table, then those that only users' functions have, then sines; last what a
+    /// derivative takes beside them. A user's function by itself has its own order.
     pub fn arguments(&self) -> Vec<Argument> {
         let mut arguments = self.arguments_of_parts();
         arguments.extend(self.transform.iter().flat_map(|transform| transform.arguments(&self.parts[0])));
@@ -196,6 +211,12 @@ impl FunctionSpec {
     /// The arguments without those of a derivative.
     pub(crate) fn arguments_of_parts(&self) -> Vec<Argument> {
         let taken = |a: &Argument| self.parts.iter().any(|p| p.function.takes.contains(a) && p.constant(*a).is_none());
+        // A user's function by itself keeps its order.
+        if let [part] = self.parts.as_slice()
+            && part.function.id == FunctionId::user
+        {
+            return part.function.takes.iter().filter(|a| taken(a)).copied().chain(part.sines.then_some(Argument::SinCos)).collect();
+        }
         let mut own: Vec<Argument> = Vec::new();
         for argument in self.parts.iter().flat_map(|p| p.function.takes) {
             if taken(argument) && !Argument::ALL.contains(argument) && !own.contains(argument) {

@@ -67,8 +67,8 @@ fn check_batch(batch: &[Real], log: &mut Diagnostics) {
 }
 
 /// Words that the text around a function uses, beside its arguments.
-const AROUND: &str =
-    "out parameters parameter_sets count blocks states sets slots shelves first this row rows given steps kept b i k m n p";
+const AROUND: &str = "out parameters parameter_sets count blocks states sets slots shelves first this row rows given steps kept b i k m n p \
+    add mul fma trig lanes lane sin_cos store put body whole fused spill at gather scatter implementation columns four half";
 
 /// Why an argument or a result of a user's function cannot have its name in some language.
 pub(crate) fn refuses_port(name: &str) -> Option<&'static str> {

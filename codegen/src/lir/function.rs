@@ -22,14 +22,27 @@ use crate::{Arithmetic, Precision};
 #[derive(Clone, Debug)]
 pub(crate) struct Argument {
     pub(crate) name: &'static str,
-    /// Empty for the parameters.
+    /// Empty for a single number.
     pub(crate) dims: Vec<Dim>,
+    /// The same as numbers.
+    pub(crate) lengths: Vec<usize>,
+    is_parameters: bool,
 }
 
 impl Argument {
+    /// An array of these dimensions.
+    pub(crate) fn new(name: &'static str, dims: &[Dim], shape: Shape) -> Self {
+        Self { name, dims: dims.to_vec(), lengths: dims.iter().map(|d| d.len(shape)).collect(), is_parameters: false }
+    }
+
+    /// The constants of the model that stayed inputs.
+    fn parameters() -> Self {
+        Self { name: "parameters", dims: Vec::new(), lengths: Vec::new(), is_parameters: true }
+    }
+
     /// Whether it is the parameters.
     pub(crate) fn is_parameters(&self) -> bool {
-        self.dims.is_empty()
+        self.is_parameters
     }
 }
 
@@ -110,9 +123,9 @@ impl<'a> Function<'a> {
     /// Lowers a program.
     pub(crate) fn of(program: &'a Program, shape: Shape, has_parameters: bool, can: Capabilities) -> Self {
         let Program { spec, graph, entry, .. } = program;
-        let mut arguments: Vec<Argument> = spec.arguments().iter().map(|a| Argument { name: a.name(), dims: a.dims().to_vec() }).collect();
+        let mut arguments: Vec<Argument> = spec.arguments().iter().map(|a| Argument::new(a.name(), a.dims(), shape)).collect();
         if has_parameters {
-            arguments.push(Argument { name: "parameters", dims: Vec::new() });
+            arguments.push(Argument::parameters());
         }
         let columns = program.columns.as_ref();
         let plan = Plan { graph, spec, shape, can, columns, is_outlined: is_long(graph, columns.is_some(), can.level) };

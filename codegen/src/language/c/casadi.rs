@@ -114,6 +114,12 @@ pub(super) fn write(out: &mut String, prefix: &str, functions: &[Function]) {
     }
 }
 
+/// Whether a function would have the name of a derivative of another one.
+pub(super) fn is_name_of_a_derivative(name: &str, of: &str) -> bool {
+    let behind = name.strip_prefix(of).is_some_and(|rest| [JACOBIAN, ADJOINT, HESSIAN].contains(&rest));
+    behind || name.strip_suffix(of).is_some_and(|rest| ["jac_", "adj1_", "jac_adj1_"].contains(&rest))
+}
+
 const JACOBIAN: &str = "_jacobian";
 const ADJOINT: &str = "_adjoint";
 const HESSIAN: &str = "_hessian";
@@ -199,11 +205,18 @@ impl Own<'_> {
 
     /// A weight for each entry of each result.
     fn seeds(&self) -> Vec<Input> {
-        results(self.function).into_iter().map(|(name, matrix)| Input { name: format!("adj_{name}"), matrix }).collect()
+        let mut start = 0;
+        let mut seed = |(name, mut matrix): (String, Matrix)| {
+            // Each is an array of its own.
+            matrix.entries.iter_mut().for_each(|entry| entry[2] -= start);
+            start += matrix.rows * matrix.columns;
+            Input { name: format!("adj_{name}"), matrix }
+        };
+        results(self.function).into_iter().map(&mut seed).collect()
     }
 
-    /// For each result and argument the block ∂result/∂argument. CasADi counts the entries of a
-    /// matrix column by column, and those that are always zero not at all in its seeds, but here.
+    /// For each result and argument the block ∂result/∂argument. CasADi numbers the entries of a
+    /// matrix column by column. Its seeds leave out entries that are always zero; blocks keep them.
     fn blocks(&self, jacobian: &Function, start: usize) -> Vec<Vec<Matrix>> {
         let (zeros, arguments) = (zeros(jacobian), inputs(self.function));
         let mut at = 0;
@@ -386,9 +399,10 @@ impl External<'_> {
         read.dedup();
         // A matrix, whose entries are in another order, becomes an array of ours.
         let turned: Vec<usize> = read.iter().copied().filter(|k| !self.inputs[*k].matrix.is_plain()).collect();
-        let longest = read.iter().map(|k| self.inputs[*k].matrix.rows).max().unwrap_or(0).max(1);
+        let longest = read.iter().map(|k| self.inputs[*k].matrix.rows * self.inputs[*k].matrix.columns).max().unwrap_or(0).max(1);
         let numbers: usize = self.calls.iter().flat_map(|call| &call.lengths).sum::<usize>().max(1);
-        turned.iter().for_each(|k| self.places(out, &format!("in_{k}"), &self.inputs[*k].matrix));
+        let filled = |k: &&usize| !self.inputs[**k].matrix.entries.is_empty();
+        turned.iter().filter(filled).for_each(|k| self.places(out, &format!("in_{k}"), &self.inputs[*k].matrix));
         for (k, (_, matrix)) in self.results.iter().enumerate().filter(|(_, (_, matrix))| !matrix.entries.is_empty()) {
             self.places(out, &k.to_string(), matrix);
         }
@@ -399,13 +413,15 @@ impl External<'_> {
         );
         for k in &turned {
             let matrix = &self.inputs[*k].matrix;
-            let _ = writeln!(
-                out,
-                "    double seed_{k}[{}] = {{0}};\n    for (int i = 0; arguments[{k}] && i < {}; i++) {{\n        \
-                 seed_{k}[{name}_places_in_{k}[i]] = arguments[{k}][i];\n    }}",
-                (matrix.rows * matrix.columns).max(1),
-                matrix.entries.len()
-            );
+            let _ = writeln!(out, "    double seed_{k}[{}] = {{0}};", (matrix.rows * matrix.columns).max(1));
+            if !matrix.entries.is_empty() {
+                let _ = writeln!(
+                    out,
+                    "    for (int i = 0; arguments[{k}] && i < {}; i++) {{\n        \
+                     seed_{k}[{name}_places_in_{k}[i]] = arguments[{k}][i];\n    }}",
+                    matrix.entries.len()
+                );
+            }
         }
         let mut start = 0;
         for Call { name: calls, arguments, lengths } in &self.calls {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use articulated_core::lanes::Real;
 
-use super::{COptions, columns, constants, lanes, math};
+use super::{COptions, casadi, columns, constants, lanes, math};
 use crate::FunctionSpec;
 
 /// Why a function cannot have its name beside the others, if it cannot.
@@ -15,6 +15,9 @@ pub(in crate::language) fn refusal(function: &FunctionSpec, others: &[&FunctionS
     }
     if c.casadi && is_word_of_c(name) {
         return Some("is a name of C's library or a keyword, and CasADi calls functions without a prefix: expected another name".into());
+    }
+    if let Some(other) = others.iter().find(|other| c.casadi && casadi::is_name_of_a_derivative(name, &other.name)) {
+        return Some(format!("is a name that CasADi has for a derivative of {}: expected another name", other.name));
     }
     let is_part = |name: &str, of: &str| {
         let rest = name.strip_prefix(of).and_then(|rest| rest.strip_prefix('_')).unwrap_or_default();

@@ -3,6 +3,7 @@
 use std::fmt::{self, Display, Formatter, Write};
 
 use crate::graph::Op;
+use crate::language::rust::function::results::index;
 use crate::language::rust::literal::{bare, literal, operand, single};
 use crate::language::rust::several;
 use crate::lir::function::Argument;
@@ -344,9 +345,10 @@ impl Printer<'_> {
 
 /// An element of an argument, by its index row by row.
 pub(crate) fn element(argument: &Argument, k: usize) -> String {
-    match argument.dims.as_slice() {
-        [_, articulated_core::algorithm::Dim::Of(width)] => format!("{}[{}][{}]", argument.name, k / width, k % width),
-        _ => format!("{}[{k}]", argument.name),
+    match argument.lengths.as_slice() {
+        [] if !argument.is_parameters() => format!("(*{})", argument.name),
+        [] | [_] => format!("{}[{k}]", argument.name),
+        lengths => format!("{}{}", argument.name, index(k, lengths)),
     }
 }
 
@@ -414,7 +416,8 @@ mod tests {
     fn text(ty: Ty, lanes: Lanes, statements: &[Stmt]) -> String {
         let results = vec![Array { start: 0, lengths: vec![4] }];
         let body = Body { ty, lanes, results, pieces: Vec::new(), kept: 0, slots: None, barrier: false, is_partial: true };
-        let arguments = [Argument { name: "q", dims: vec![articulated_core::algorithm::Dim::Nq] }];
+        let shape = articulated_core::algorithm::Shape { nq: 4, nv: 4, frames: 0, links: 0 };
+        let arguments = [Argument::new("q", &[articulated_core::algorithm::Dim::Nq], shape)];
         let places = |at: usize| Place { array: "out".into(), index: Some(at) };
         let mut out = String::new();
         Printer { body: &body, arguments: &arguments, level: Precision::default(), places: &places, is_raw: false }
