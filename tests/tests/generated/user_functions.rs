@@ -3,7 +3,7 @@
 
 use articulated_codegen::{COptions, Derivative, FunctionSpec, Request, Target, UserFunctions, generate};
 use articulated_core::Scalar;
-use articulated_core::algorithm::{UserFunction, Workspace, center_of_mass, inverse_dynamics, mass_matrix};
+use articulated_core::algorithm::{UserFunction, Workspace, center_of_mass, inverse_dynamics, kinetic_energy, mass_matrix};
 use articulated_core::description::Base;
 use articulated_core::dual::Dual;
 use articulated_core::model::Model;
@@ -135,6 +135,62 @@ fn c_has_an_array_for_each_result() {
     }
 }
 
+/// Seeds of the second result are an array of their own.
+#[test]
+fn seeds_of_casadi_fit_their_arrays() {
+    let mut request = request(&["effort"]);
+    request.options.target = Target::C(COptions { casadi: true, derivatives: Some(2), ..COptions::default() });
+    let source = generate(&request).unwrap().source;
+    let numbers = |text: &str| -> Vec<usize> { text.split([',', ' ', '\n']).filter_map(|word| word.parse().ok()).collect() };
+    for function in ["adj1_effort", "jac_adj1_effort"] {
+        let (_, body) = source.split_once(&format!("EXPORT int {function}(")).expect("it is exported");
+        for part in body.split_once("\n}\n").unwrap().0.split("double seed_").skip(1) {
+            let (number, rest) = part.split_once('[').unwrap();
+            let size: usize = rest.split_once(']').unwrap().0.parse().unwrap();
+            let table = source.split_once(&format!("{function}_places_in_{number}[")).expect("a table of places").1;
+            let places = numbers(table.split_once('{').unwrap().1.split_once('}').unwrap().0);
+            assert!(!places.is_empty() && places.iter().all(|place| *place < size), "{function} {number}: {size} {places:?}");
+        }
+    }
+}
+
+user_function! {
+    /// Arguments in another order than the table's.
+    struct Turned;
+    fn turned<S>(robot, work, place: [Of(3)] "m", v: [Nv] "rad/s", q: [Nq] "rad") -> (energy: [] "J") {
+        kinetic_energy(robot, work, q, v, energy);
+        energy[0] *= place[0];
+    }
+}
+
+#[test]
+fn a_function_keeps_the_order_of_its_arguments() {
+    let mut users = UserFunctions::default();
+    users.push(Turned);
+    let names = |text: &str| FunctionSpec::parse_with(text, &users).unwrap().arguments().iter().map(|a| a.name()).collect::<Vec<_>>();
+    assert_eq!(names("turned"), ["place", "v", "q"]);
+    assert_eq!(names("g = jvp(turned, q v)"), ["place", "v", "q", "dv", "dq"]);
+    assert_eq!(names("both = mass_matrix + turned"), ["q", "v", "place"]);
+    // Numbers that follow each other in either order.
+    let mut request = request(&["g = gradient(turned, q place)"]);
+    request.options.users = users.clone();
+    let generated = generate(&request).unwrap();
+    let given = numbers(&generated.model);
+    let of = [&given[2], &given[1], &given[0]];
+    let found = generated.graphs[0].evaluate(|argument, k| of[argument][k]);
+    let (mut energy, mut work) = ([0.0], Workspace::new(&generated.model));
+    kinetic_energy(&generated.model, &mut work, &given[0], &given[1], &mut energy);
+    assert!((found[0] - energy[0]).abs() < 1e-10 * energy[0], "∂/∂place comes first: {found:?}");
+}
+
+user_function! {
+    /// A name that a group has.
+    struct Momentum;
+    fn momentum<S>(robot, work, q: [Nq] "rad") -> (out_1: [] "1") {
+        out_1[0] = q[0];
+    }
+}
+
 user_function! {
     /// An argument that generated code calls its results, another that it counts, and a keyword twice.
     struct Odd;
@@ -152,6 +208,8 @@ fn ports_have_names_that_every_language_has_room_for() {
     };
     let odd = told(|users| users.push(Odd));
     assert!(odd.contains("`odd`: `out` is a name that generated code uses for itself"), "{odd}");
+    let momentum = told(|users| users.push(Momentum));
+    assert!(momentum.contains("`momentum`: is a name of the table of functions, or of a group"), "{momentum}");
     assert_eq!(told(|users| users.push(Effort { offset: 1.0 })), "");
 }
 
