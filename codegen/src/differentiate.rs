@@ -39,7 +39,7 @@ impl<'a> Steps<'a> {
     }
 
     /// The number of the argument δ of a configuration; `None` for arguments that are
-    /// differentiated by themselves. Numbers above those of the arguments and of parameters are free.
+    /// differentiated by themselves. Numbers above those of arguments and parameters are free.
     fn step(&self, argument: Argument) -> Option<usize> {
         let place = self.transform.wrt.iter().position(|a| *a == argument)?;
         (argument.is_configuration() && !self.transform.in_coordinates).then_some(self.arguments.len() + 1 + place)

@@ -4,14 +4,15 @@
 use std::collections::BTreeMap;
 
 use articulated_core::Scalar;
-use articulated_core::algorithm::{Function, Needs};
+use articulated_core::algorithm::{Function, Needs, functions};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Spanned};
 use articulated_core::model::Model;
 use articulated_scene::BuiltRobot;
 
 use crate::function_spec::{FunctionSpec, wrong_entry};
+use crate::language::refuses_port;
 use crate::parameters::Parameter;
-use crate::{Options, Request, parameters, size};
+use crate::{Options, Request, Sym, function_groups, parameters, size};
 
 /// Robots with more degrees of freedom get no code: a workspace has room for a matrix of their
 /// number squared.
@@ -62,12 +63,31 @@ pub(crate) fn plan(request: &Request, members: &BTreeMap<String, String>, log: &
     log.is_ok().then_some(Plan { robot, model, parameters, functions })
 }
 
+/// What is wrong with the names of a user's function and of its ports.
+fn wrong_ports(function: &Function<Sym>, lacks_result: bool) -> Option<String> {
+    let is_group = function_groups::functions_of(function.name).is_some() || function.name == function_groups::MOTION;
+    if is_group || functions::<Sym>().iter().any(|other| other.name == function.name) {
+        return Some("is a name of the table of functions, or of a group: expected a name of its own".into());
+    }
+    let mut names: Vec<&str> = function.takes.iter().map(|argument| argument.name()).collect();
+    names.extend(function.outputs.iter().map(|output| output.name));
+    for (k, name) in names.iter().enumerate() {
+        if let Some(reason) = refuses_port(name) {
+            return Some(format!("`{name}` {reason}"));
+        }
+        if names[..k].contains(name) {
+            return Some(format!("two arguments or results are called `{name}`: expected names of their own"));
+        }
+    }
+    lacks_result.then(|| "found no result, expected one at least".into())
+}
+
 /// The readable functions. Reports invalid words of the options, which do not depend on the robot.
 fn words(options: &Options, log: &mut Diagnostics) -> Vec<Entry> {
     options.target.check(options, log);
     for function in options.users.iter() {
-        if let Err(error) = options.users.check(function) {
-            log.push(error);
+        if let Some(reason) = wrong_ports(function, options.users.lacks_result(function)) {
+            log.push(wrong_entry(function.name, &reason));
         }
     }
     let read = |(k, text): (usize, &Spanned<String>)| match FunctionSpec::parse_with(text, &options.users) {

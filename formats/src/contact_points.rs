@@ -1,7 +1,7 @@
 //! Points of meshes on which links touch the ground.
 //!
-//! h(d) = max dᵀx is how far points reach along d. Contact with a plane depends on h alone. Each step
-//! adds the vertex where h of the chosen points falls short most.
+//! h(d) = max dᵀx is how far points reach along d. Contact with a plane depends on h alone. Each
+//! step adds the vertex where h of the chosen points falls short most.
 
 use std::cmp::Ordering;
 use std::path::Path;

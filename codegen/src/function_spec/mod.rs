@@ -22,8 +22,6 @@ pub use transform::{Derivative, Transform};
 
 use constant::{constant, entries};
 
-use crate::function_groups;
-use crate::language::refuses_port;
 use crate::{Sym, function};
 
 /// One function to generate.
@@ -76,27 +74,9 @@ impl UserFunctions {
         self.0.push(Function::of_user(function));
     }
 
-    /// Checks the names of the ports of a function, and that it has a result.
-    pub(crate) fn check(&self, function: &Function<Sym>) -> Result<(), Diagnostic> {
-        let wrong = |reason: String| Err(wrong_entry(function.name, &reason));
-        let is_group = function_groups::functions_of(function.name).is_some() || function.name == function_groups::MOTION;
-        if is_group || functions::<Sym>().iter().any(|other| other.name == function.name) {
-            return wrong("is a name of the table of functions, or of a group: expected a name of its own".into());
-        }
-        let mut names: Vec<&str> = function.takes.iter().map(|argument| argument.name()).collect();
-        names.extend(function.outputs.iter().map(|output| output.name));
-        for (k, name) in names.iter().enumerate() {
-            if let Some(reason) = refuses_port(name) {
-                return wrong(format!("`{name}` {reason}"));
-            }
-            if names[..k].contains(name) {
-                return wrong(format!("two arguments or results are called `{name}`: expected names of their own"));
-            }
-        }
-        if self.1.contains(&function.name) {
-            return wrong("found no result, expected one at least".into());
-        }
-        Ok(())
+    /// Whether a function was given without a result.
+    pub(crate) fn lacks_result(&self, function: &Function<Sym>) -> bool {
+        self.1.contains(&function.name)
     }
 
     /// The functions.

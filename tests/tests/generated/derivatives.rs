@@ -74,7 +74,8 @@ fn curvature(function: &str, model: &Model<f64>, state: &State, [one, other]: [&
     moved(function, model, state, &steps).into_iter().map(|y| y.slope.slope).collect()
 }
 
-/// Results of generated function `place`; its arguments are those of the table, weights, directions.
+/// Results of generated function `place`. Its arguments are those of the table, weights,
+/// directions.
 fn found(generated: &Generated, place: usize, state: &State, weights: &[f64], along: &Directions) -> Vec<Big> {
     let arguments = &generated.ledger.functions[place].arguments;
     let table = arguments.iter().filter(|a| !state.argument(**a).is_empty() || Argument::ALL.contains(a)).count();

@@ -192,7 +192,7 @@ user_function! {
 }
 
 user_function! {
-    /// An argument that generated code calls its results, another that it counts, and a keyword twice.
+    /// Ports with names that generated code uses.
     struct Odd;
     fn odd<S>(robot, work, q: [Nq] "rad", out: [] "1", x12: [] "1", double: [] "1") -> (double: [] "1", fine: [] "1") {
         fine[0] = q[0] + out[0] + x12[0];

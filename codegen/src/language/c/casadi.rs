@@ -5,9 +5,9 @@
 //! matrices go column by column, ours row by row, so results are copied. Entries that are zero
 //! at every configuration are left out.
 //!
-//! With derivatives of the first order a function f has `jac_f` and `adj1_f`, with those of the second
-//! `jac_adj1_f` too: CasADi finds them by these names. They are by the numbers of q, of a function in
-//! which each quaternion is divided by its length.
+//! With derivatives of the first order a function f has `jac_f` and `adj1_f`, with those of the
+//! second `jac_adj1_f` too: CasADi finds them by these names. They are by the numbers of q, of a
+//! function in which each quaternion is divided by its length.
 
 use std::fmt::Write;
 
@@ -38,8 +38,8 @@ impl Matrix {
         Self::of(&vec![false; length], 0, length, 1)
     }
 
-    /// ∂R/∂x for a matrix R of `rows` × `columns` and a vector x of `length`, in an array from `start`
-    /// on that has R row by row, and for each of its entries the derivatives.
+    /// ∂R/∂x for a matrix R of `rows` × `columns` and a vector x of `length`, in an array from
+    /// `start` on that has R row by row, and for each of its entries the derivatives.
     fn block(zeros: &[bool], start: usize, (rows, columns, length): (usize, usize, usize)) -> Self {
         let place = |i: usize, j: usize, k: usize| start + (i * columns + j) * length + k;
         let entry = |i: usize, j: usize, k: usize| [j * rows + i, k, place(i, j, k)];

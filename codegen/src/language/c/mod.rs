@@ -6,8 +6,6 @@
 mod ascii;
 mod batch;
 mod casadi;
-pub(super) use casadi::with_derivatives;
-pub(super) use names::is_word_of_c;
 mod columns;
 mod constants;
 mod lanes;
@@ -27,7 +25,7 @@ use crate::capabilities::Capabilities;
 use crate::language::{File, Module, heads};
 use crate::lir::function::{Argument, Ending, Function};
 use crate::lir::{Body, Stmt, Ty};
-use crate::{Arithmetic, Options, Precision, TrigAccuracy};
+use crate::{Arithmetic, FunctionSpec, Options, Precision, TrigAccuracy};
 use ascii::ascii;
 pub(in crate::language) use constants::check_names;
 pub(in crate::language) use names::refusal as refuses_name;
@@ -58,6 +56,16 @@ pub struct COptions {
     pub derivatives: Option<u8>,
     /// Sines, square roots and arctangents of the module's own in place of `math.h`.
     pub no_libm: bool,
+}
+
+/// Whether it is a function of C's headers or a keyword.
+pub(super) fn is_word_of_c(name: &str) -> bool {
+    names::is_word_of_c(name)
+}
+
+/// A function with its derivatives for CasADi up to an order; `names`: those of all functions.
+pub(super) fn with_derivatives(function: &FunctionSpec, names: &[String], order: usize) -> Vec<FunctionSpec> {
+    casadi::with_derivatives(function, names, order)
 }
 
 /// Numbers, and vectors if the compiler has them; in pieces if a function is long. The compiler

@@ -3,7 +3,6 @@
 use std::fmt::{self, Display, Formatter, Write};
 
 use crate::graph::Op;
-use crate::language::rust::function::results::index;
 use crate::language::rust::literal::{bare, literal, operand, single};
 use crate::language::rust::several;
 use crate::lir::function::Argument;
@@ -341,6 +340,15 @@ impl Printer<'_> {
             _ => number,
         }
     }
+}
+
+/// The indices of value `k` in an array of these lengths.
+pub(crate) fn index(mut k: usize, lengths: &[usize]) -> String {
+    lengths.iter().rev().fold(String::new(), |inner, n| {
+        let own = format!("[{}]{inner}", k % n);
+        k /= n;
+        own
+    })
 }
 
 /// An element of an argument, by its index row by row.

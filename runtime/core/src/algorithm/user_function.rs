@@ -87,8 +87,8 @@ impl<S: Scalar> Function<S> {
 /// Makes a [`UserFunction`](crate::algorithm::UserFunction) from a generic function.
 ///
 /// An argument with a name and dimensions of the table (`q: [Nq]`, `v: [Nv]`, …) is that of the
-/// table. Dimensions are those of [`Dim`](crate::algorithm::Dim). Arguments are slices, results mutable slices of
-/// zeros, all row by row; `S` is the scalar.
+/// table. Dimensions are those of [`Dim`](crate::algorithm::Dim). Arguments are slices, results
+/// mutable slices of zeros, all row by row; `S` is the scalar.
 ///
 /// ```
 /// use articulated_core::algorithm::{UserFunction, Workspace, center_of_mass};

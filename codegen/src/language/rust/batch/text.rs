@@ -128,7 +128,8 @@ pub(super) const PUBLIC: &str = "\
             states.div_ceil(Self::LEN)
         }
 
-        /// Packs states into blocks: number k of state `LEN`·b + i is `blocks[b][k].0[i]`. The last block is filled up with its last state.
+        /// Packs states into blocks: number k of state `LEN`·b + i is `blocks[b][k].0[i]`. The last
+        /// block is filled up with its last state.
         ///
         /// # Errors
         /// If there are not [`Lanes::blocks`] of the states: nothing is written.

@@ -12,15 +12,6 @@ pub(crate) fn is_sparse(values: &[Option<String>]) -> bool {
     values.len() >= 64 && values.iter().filter(|value| value.is_none()).count() * 2 > values.len()
 }
 
-/// The indices of value `k` in an array of these lengths.
-pub(crate) fn index(mut k: usize, lengths: &[usize]) -> String {
-    lengths.iter().rev().fold(String::new(), |inner, n| {
-        let own = format!("[{}]{inner}", k % n);
-        k /= n;
-        own
-    })
-}
-
 /// Values as an array of these lengths; `None` is zero.
 pub(crate) fn nested(values: &[Option<String>], lengths: &[usize]) -> String {
     let text = |value: &Option<String>| value.clone().unwrap_or_else(|| ZERO.to_owned());

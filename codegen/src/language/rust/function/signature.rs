@@ -5,9 +5,9 @@ use std::fmt::Write;
 use articulated_core::algorithm::Dim;
 
 use crate::function_spec::{Output, array_of};
-use crate::language::rust::function::results::{index, is_sparse, nested, zeros};
+use crate::language::rust::function::results::{is_sparse, nested, zeros};
 use crate::language::rust::literal::bare;
-use crate::language::rust::statements::Place;
+use crate::language::rust::statements::{Place, index};
 use crate::lir::function::{Argument, Ending, Function};
 
 /// A list and its last item; the list is empty if all arguments are constants.
