@@ -29,6 +29,7 @@ pub(crate) fn nested(values: &[Option<String>], lengths: &[usize]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::language::rust::statements::index;
 
     #[test]
     fn numbers_stand_row_by_row() {
