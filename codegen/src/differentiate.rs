@@ -63,11 +63,16 @@ impl<'a> Steps<'a> {
         moved
     }
 
+    /// The number of directions of an argument.
+    fn count(&self, argument: Argument) -> usize {
+        self.transform.dims(argument).iter().map(|d| d.len(self.shape)).product()
+    }
+
     /// The inputs by which the function is differentiated, argument by argument.
     fn inputs(&self) -> Vec<(usize, usize)> {
         let of = |argument: &Argument| {
             let own = self.arguments.iter().position(|a| a == argument).unwrap_or_default();
-            let count = self.transform.dims(*argument).iter().map(|d| d.len(self.shape)).product::<usize>();
+            let count = self.count(*argument);
             let number = self.step(*argument).unwrap_or(own);
             (0..count).map(move |k| (number, k)).collect::<Vec<_>>()
         };
@@ -134,8 +139,7 @@ impl<'a> Steps<'a> {
             let entries = pass::tangents(&mut graph, &gradient.outputs[column..], count, along);
             entries.into_iter().enumerate().for_each(|(k, entry)| below[(column + k) * n + column] = entry);
         }
-        let lengths: Vec<usize> =
-            self.transform.wrt.iter().map(|a| self.transform.dims(*a).iter().map(|d| d.len(self.shape)).product()).collect();
+        let lengths: Vec<usize> = self.transform.wrt.iter().map(|a| self.count(*a)).collect();
         let starts: Vec<usize> = (0..lengths.len()).map(|k| lengths[..k].iter().sum()).collect();
         let mut outputs = Vec::with_capacity(n * n);
         for (first, rows) in starts.iter().zip(&lengths) {
@@ -177,7 +181,7 @@ impl<'a> Steps<'a> {
         for result in &self.results {
             let mut first = 0;
             for argument in &self.transform.wrt {
-                let count = self.transform.dims(*argument).iter().map(|d| d.len(self.shape)).product::<usize>();
+                let count = self.count(*argument);
                 for row in below..below + result {
                     by_columns.extend((first..first + count).filter_map(|column| Some(columns.get(column)?[row])));
                     by_rows.extend((first..first + count).filter_map(|column| Some(gradients.get(row)?[column])));

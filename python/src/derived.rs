@@ -73,7 +73,7 @@ impl Derived {
             }
         });
         let array = PyArray2::<f64>::zeros(py, [states, results], false);
-        // A new array, which nobody else has.
+        // The array is new: no other reference to it exists.
         array.readwrite().as_slice_mut()?.copy_from_slice(&out);
         Ok(array)
     }

@@ -107,8 +107,10 @@ fn the_ledger_of_derivatives() {
         if inner == "step" { "forward_dynamics".to_owned() } else { inner.to_owned() }
     };
     let mut out = String::from(
-        "# Operations of derivatives. mul, add: multiplications and additions; ins: instructions, multiply-adds counted once; over: ins of\n\
-         # the derivative over those of its function, both without lanes; of a semi-implicit step over those of forward dynamics. A rise needs a reason.\n",
+        "# Operations of derivatives. mul, add: multiplications and additions;\n\
+         # ins: instructions, multiply-adds counted once;\n\
+         # over: ins of the derivative over those of its function, both without lanes;\n\
+         # of a semi-implicit step over those of forward dynamics. A rise needs a reason.\n",
     );
     let _ = writeln!(out, "{:<18}{:<28}{:>7}{:>7}{:>7}{:>7}", "robot", "derivative", "mul", "add", "ins", "over");
     for name in ["ur5_like", "panda_like", "quadruped", "humanoid"] {

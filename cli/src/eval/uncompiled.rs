@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::measure::refused;
 use crate::robot::Robot;
 
-/// There is none.
+/// This build has no compiler, so no value of this type exists.
 pub(super) enum Compiled {}
 
 impl Compiled {

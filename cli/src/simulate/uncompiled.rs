@@ -13,7 +13,7 @@ use crate::console::Progress;
 use crate::failure::Failure;
 use crate::measure::refused;
 
-/// There is none.
+/// This build has no compiler, so no value of this type exists.
 pub(super) enum Compiler {}
 
 impl Compiler {

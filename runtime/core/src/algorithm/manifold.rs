@@ -51,6 +51,9 @@ pub fn integrate<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, q: &[S], ste
 /// p + R (v + ½ ω × v),   quaternion ⊗ (½ ω, 1 − ⅛ |ω|²)
 /// ```
 ///
+/// q: `[nq]` rad|m|quaternion; step: `[nv]` rad|m|twist times time; out: `[nq]`, quaternions of
+/// norm one to second order in the step.
+///
 /// # Panics
 /// As [`integrate`].
 pub fn small_step<S: Scalar>(model: &Model<S>, q: &[S], step: &[S], out: &mut [S]) {

@@ -75,7 +75,7 @@ pub enum CollisionShape {
 /// Points of the convex hull of a mesh, on which it touches the ground.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Hull {
-    /// Nobody asked for them.
+    /// The points were not requested.
     #[default]
     NotRead,
     /// The file has none.
