@@ -4,10 +4,9 @@
 //! with q ⊕ δ in the place of q, differentiated by the inputs δ, and then δ is zero. In coordinates
 //! they are those of f(q/|q|), in which each quaternion has length one.
 
-use articulated_core::Scalar;
-use articulated_core::algorithm::{Argument, FunctionId, Shape, small_step};
-use articulated_core::model::{JointInfo, Model};
-use num_traits::{One, Zero};
+use articulated_core::algorithm::{Argument, FunctionId, Shape, divide_by_length, small_step};
+use articulated_core::model::Model;
+use num_traits::Zero;
 
 use crate::function_spec::{Derivative, FunctionSpec, FunctionTerm, Output, Transform, weights};
 use crate::graph::{Graph, NodeId, Op};
@@ -51,10 +50,11 @@ impl<'a> Steps<'a> {
     }
 
     /// q ⊕ δ for a configuration by which the function is differentiated; other arguments as given.
-    pub(crate) fn moved(&self, argument: Argument, given: Vec<Sym>, model: &Model<Sym>) -> Vec<Sym> {
+    pub(crate) fn moved(&self, argument: Argument, mut given: Vec<Sym>, model: &Model<Sym>) -> Vec<Sym> {
         let is_known = argument.is_configuration() && self.transform.wrt.contains(&argument);
         if is_known && self.transform.in_coordinates {
-            return of_length_one(given, model);
+            divide_by_length(model, &mut given);
+            return given;
         }
         let Some(step) = self.step(argument) else { return given };
         let delta: Vec<Sym> = (0..self.shape.nv).map(|k| Sym::input(step, k)).collect();
@@ -230,16 +230,6 @@ impl<'a> Steps<'a> {
         new.outputs = splice(&mut new, &graph, |new, argument, _| steps.contains(&argument).then(|| new.constant(0.0)));
         new
     }
-}
-
-/// The configuration with each quaternion divided by its length.
-pub(crate) fn of_length_one(mut q: Vec<Sym>, model: &Model<Sym>) -> Vec<Sym> {
-    for quaternion in model.joints().iter().filter_map(JointInfo::quaternion) {
-        let square = q[quaternion.clone()].iter().fold(Sym::zero(), |sum, x| sum + *x * *x);
-        let inverse = Sym::one() / square.sqrt();
-        q[quaternion].iter_mut().for_each(|x| *x *= inverse);
-    }
-    q
 }
 
 /// Adds the nodes of `graph` to another, with some of its inputs replaced. Returns its outputs.

@@ -3,11 +3,11 @@
 use std::ops::RangeInclusive;
 
 use articulated_core::Scalar;
-use articulated_core::algorithm::{Argument, Variant};
+use articulated_core::algorithm::{Argument, Variant, divide_by_length};
 use articulated_core::model::Model;
 use num_traits::Zero;
 
-use crate::differentiate::{ImplicitRule, Steps, of_length_one};
+use crate::differentiate::{ImplicitRule, Steps};
 use crate::function_spec::{FunctionSpec, FunctionTerm};
 use crate::graph::{Graph, Op};
 use crate::limbs::{Constants, IsomorphicLimbs, pack};
@@ -114,9 +114,12 @@ fn traced(
         let mut one = |(term, strategy): (&FunctionTerm, &Strategy)| {
             let strategy = strategy.for_function(term.function);
             let view = view(term, &strategy);
-            let moved = |argument: Argument, given: Vec<Sym>| match steps {
+            let moved = |argument: Argument, mut given: Vec<Sym>| match steps {
                 Some(steps) => steps.moved(argument, given, &view.model),
-                None if spec.normalises && argument.is_configuration() => of_length_one(given, &view.model),
+                None if spec.normalises && argument.is_configuration() => {
+                    divide_by_length(&view.model, &mut given);
+                    given
+                }
                 None => given,
             };
             run(term, &strategy, &view, place, &moved)

@@ -62,31 +62,36 @@ pub struct FunctionTerm {
 
 /// Functions of the user, which requests may name beside those of the table.
 #[derive(Clone, Default)]
-pub struct UserFunctions(Vec<&'static Function<Sym>>, Vec<&'static str>);
+pub struct UserFunctions {
+    functions: Vec<&'static Function<Sym>>,
+    /// Names of those without a result, which requests refuse.
+    without_result: Vec<&'static str>,
+}
 
 impl UserFunctions {
     /// Adds a function, in place of an earlier one of the same name.
     pub fn push<F: UserFunction>(&mut self, function: F) {
-        self.0.retain(|other| other.name != F::NAME);
+        self.functions.retain(|other| other.name != F::NAME);
+        self.without_result.retain(|name| *name != F::NAME);
         if F::OUTPUTS.is_empty() {
-            self.1.push(F::NAME);
+            self.without_result.push(F::NAME);
         }
-        self.0.push(Function::of_user(function));
+        self.functions.push(Function::of_user(function));
     }
 
     /// Whether a function was given without a result.
     pub(crate) fn lacks_result(&self, function: &Function<Sym>) -> bool {
-        self.1.contains(&function.name)
+        self.without_result.contains(&function.name)
     }
 
     /// The functions.
     pub fn iter(&self) -> impl Iterator<Item = &'static Function<Sym>> + '_ {
-        self.0.iter().copied()
+        self.functions.iter().copied()
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.functions.is_empty()
     }
 }
 
@@ -98,7 +103,7 @@ impl fmt::Debug for UserFunctions {
 
 impl PartialEq for UserFunctions {
     fn eq(&self, other: &Self) -> bool {
-        self.0.len() == other.0.len() && self.0.iter().zip(&other.0).all(|(a, b)| std::ptr::eq(*a, *b))
+        self.functions.len() == other.functions.len() && self.functions.iter().zip(&other.functions).all(|(a, b)| std::ptr::eq(*a, *b))
     }
 }
 
@@ -279,7 +284,7 @@ impl FunctionTerm {
         if name.is_empty() {
             return Err(wrong("expected a function, as in name = first + second(a = 0)".into()));
         }
-        let own = users.0.iter().find(|function| function.name == name).copied();
+        let own = users.functions.iter().find(|function| function.name == name).copied();
         let function = own.map_or_else(|| function(name), Ok).map_err(|error| Diagnostic { field: "functions".into(), ..error })?;
         let mut constants = Vec::new();
         let mut sines = false;

@@ -77,6 +77,22 @@ pub fn small_step<S: Scalar>(model: &Model<S>, q: &[S], step: &[S], out: &mut [S
     }
 }
 
+/// Divides each quaternion of a configuration by its length: q/|q|. Derivatives in coordinates are
+/// those of f(q/|q|). Other coordinates stay as they are.
+///
+/// q: `[nq]` rad|m|quaternion. The squares of a quaternion must be in the range of numbers, and
+/// their sum not zero: this is the plain formula, of which derivatives are traced.
+///
+/// # Panics
+/// If `q` is shorter than that.
+pub fn divide_by_length<S: Scalar>(model: &Model<S>, q: &mut [S]) {
+    for quaternion in model.joints.iter().filter_map(JointInfo::quaternion) {
+        let square = q[quaternion.clone()].iter().fold(S::zero(), |sum, x| sum + *x * *x);
+        let inverse = S::one() / square.sqrt();
+        q[quaternion].iter_mut().for_each(|x| *x *= inverse);
+    }
+}
+
 /// target ⊖ q: the step that takes q to the target, with no rotation beyond half a turn.
 ///
 /// q, target: `[nq]` rad|m|quaternion; out: `[nv]` rad|m|twist times time. Absolute error some 8u
