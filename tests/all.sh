@@ -48,8 +48,9 @@ documentation() {
     RUSTDOCFLAGS="-D warnings" cargo doc --quiet "${rust[@]}" --no-deps
 }
 
-# The command and the wheel are built in one profile and one folder. With the features of both, so that each crate is compiled once, except
-# the command and the lab: the wheel has them without what measures.
+# The command and the wheel are built in one profile and one folder, with the features of both, so
+# that each crate is compiled once. The command and the lab are compiled twice: the wheel has them
+# without the feature `measure`.
 release() {
     cargo build --quiet --release -p articulated-cli -p articulated-python --bins
 }
