@@ -10,7 +10,7 @@ use num_traits::Zero;
 
 use crate::function_spec::{Derivative, FunctionSpec, FunctionTerm, Output, Transform, weights};
 use crate::graph::{Graph, NodeId, Op};
-use crate::pass::{self, adjoint, dce, tangent};
+use crate::pass::{self, adjoint, dce, splice, tangent};
 use crate::sym::Sym;
 
 /// The arguments of the matrices of derivatives of inverse and forward dynamics.
@@ -230,20 +230,6 @@ impl<'a> Steps<'a> {
         new.outputs = splice(&mut new, &graph, |new, argument, _| steps.contains(&argument).then(|| new.constant(0.0)));
         new
     }
-}
-
-/// Adds the nodes of `graph` to another, with some of its inputs replaced. Returns its outputs.
-fn splice(new: &mut Graph, graph: &Graph, mut input: impl FnMut(&mut Graph, usize, usize) -> Option<NodeId>) -> Vec<NodeId> {
-    let mut ids: Vec<NodeId> = Vec::with_capacity(graph.nodes().len());
-    for node in graph.nodes() {
-        let operands: Vec<NodeId> = node.operands().map(|operand| ids[operand.index()]).collect();
-        ids.push(match node.op {
-            Op::Input => input(new, node.args[0] as usize, node.args[1] as usize).unwrap_or_else(|| new.leaf(*node)),
-            _ if operands.is_empty() => new.leaf(*node),
-            op => new.apply(op, &operands),
-        });
-    }
-    graph.outputs.iter().map(|output| ids[output.index()]).collect()
 }
 
 /// The derivatives of forward dynamics by those of inverse dynamics, which are cheaper and divide

@@ -6,24 +6,127 @@
 use std::cell::RefCell;
 use std::fmt;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::sync::Arc;
 
-use articulated_core::Scalar;
+use articulated_core::{Scalar, region};
 use num_traits::{One, Zero};
 
-use crate::graph::{Graph, NodeId, Op};
+use crate::graph::{CAPTURED, CARRIED, Graph, Kind, NodeId, Op, ROW, Region};
 
 thread_local! {
-    static GRAPH: RefCell<Graph> = RefCell::default();
+    static TRACE: RefCell<Trace> = RefCell::default();
 }
 
 /// A symbol. Its arithmetic adds nodes to the graph that is being traced on this thread.
-#[derive(Clone, Copy, PartialEq)]
-pub struct Sym(NodeId);
+#[derive(Clone, Copy)]
+pub struct Sym {
+    node: NodeId,
+    /// The graph that has the node: 0, or the number of a region's body.
+    level: u32,
+}
+
+/// The graphs that are being traced: a program, and the bodies of the regions around the operation
+/// that comes next, from the outermost inwards.
+#[derive(Default)]
+struct Trace {
+    program: Graph,
+    bodies: Vec<Body>,
+    /// How many regions were opened.
+    opened: u32,
+}
+
+/// The body of a region while it is traced.
+struct Body {
+    level: u32,
+    graph: Graph,
+    /// The values that it captures, in the graph around it.
+    captured: Vec<NodeId>,
+}
+
+impl Trace {
+    fn level(&self) -> u32 {
+        self.bodies.last().map_or(0, |body| body.level)
+    }
+
+    fn graph(&mut self) -> &mut Graph {
+        self.bodies.last_mut().map_or(&mut self.program, |body| &mut body.graph)
+    }
+
+    /// The node of a symbol in the graph that is being traced.
+    fn node(&mut self, symbol: Sym) -> NodeId {
+        if symbol.level == self.level() { symbol.node } else { self.captured(symbol) }
+    }
+
+    /// The same for a symbol of a graph around this one.
+    #[cold]
+    fn captured(&mut self, symbol: Sym) -> NodeId {
+        let place = self.bodies.iter().position(|body| body.level == symbol.level);
+        let first = place.map_or(0, |place| place + 1);
+        assert!(symbol.level == 0 || place.is_some(), "a value of the body of a region is used outside of it");
+        let mut node = symbol.node;
+        for k in first..self.bodies.len() {
+            let (before, rest) = self.bodies.split_at_mut(k);
+            let outer = before.last_mut().map_or(&mut self.program, |body| &mut body.graph);
+            node = rest[0].capture(outer, node);
+        }
+        node
+    }
+
+    /// The number that a symbol is.
+    fn constant(&self, symbol: Sym) -> Option<f64> {
+        let body = self.bodies.iter().find(|body| body.level == symbol.level);
+        body.map_or(&self.program, |body| &body.graph).node(symbol.node).constant()
+    }
+}
+
+impl Body {
+    /// The node for one of the graph around it. Masks go in as numbers.
+    fn capture(&mut self, outer: &mut Graph, of: NodeId) -> NodeId {
+        let node = outer.node(of);
+        if node.constant().is_some() {
+            return self.graph.leaf(node);
+        }
+        if node.op == Op::Positive {
+            let [one, zero] = [1.0, 0.0].map(|x| outer.constant(x));
+            let number = outer.apply(Op::Select, &[of, one, zero]);
+            let inside = self.capture(outer, number);
+            return self.graph.exactly(Op::Positive, &[inside]);
+        }
+        let place = self.captured.iter().position(|other| *other == of).unwrap_or_else(|| {
+            self.captured.push(of);
+            self.captured.len() - 1
+        });
+        self.graph.input(CAPTURED, place)
+    }
+}
+
+impl PartialEq for Sym {
+    fn eq(&self, other: &Self) -> bool {
+        if self.level == other.level {
+            return self.node == other.node;
+        }
+        let [one, two] = [*self, *other].map(|symbol| TRACE.with_borrow(|trace| trace.constant(symbol)));
+        one.is_some() && one == two
+    }
+}
 
 impl Sym {
     /// Element `index` of argument number `argument`.
+    ///
+    /// # Panics
+    /// In the body of a region, which captures what it reads.
     pub fn input(argument: usize, index: usize) -> Self {
-        Self(with(|g| g.input(argument, index)))
+        TRACE.with_borrow_mut(|trace| {
+            assert!(trace.bodies.is_empty(), "an input is read before the region");
+            Self { node: trace.program.input(argument, index), level: 0 }
+        })
+    }
+
+    fn of(node: impl FnOnce(&mut Graph) -> NodeId) -> Self {
+        TRACE.with_borrow_mut(|trace| {
+            let level = trace.level();
+            Self { node: node(trace.graph()), level }
+        })
     }
 }
 
@@ -42,29 +145,65 @@ impl Sym {
 /// // Adding zero costs nothing.
 /// assert_eq!((graph.counts().multiplications(), graph.counts().additions()), (1, 0));
 /// ```
+///
+/// [`Scalar::repeat`], [`Scalar::when`] and [`Scalar::for_each`] are traced once, whatever the
+/// number of turns.
+///
+/// # Panics
+/// If a body of a region hands a value to the program around it, other than by its state and its
+/// results.
 pub fn trace(program: impl FnOnce() -> Vec<Sym>) -> Graph {
-    let outer = GRAPH.take();
+    let outer = TRACE.take();
     let outputs = program();
-    let mut graph = GRAPH.replace(outer);
-    graph.outputs = outputs.into_iter().map(|s| s.0).collect();
-    graph
-}
-
-fn with<T>(f: impl FnOnce(&mut Graph) -> T) -> T {
-    GRAPH.with_borrow_mut(f)
+    let mut trace = TRACE.replace(outer);
+    let outputs = outputs.into_iter().map(|symbol| trace.node(symbol)).collect();
+    trace.program.outputs = outputs;
+    trace.program
 }
 
 fn apply(op: Op, operands: &[Sym]) -> Sym {
-    let mut ids = [NodeId(0); 3];
-    for (id, s) in ids.iter_mut().zip(operands) {
-        *id = s.0;
-    }
-    Sym(with(|g| g.apply(op, &ids[..operands.len()])))
+    TRACE.with_borrow_mut(|trace| {
+        let mut ids = [NodeId(0); 3];
+        for (id, symbol) in ids.iter_mut().zip(operands) {
+            *id = trace.node(*symbol);
+        }
+        let level = trace.level();
+        Sym { node: trace.graph().apply(op, &ids[..operands.len()]), level }
+    })
+}
+
+/// Traces the body of a region. `body` gets the symbols of carried values and of a row, and returns
+/// the results. Returns the values that come out.
+fn region(kind: Kind, starts: &[Sym], more: &[Sym], body: impl FnOnce(&[Sym], &[Sym]) -> Vec<Sym>) -> Vec<Sym> {
+    let row = if let Kind::ForEach { row, .. } = kind { row } else { 0 };
+    let (state, rows) = TRACE.with_borrow_mut(|trace| {
+        trace.opened += 1;
+        let (level, mut graph) = (trace.opened, Graph::default());
+        let mut inputs =
+            |argument: usize, count: usize| (0..count).map(|k| Sym { node: graph.input(argument, k), level }).collect::<Vec<_>>();
+        let symbols = (inputs(CARRIED, starts.len()), inputs(ROW, row));
+        trace.bodies.push(Body { level, graph, captured: Vec::new() });
+        symbols
+    });
+    let results = body(&state, &rows);
+    TRACE.with_borrow_mut(|trace| {
+        let outputs = results.into_iter().map(|symbol| trace.node(symbol)).collect();
+        let Some(Body { mut graph, captured, .. }) = trace.bodies.pop() else { return Vec::new() };
+        graph.outputs = outputs;
+        let mut given: Vec<NodeId> = starts.iter().map(|symbol| trace.node(*symbol)).collect();
+        given.extend(&captured);
+        given.extend(more.iter().map(|symbol| trace.node(*symbol)).collect::<Vec<_>>());
+        let region = Region { kind, carried: starts.len(), captured: captured.len(), body: graph };
+        let (values, level) = (region.values(), trace.level());
+        let graph = trace.graph();
+        let region = graph.region(Arc::new(region), &given);
+        (0..values).map(|k| Sym { node: graph.region_value(region, k), level }).collect()
+    })
 }
 
 impl fmt::Debug for Sym {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "x{}", self.0.0)
+        write!(f, "x{}", self.node.0)
     }
 }
 
@@ -111,7 +250,7 @@ impl Zero for Sym {
         Self::from_f64(0.0)
     }
     fn is_zero(&self) -> bool {
-        *self == Self::zero()
+        TRACE.with_borrow(|trace| trace.constant(*self)) == Some(0.0)
     }
 }
 
@@ -127,7 +266,7 @@ impl Scalar for Sym {
     type Mask = Sym;
 
     fn from_f64(x: f64) -> Self {
-        Self(with(|g| g.constant(x)))
+        Self::of(|graph| graph.constant(x))
     }
 
     fn sin_cos(self) -> (Self, Self) {
@@ -148,6 +287,58 @@ impl Scalar for Sym {
 
     fn select(mask: Sym, a: Self, b: Self) -> Self {
         apply(Op::Select, &[mask, a, b])
+    }
+
+    fn repeat(most: usize, state: &mut [Self], mut body: impl FnMut(&mut [Self]) -> Self) -> Self {
+        if most == 0 {
+            return Self::zero().positive();
+        }
+        let values = region(Kind::Repeat { most }, state, &[], |carried, _| {
+            let mut next = carried.to_vec();
+            let ends = body(&mut next);
+            next.push(ends);
+            next
+        });
+        let (next, held) = values.split_at(state.len());
+        state.copy_from_slice(next);
+        held[0].positive()
+    }
+
+    fn when(mask: Self, state: &mut [Self], body: impl FnOnce(&mut [Self])) {
+        match TRACE.with_borrow(|trace| trace.constant(mask)) {
+            Some(0.0) => return,
+            Some(_) => return body(state),
+            None => {}
+        }
+        let values = region(Kind::When, state, &[mask], |carried, _| {
+            let mut next = carried.to_vec();
+            body(&mut next);
+            next
+        });
+        state.copy_from_slice(&values);
+    }
+
+    fn for_each(
+        turns: usize,
+        table: &[Self],
+        state: &mut [Self],
+        results: &mut [Self],
+        mut body: impl FnMut(&[Self], &mut [Self], &mut [Self]),
+    ) {
+        let [row, own] = region::widths(turns, table.len(), results.len());
+        if turns < 2 {
+            return region::for_each_turn(turns, table, state, results, body);
+        }
+        let kind = Kind::ForEach { turns, row, results: own };
+        let values = region(kind, state, table, |carried, row| {
+            let mut all = [carried.to_vec(), vec![Self::zero(); own]].concat();
+            let (state, results) = all.split_at_mut(carried.len());
+            body(row, state, results);
+            all
+        });
+        let (next, found) = values.split_at(state.len());
+        state.copy_from_slice(next);
+        results.copy_from_slice(found);
     }
 }
 

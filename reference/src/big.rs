@@ -7,6 +7,7 @@ use std::cell::RefCell;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use articulated_core::Scalar;
+use articulated_core::region::repeat_known;
 use astro_float_num::{BigFloat, Consts, RoundingMode, Sign};
 use num_traits::{One, Zero};
 
@@ -284,6 +285,10 @@ impl Scalar for Big {
 
     fn select(mask: bool, a: Self, b: Self) -> Self {
         if mask { a } else { b }
+    }
+
+    fn repeat(most: usize, state: &mut [Self], body: impl FnMut(&mut [Self]) -> bool) -> bool {
+        repeat_known(most, state, body)
     }
 }
 

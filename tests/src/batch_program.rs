@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use articulated_codegen::ledger::Entry;
 use articulated_codegen::{Generated, Real};
-use articulated_core::algorithm::function;
 
 use crate::program::Program;
 
@@ -175,8 +175,8 @@ fn main(robots: &[(&str, &Generated)]) -> String {
         [Real::F64, Real::F32].into_iter().filter(|r| g.source.contains(&format!("mod batch_{}", r.name()))).collect::<Vec<_>>()
     };
     for (robot, generated) in robots {
-        for function in generated.ledger.functions.iter().map(|e| &e.function) {
-            reals(generated).into_iter().for_each(|real| laws(&mut out, robot, function, real, generated));
+        for entry in &generated.ledger.functions {
+            reals(generated).into_iter().for_each(|real| laws(&mut out, robot, entry, real, generated));
         }
     }
     out += TAIL;
@@ -189,8 +189,9 @@ fn main(robots: &[(&str, &Generated)]) -> String {
 }
 
 /// The laws for one function, as an arm.
-fn laws(out: &mut String, robot: &str, name: &str, real: Real, generated: &Generated) {
-    let takes: Vec<&str> = function::<f64>(name).expect("a function of the registry").takes.iter().map(|a| a.name()).collect();
+fn laws(out: &mut String, robot: &str, entry: &Entry, real: Real, generated: &Generated) {
+    let name = entry.function.as_str();
+    let takes: Vec<&str> = entry.arguments.iter().map(|a| a.name()).collect();
     let each = |text: &str| takes.iter().map(|a| text.replace("ARG", a)).collect::<String>();
     let agree = if is_state_by_state(&generated.source, name, real) { STATE_BY_STATE } else { SAME_BLOCKS };
     let text = LAWS

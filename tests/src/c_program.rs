@@ -6,8 +6,9 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
+use articulated_codegen::ledger::Entry;
 use articulated_codegen::{File, Generated};
-use articulated_core::algorithm::{Shape, function};
+use articulated_core::algorithm::Shape;
 
 use crate::program::Program;
 
@@ -159,16 +160,15 @@ fn main(robots: &[(&str, Shape, &Generated)]) -> String {
     for (robot, shape, generated) in robots {
         let single = generated.level.is_single();
         let (from, to) = if single { ("y", "out_single") } else { ("x", "out") };
-        for name in generated.ledger.functions.iter().map(|e| &e.function) {
-            let row = function::<f64>(name).expect("a function of the registry");
-            let lengths: Vec<usize> = row.takes.iter().map(|a| a.len(*shape)).collect();
+        for (entry, graph) in generated.ledger.functions.iter().zip(&generated.graphs) {
+            let (name, results) = (&entry.function, graph.outputs.len());
+            let lengths: Vec<usize> = entry.arguments.iter().map(|a| a.len(*shape)).collect();
             let mut at = 0;
             let mut list = String::new();
             for length in lengths {
                 let _ = write!(list, "{from} + {at}, ");
                 at += length;
             }
-            let results = row.len(*shape);
             let widen = if single {
                 format!("            for (int j = 0; j < {results}; j++) {{ out[j] = out_single[j]; }}\n")
             } else {
@@ -180,7 +180,7 @@ fn main(robots: &[(&str, Shape, &Generated)]) -> String {
                  for (int j = 0; j < {results}; j++) {{ {to}[j] = NAN; }}\n            {robot}_{name}({list}{to});\n{widen}            \
                  fwrite(out, sizeof(double), {results}, stdout);\n            {from} += {at};\n        }}\n        return 0;\n    }}"
             );
-            batches(&mut text, robot, name, *shape, generated);
+            batches(&mut text, robot, (entry, results), *shape, generated);
         }
     }
     text + "    return 1;\n}\n"
@@ -188,10 +188,10 @@ fn main(robots: &[(&str, Shape, &Generated)]) -> String {
 
 /// Calls of a function for all states at once: one after the other, and in blocks. Unwritten
 /// numbers of results are NaN.
-fn batches(text: &mut String, robot: &str, name: &str, shape: Shape, generated: &Generated) {
-    let row = function::<f64>(name).expect("a function of the registry");
-    let lengths: Vec<usize> = row.takes.iter().map(|a| a.len(shape)).collect();
-    let (taken, results): (usize, usize) = (lengths.iter().sum(), row.len(shape));
+fn batches(text: &mut String, robot: &str, (entry, results): (&Entry, usize), shape: Shape, generated: &Generated) {
+    let name = &entry.function;
+    let lengths: Vec<usize> = entry.arguments.iter().map(|a| a.len(shape)).collect();
+    let taken: usize = lengths.iter().sum();
     for (real, ty, block) in [("f64", "double", 8), ("f32", "float", 16)] {
         for (form, per) in [("batch", 1), ("blocks", block)] {
             if !generated.source.contains(&format!("{robot}_{name}_{form}_{real}(")) {

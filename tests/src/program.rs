@@ -9,7 +9,6 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use articulated_codegen::Generated;
-use articulated_core::algorithm::function;
 
 use crate::machine;
 
@@ -158,13 +157,13 @@ const TAIL: &str = "\
 fn main(robots: &[(&str, &Generated)]) -> String {
     let mut out = HEAD.to_owned();
     for (robot, generated) in robots {
-        for name in generated.ledger.functions.iter().map(|e| &e.function) {
-            let row = function::<f64>(name).expect("a function of the registry");
-            let names: Vec<String> = (0..row.takes.len()).map(|k| format!("a{k}")).collect();
+        for entry in &generated.ledger.functions {
+            let name = &entry.function;
+            let names: Vec<String> = (0..entry.arguments.len()).map(|k| format!("a{k}")).collect();
             let taken: String = names.iter().map(|a| format!("                let {a} = Numbers::take(&mut x);\n")).collect();
             let arguments: String = names.iter().map(|a| format!("&{a}, ")).collect();
             let _ = writeln!(out, "            ({robot:?}, {name:?}) => {{\n{taken}                let y = {robot}::{name}({arguments});");
-            if !row.gives.is_empty() {
+            if generated.source.contains(&format!("pub fn {name}_into(")) {
                 out += "                let mut z = Numbers::take(&mut &nothing[..]);\n";
                 let _ = writeln!(out, "                {robot}::{name}_into({arguments}&mut z);\n                assert_same(&y, &z);");
             }

@@ -17,6 +17,11 @@ impl Counts {
         self.0[op as usize]
     }
 
+    /// Each operation with how often it occurs.
+    pub(super) fn each(&self) -> impl Iterator<Item = (Op, u64)> + '_ {
+        OPS.iter().map(|row| (row.op, self.of(row.op)))
+    }
+
     /// Multiplications, those inside a multiply-add included.
     pub fn multiplications(&self) -> u64 {
         self.of(Op::Mul) + self.fused()
@@ -46,7 +51,7 @@ impl Counts {
     /// multiplications, multiply-adds (one each), divisions, roots, signs, comparisons and
     /// selections.
     pub fn instructions(&self) -> u64 {
-        let all = self.0.iter().enumerate().filter(|(k, _)| OPS[*k].arity > 0);
+        let all = self.0.iter().enumerate().filter(|(k, _)| OPS[*k].cost > 0);
         all.map(|(_, n)| n).sum::<u64>() - self.trigonometric() - self.arctangents()
     }
 

@@ -1,5 +1,7 @@
 //! A graph in any scalar.
 
+use std::collections::HashMap;
+
 use articulated_core::Scalar;
 
 use super::{Graph, MOST, Node, NodeId, Op};
@@ -22,7 +24,15 @@ pub(crate) fn value<S: Scalar>(op: Op, [a, b, c]: [S; 3]) -> S {
         Op::MulSub => a * b - c,
         Op::NegMulAdd => c - a * b,
         Op::NegMulSub => -(a * b) - c,
-        Op::Constant | Op::Input | Op::LaneConstant | Op::LaneInput | Op::Broadcast | Op::ReduceAdd => a,
+        Op::Constant
+        | Op::Input
+        | Op::LaneConstant
+        | Op::LaneInput
+        | Op::Broadcast
+        | Op::ReduceAdd
+        | Op::List
+        | Op::Region
+        | Op::RegionValue => a,
     }
 }
 
@@ -42,6 +52,7 @@ impl Graph {
     fn evaluate_in_lanes<S: Scalar, const N: usize>(&self, input: impl Fn(usize, usize) -> S) -> Vec<S> {
         let mut values: Vec<[S; N]> = Vec::with_capacity(self.nodes().len());
         let mut waves = (None, [(S::zero(), S::zero()); N]);
+        let mut regions: HashMap<u32, Vec<S>> = HashMap::new();
         for node in self.nodes() {
             if matches!(node.op, Op::Sin | Op::Cos) && waves.0 != Some(node.args[0]) {
                 // The sine and the cosine of an angle come one after the other.
@@ -50,6 +61,13 @@ impl Graph {
             let value = match node.op {
                 Op::Sin => waves.1.map(|w| w.0),
                 Op::Cos => waves.1.map(|w| w.1),
+                Op::List => [S::zero(); N],
+                Op::Region => {
+                    let given: Vec<S> = self.given(node).iter().map(|id| values[id.index()][0]).collect();
+                    regions.insert(values.len() as u32, self.region_of(node).run(&given));
+                    [S::zero(); N]
+                }
+                Op::RegionValue => [regions[&node.args[0]][node.args[1] as usize]; N],
                 _ => self.value_as(node, &values, &input),
             };
             values.push(value);
@@ -100,7 +118,7 @@ mod tests {
             let lane_constant = g.lane_constant(std::array::from_fn(|k| y[k % width]));
             let operands = [g.lane_input(0, &[0, 1, 2, 3][..width]), lane_constant, g.input(1, 0)];
             let mut expected = Vec::new();
-            for row in OPS.iter().filter(|row| row.arity > 0 && !matches!(row.op, Op::Broadcast | Op::ReduceAdd)) {
+            for row in OPS.iter().filter(|row| row.arity > 0 && row.cost > 0 && !matches!(row.op, Op::Broadcast | Op::ReduceAdd)) {
                 let result = g.exactly(row.op, &operands[..row.arity]);
                 for lane in 0..width {
                     let of_all = g.constant(lane as f64);

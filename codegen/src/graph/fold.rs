@@ -25,7 +25,7 @@ pub(super) fn fold(g: &mut Graph, op: Op, x: &[NodeId]) -> NodeId {
 }
 
 fn constant_value(g: &Graph, op: Op, x: &[NodeId]) -> Option<Value> {
-    if matches!(op, Op::Broadcast | Op::ReduceAdd) {
+    if matches!(op, Op::Broadcast | Op::ReduceAdd | Op::List) {
         return None;
     }
     let mut operands = [[0.0; MOST]; 3];

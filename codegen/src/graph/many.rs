@@ -1,6 +1,8 @@
 //! A graph on many states: node by node, on a block of states at a time, which shares the cost of
 //! finding out what to do.
 
+use std::collections::HashMap;
+
 use super::evaluate::value;
 use super::{Graph, Op};
 
@@ -17,6 +19,7 @@ impl Graph {
         assert!(self.lanes().width == 1, "a graph without lanes");
         let results = self.outputs.len();
         let mut values = vec![[0.0_f64; BLOCK]; self.nodes().len()];
+        let mut regions: HashMap<u32, Vec<Vec<f64>>> = HashMap::new();
         for first in (0..states).step_by(BLOCK) {
             let count = BLOCK.min(states - first);
             for (k, node) in self.nodes().iter().enumerate() {
@@ -41,6 +44,15 @@ impl Graph {
                             Op::NegMulAdd => each(&mut own, &product, &c, |p, c| c - p),
                             _ => each(&mut own, &product, &c, |p, c| -p - c),
                         }
+                    }
+                    Op::Region => {
+                        let (region, given) = (self.region_of(node), self.given(node));
+                        let of = |i: usize| region.run(&given.iter().map(|id| values[id.index()][i]).collect::<Vec<_>>());
+                        regions.insert(k as u32, (0..count).map(of).collect());
+                    }
+                    Op::RegionValue => {
+                        let found = &regions[&node.args[0]];
+                        own.iter_mut().zip(found).for_each(|(x, found)| *x = found[node.args[1] as usize]);
                     }
                     op => {
                         let operands = [0, 1, 2].map(|operand| if operand < op.row().arity { at(operand) } else { &[0.0; BLOCK] });

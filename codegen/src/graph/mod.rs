@@ -6,12 +6,16 @@ mod fold;
 mod lanes;
 mod many;
 mod op;
+mod region;
 mod table;
+
+use std::sync::Arc;
 
 pub use counts::Counts;
 pub(crate) use evaluate::value as operation;
 pub use lanes::{Lanes, MOST, Value};
 pub use op::{OPS, Op, Row};
+pub use region::{CAPTURED, CARRIED, Kind, ROW, Region};
 
 /// A node's number in its graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -26,7 +30,8 @@ impl NodeId {
 
 /// An operation with its operands. A constant holds its bits in `args`, an input the number of the
 /// argument and the index in it; a lane constant its number in [`Lanes`], a lane input the number
-/// of the argument and its number there.
+/// of the argument and its number there; a region its number after its operand, a value of a region
+/// the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Node {
     /// The operation.
@@ -62,6 +67,7 @@ pub struct Graph {
     places: table::Places,
     requested: Counts,
     lanes: Lanes,
+    regions: Vec<Arc<Region>>,
 }
 
 impl Graph {
@@ -74,7 +80,8 @@ impl Graph {
     #[must_use]
     pub fn emptied(&self) -> Self {
         let places = table::Places::with_room(self.nodes.len());
-        Self { lanes: self.lanes.clone(), nodes: Vec::with_capacity(self.nodes.len()), places, ..Self::default() }
+        let regions = self.regions.clone();
+        Self { lanes: self.lanes.clone(), regions, nodes: Vec::with_capacity(self.nodes.len()), places, ..Self::default() }
     }
 
     /// The tables of lane constants and lane inputs.
@@ -187,10 +194,11 @@ impl Graph {
         uses
     }
 
-    /// The operations of the graph.
+    /// The operations of the graph; those of regions at their bounds.
     pub fn counts(&self) -> Counts {
         let mut counts = Counts::default();
         self.nodes.iter().for_each(|n| counts.add(n.op, 1));
+        self.count_regions(&mut counts);
         counts
     }
 
@@ -199,6 +207,20 @@ impl Graph {
         for (k, node) in self.nodes.iter().enumerate() {
             if let Some(late) = node.operands().find(|a| a.index() >= k) {
                 return Err(format!("node {k} ({:?}) uses node {}", node.op, late.0));
+            }
+        }
+        for node in self.nodes.iter().filter(|node| node.op == Op::Region) {
+            let region = self.region_of(node);
+            let given = self.given(node).len();
+            if given != region.inputs() {
+                return Err(format!("{given} values go into a region of {}", region.inputs()));
+            }
+            region.verify()?;
+        }
+        for node in self.nodes.iter().filter(|node| node.op == Op::RegionValue) {
+            let of = self.node(NodeId(node.args[0]));
+            if of.op != Op::Region || node.args[1] as usize >= self.region_of(&of).values() {
+                return Err(format!("value {} of {:?}, which has no such value", node.args[1], of.op));
             }
         }
         match self.outputs.iter().find(|o| o.index() >= self.nodes.len()) {

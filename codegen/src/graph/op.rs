@@ -47,6 +47,12 @@ pub enum Op {
     Broadcast,
     /// the sum of a's lanes, in every lane
     ReduceAdd,
+    /// the values of the list a, then b
+    List,
+    /// the region with a number of the graph on the values of the list a
+    Region,
+    /// the value with a number that comes out of the region a
+    RegionValue,
 }
 
 /// Properties of an operation.
@@ -86,7 +92,7 @@ impl Row {
 }
 
 /// All operations, in the order of [`Op`].
-pub const OPS: [Row; 21] = [
+pub const OPS: [Row; 24] = [
     row(Op::Constant, "constants"),
     row(Op::Input, "inputs"),
     row(Op::Add, "add").of_operands(2).commuting().takes(1, 4),
@@ -108,6 +114,9 @@ pub const OPS: [Row; 21] = [
     row(Op::LaneInput, "lane inputs"),
     row(Op::Broadcast, "broadcast").of_operands(2).takes(1, 3),
     row(Op::ReduceAdd, "reduce_add").of_operands(1).takes(4, 14),
+    row(Op::List, "lists").of_operands(2),
+    row(Op::Region, "regions").of_operands(1),
+    row(Op::RegionValue, "values of regions").of_operands(1),
 ];
 
 impl Op {

@@ -73,7 +73,10 @@ const AROUND: &str = "out parameters parameter_sets count blocks states sets slo
 /// Why an argument or a result of a user's function cannot have its name in some language.
 pub(crate) fn refuses_port(name: &str) -> Option<&'static str> {
     let is_plain = name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
-    let is_counted = name.len() > 1 && name.starts_with(|c: char| c.is_ascii_lowercase()) && name[1..].bytes().all(|b| b.is_ascii_digit());
+    // A letter and a number; values and what regions make of them have an x.
+    let (counted, more) = name.split_once('_').unwrap_or((name, ""));
+    let has_number = counted.len() > 1 && counted[1..].bytes().all(|b| b.is_ascii_digit());
+    let is_counted = has_number && (more.is_empty() && !name.ends_with('_') || name.starts_with('x'));
     if !is_plain || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
         return Some("is not a valid name: expected lower case letters, digits and _");
     }

@@ -293,7 +293,7 @@ impl Plan<'_> {
         // Not stored here: numbers that loops compute, and zeros of a result that is initialised
         // with zeros.
         let is_partial = self.columns.is_some() || outlined && ending != Ending::Filled;
-        let lowering = Lowering { graph, ty, sines: self.sines(), results: &results };
+        let lowering = Lowering { graph, ty, sines: self.sines(), results: &results, first: 0 };
         let stores = || lowering.stores_as_made(|at| ending == Ending::Filled && is_read(at), barrier);
         let mut lanes = graph.lanes().clone();
         let (mut pieces, kept) = match ending {
@@ -321,7 +321,7 @@ impl Plan<'_> {
     fn few_registers(&self, ending: Ending) -> Option<Body> {
         let nodes = self.graph.nodes().len();
         let fits = (spill::FROM..CUT_FROM).contains(&nodes);
-        let can = self.can.spills && !self.can.level.of_two() && self.can.level.fused;
+        let can = self.can.spills && !self.can.level.of_two() && self.can.level.fused && !self.graph.has_regions();
         let body = (fits && can).then(|| self.body(ending, false, true))?;
         spill::pays(&body.pieces[0], matches!(body.ty, Ty::Vector(_))).then_some(body)
     }
@@ -332,14 +332,14 @@ impl Plan<'_> {
         let nodes = graph.nodes().len();
         let length = if nodes < CUT_STATES_FROM { usize::MAX } else { LENGTH };
         let sines = SinCosGrouping { together: 1, are_powers_of_two: true, from: 0 };
-        let statements = Lowering { graph, ty: Ty::States, sines, results: &results }.stores_as_made(|_| true, false);
+        let statements = Lowering { graph, ty: Ty::States, sines, results: &results, first: 0 }.stores_as_made(|_| true, false);
         let (pieces, kept) = outline(statements, length);
         let body = |pieces: Vec<Vec<Stmt>>, slots| {
             let (lanes, results) = (graph.lanes().clone(), results.clone());
             verified(Body { ty: Ty::States, lanes, results, pieces, kept, slots, barrier: false, is_partial: false })
         };
         let spilled = match pieces.as_slice() {
-            [piece] if self.can.spills && nodes >= spill::FROM => Some(spill(piece.clone(), Ty::States)),
+            [piece] if self.can.spills && nodes >= spill::FROM && !graph.has_regions() => Some(spill(piece.clone(), Ty::States)),
             _ => None,
         };
         let few_registers = spilled.filter(|(piece, _)| spill::pays(piece, true)).map(|(piece, slots)| body(vec![piece], Some(slots)));

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{Body, Expr, Number, Operand, Slot, Stmt, Store, Temp};
+use super::{Body, Carried, Expr, Number, Operand, Region, Slot, Stmt, Store, Temp, Turns};
 use crate::graph::{MOST, Op, Value, operation};
 
 /// The numbers of the result, and NaN where a partial body stores none; `input(argument, index)`
@@ -72,7 +72,57 @@ impl<F: Fn(usize, usize) -> f64> Machine<'_, F> {
             Stmt::Load(dst, slot) => _ = self.values.insert(*dst, self.slots[slot]),
             Stmt::Store(store) => self.store(store),
             Stmt::Result(at, number) => self.out[*at] = self.number(number),
+            Stmt::Region(region) => self.region(region),
         }
+    }
+
+    /// Runs a region. Lanes are those of limbs, which regions do not have.
+    fn region(&mut self, region: &Region) {
+        for Carried { temp, start, .. } in &region.carried {
+            self.values.insert(*temp, self.operand(*start));
+        }
+        for (temp, of) in &region.captured {
+            self.values.insert(*temp, self.operand(*of));
+        }
+        match &region.turns {
+            Turns::Until { most, mask, held } => {
+                let ends = (0..*most).any(|_| {
+                    self.turn(region);
+                    self.operand(*mask)[0] > 0.0
+                });
+                self.values.insert(*held, [f64::from(u8::from(ends)); MOST]);
+            }
+            Turns::Where(mask) => {
+                if self.operand(*mask)[0] > 0.0 {
+                    self.turn(region);
+                }
+            }
+            Turns::Each { table, row, results, turns, read, .. } => {
+                for turn in 0..*turns {
+                    for (k, temp) in row.iter().enumerate() {
+                        self.values.insert(*temp, self.operand(table[turn * row.len() + k]));
+                    }
+                    let found = self.turn(region);
+                    debug_assert_eq!(found.len(), region.carried.len() + results.len());
+                    for (_, k, temp) in read.iter().filter(|(at, ..)| *at == turn) {
+                        self.values.insert(*temp, found[region.carried.len() + k]);
+                    }
+                }
+            }
+        }
+        for (temp, last) in &region.after {
+            self.values.insert(*temp, self.values[last]);
+        }
+    }
+
+    /// One turn; returns the values of its end.
+    fn turn(&mut self, region: &Region) -> Vec<Value> {
+        region.body.iter().for_each(|statement| self.step(statement));
+        let ends: Vec<Value> = region.ends().map(|operand| self.operand(*operand)).collect();
+        for (carried, end) in region.carried.iter().zip(&ends) {
+            self.values.insert(carried.temp, *end);
+        }
+        ends
     }
 
     fn store(&mut self, store: &Store) {

@@ -1,5 +1,7 @@
 //! A graph as statements.
 
+mod regions;
+
 use std::collections::{BTreeMap, HashMap};
 
 use crate::graph::{Graph, Lanes, Node, NodeId, Op};
@@ -27,6 +29,8 @@ pub(crate) struct Lowering<'a> {
     pub(crate) sines: SinCosGrouping,
     /// The arrays of the result.
     pub(crate) results: &'a [Array],
+    /// The number of the first value: those of bodies of regions follow those around them.
+    pub(crate) first: usize,
 }
 
 impl Lowering<'_> {
@@ -54,7 +58,7 @@ impl Lowering<'_> {
             }
             let store = Stmt::Store(Store::One(at, number));
             // A lane that has a name is stored behind it.
-            let named = Temp::of(output.index());
+            let named = self.temp(output.index());
             match [Some(named), number.of.temp()].into_iter().flatten().find_map(|temp| Some((temp, *defined.get(&temp)?))) {
                 Some((temp, unit)) => behind[unit].push((temp, store)),
                 None => first.push(store),
@@ -108,7 +112,7 @@ impl Lowering<'_> {
                 Step::Batch(angles) => {
                     let angles: Vec<Angle> = in_order(&angles, self.graph)
                         .iter()
-                        .map(|a| Angle { angle: self.operand(a.angle), sin: a.sin.map(Temp::of), cos: a.cos.map(Temp::of) })
+                        .map(|a| Angle { angle: self.operand(a.angle), sin: a.sin.map(|k| self.temp(k)), cos: a.cos.map(|k| self.temp(k)) })
                         .collect();
                     let alone = angles.len() < self.sines.from;
                     for some in angles.chunks(self.sines.together) {
@@ -140,7 +144,9 @@ impl Lowering<'_> {
     fn definition(&self, k: usize) -> Option<Stmt> {
         let node = &self.graph.nodes()[k];
         let expression = match node.op {
-            Op::Constant => return None,
+            // The region defines its values.
+            Op::Constant | Op::List | Op::RegionValue => return None,
+            Op::Region => return Some(Stmt::Region(Box::new(self.region(k)))),
             Op::LaneConstant if matches!(self.ty, Ty::Vector(_)) => return None,
             Op::Input => Expr::Input { argument: node.args[0], index: node.args[1] },
             Op::LaneInput => Expr::LaneInput { argument: node.args[0], indices: node.args[1] },
@@ -151,7 +157,11 @@ impl Lowering<'_> {
                 Expr::Op(op, operands)
             }
         };
-        Some(Stmt::Let(Temp::of(k), expression))
+        Some(Stmt::Let(self.temp(k), expression))
+    }
+
+    fn temp(&self, node: usize) -> Temp {
+        Temp::of(self.first + node)
     }
 
     fn operand(&self, id: NodeId) -> Operand {
@@ -159,7 +169,7 @@ impl Lowering<'_> {
         match (node.op, node.constant()) {
             (_, Some(x)) => Operand::Constant(x),
             (Op::LaneConstant, _) => Operand::Lanes(node.args[0]),
-            _ => Operand::Temp(Temp::of(id.index())),
+            _ => Operand::Temp(self.temp(id.index())),
         }
     }
 

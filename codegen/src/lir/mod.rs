@@ -212,6 +212,65 @@ pub enum Stmt {
     Store(Store),
     /// A number of the result, by its place: the result is built from all of them at the end.
     Result(usize, Number),
+    /// Statements that run several times, once, or not at all.
+    Region(Box<Region>),
+}
+
+/// A value that a region changes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Carried {
+    /// The value in a turn. It is defined before the region, and changed at the end of each turn.
+    pub temp: Temp,
+    /// Its value at the start.
+    pub start: Operand,
+    /// Its value after the turn, an operand of the body.
+    pub next: Operand,
+}
+
+/// How often a region runs.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Turns {
+    /// Until a mask of the body holds, at most so many times.
+    Until {
+        /// The bound.
+        most: usize,
+        /// The mask, or the number 0 or 1.
+        mask: Operand,
+        /// 1 after a turn in which the mask holds, before that 0.
+        held: Temp,
+    },
+    /// Once where a mask holds.
+    Where(Operand),
+    /// Once for each row of a table.
+    Each {
+        /// The number of the table and of its results: part of their names.
+        name: u32,
+        /// The rows, one after the other.
+        table: Vec<Operand>,
+        /// The values of a row in a turn.
+        row: Vec<Temp>,
+        /// The results of a turn, operands of the body.
+        results: Vec<Operand>,
+        /// The number of turns.
+        turns: usize,
+        /// The results that are read after the region: turn, number of the result, value.
+        read: Vec<(usize, usize, Temp)>,
+    },
+}
+
+/// Statements that run several times, once, or not at all.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region {
+    /// How often it runs.
+    pub turns: Turns,
+    /// The values that it changes.
+    pub carried: Vec<Carried>,
+    /// The values of before that its body reads, each with its name there.
+    pub captured: Vec<(Temp, Operand)>,
+    /// The statements of a turn.
+    pub body: Vec<Stmt>,
+    /// The values that it defines for the statements after it, each with its value then.
+    pub after: Vec<(Temp, Temp)>,
 }
 
 /// Spill slots of a body.
@@ -295,6 +354,13 @@ impl Bodies {
 }
 
 impl Body {
+    /// All statements, those of regions included.
+    pub(crate) fn statements(&self) -> Vec<&Stmt> {
+        let mut all = Vec::new();
+        self.pieces.iter().flatten().for_each(|statement| statement.walk(&mut |s| all.push(s)));
+        all
+    }
+
     /// How many different values are stored in the result: constants and copies of the same value
     /// are not computed.
     pub(crate) fn computed(&self) -> usize {
@@ -315,6 +381,7 @@ impl Stmt {
             Self::Let(dst, _) | Self::SumLanes(dst, _) | Self::Recall(dst, _) | Self::Load(dst, _) => see(*dst),
             Self::SinCos { angles, .. } => angles.iter().map(|a| a.sin).chain(angles.iter().map(|a| a.cos)).flatten().for_each(see),
             Self::Thirds { dst, .. } => dst.iter().copied().for_each(see),
+            Self::Region(region) => region.defines().for_each(see),
             Self::Keep(..) | Self::Spill(..) | Self::Store(_) | Self::Result(..) => {}
         }
     }
@@ -330,6 +397,7 @@ impl Stmt {
             Self::Store(Store::One(_, number)) => see(&number.of),
             Self::Store(Store::Two(_, numbers)) => numbers.iter().for_each(|n| see(&n.of)),
             Self::Store(Store::Whole(_, operand)) => see(operand),
+            Self::Region(region) => region.given().for_each(see),
             Self::Let(..) | Self::Thirds { .. } | Self::Recall(..) | Self::Load(..) | Self::Store(Store::Fill(..)) => {}
         }
     }
@@ -344,6 +412,7 @@ impl Stmt {
             Self::Store(Store::One(_, number)) => change(&mut number.of),
             Self::Store(Store::Two(_, numbers)) => numbers.iter_mut().for_each(|n| change(&mut n.of)),
             Self::Store(Store::Whole(_, operand)) => change(operand),
+            Self::Region(region) => region.given_mut().for_each(change),
             Self::Let(..)
             | Self::Thirds { .. }
             | Self::Keep(..)
@@ -351,6 +420,14 @@ impl Stmt {
             | Self::Spill(..)
             | Self::Load(..)
             | Self::Store(Store::Fill(..)) => {}
+        }
+    }
+
+    /// Calls `see` for it and for all statements in it.
+    pub(crate) fn walk<'a>(&'a self, see: &mut impl FnMut(&'a Self)) {
+        see(self);
+        if let Self::Region(region) = self {
+            region.body.iter().for_each(|statement| statement.walk(see));
         }
     }
 
@@ -369,6 +446,47 @@ impl Stmt {
             Self::Store(Store::Rows(rows, columns)) => rows.starts().iter().flat_map(|at| *at..at + columns.len()).collect(),
             _ => Vec::new(),
         }
+    }
+}
+
+impl Region {
+    /// The operands that are known before it.
+    pub(crate) fn given(&self) -> impl Iterator<Item = &Operand> {
+        let more: &[Operand] = match &self.turns {
+            Turns::Until { .. } => &[],
+            Turns::Where(mask) => std::slice::from_ref(mask),
+            Turns::Each { table, .. } => table,
+        };
+        self.carried.iter().map(|carried| &carried.start).chain(self.captured.iter().map(|(_, of)| of)).chain(more)
+    }
+
+    fn given_mut(&mut self) -> impl Iterator<Item = &mut Operand> {
+        let more: &mut [Operand] = match &mut self.turns {
+            Turns::Until { .. } => &mut [],
+            Turns::Where(mask) => std::slice::from_mut(mask),
+            Turns::Each { table, .. } => table,
+        };
+        self.carried.iter_mut().map(|carried| &mut carried.start).chain(self.captured.iter_mut().map(|(_, of)| of)).chain(more)
+    }
+
+    /// The values that statements after it read.
+    pub(crate) fn defines(&self) -> impl Iterator<Item = Temp> {
+        let read = if let Turns::Each { read, .. } = &self.turns { read.as_slice() } else { &[] };
+        self.after.iter().map(|(temp, _)| *temp).chain(read.iter().map(|(.., temp)| *temp))
+    }
+
+    /// Whether it is read whether the mask of an iteration held.
+    pub(crate) fn is_held_read(&self) -> bool {
+        matches!(self.turns, Turns::Until { held, .. } if self.after.iter().any(|(_, last)| *last == held))
+    }
+
+    /// The operands of the end of a turn.
+    pub(crate) fn ends(&self) -> impl Iterator<Item = &Operand> {
+        let more: &[Operand] = match &self.turns {
+            Turns::Until { .. } | Turns::Where(_) => &[],
+            Turns::Each { results, .. } => results,
+        };
+        self.carried.iter().map(|carried| &carried.next).chain(more)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::{Body, Expr, Operand, Stmt, Temp};
+use super::{Body, Expr, Operand, Region, Stmt, Temp, Turns};
 use crate::graph::Op;
 
 /// Checks that every operand is defined before its use and once, that comparisons return masks and
@@ -46,10 +46,11 @@ struct Known {
 
 impl Known {
     fn take(&mut self, statement: &Stmt) -> Result<(), String> {
-        if let Stmt::Let(_, Expr::Op(Op::Select, [mask, a, b])) = statement {
-            match mask {
-                Operand::Temp(temp) if self.masks.contains(temp) => {}
-                _ => return Err("its first operand is no mask".to_owned()),
+        if let Stmt::Region(region) = statement {
+            self.region(region)?;
+        } else if let Stmt::Let(_, Expr::Op(Op::Select, [mask, a, b])) = statement {
+            if !self.is_mask(mask) {
+                return Err("its first operand is no mask".to_owned());
             }
             [a, b].into_iter().try_for_each(|operand| self.value(operand))?;
         } else {
@@ -73,6 +74,41 @@ impl Known {
             }
         }
         Ok(())
+    }
+
+    /// A region: its body sees its own values alone, and stores nothing.
+    fn region(&mut self, region: &Region) -> Result<(), String> {
+        let is_where = matches!(region.turns, Turns::Where(_));
+        let given: Vec<&Operand> = region.given().collect();
+        given[..given.len() - usize::from(is_where)].iter().try_for_each(|operand| self.value(operand))?;
+        let mut known = Self::default();
+        let mut define = |temp: Temp| if known.values.insert(temp) { Ok(()) } else { Err(format!("{temp:?} is defined twice")) };
+        region.carried.iter().map(|c| c.temp).chain(region.captured.iter().map(|(temp, _)| *temp)).try_for_each(&mut define)?;
+        match &region.turns {
+            Turns::Where(mask) if !self.is_mask(mask) => return Err("it runs where no mask holds".to_owned()),
+            Turns::Each { row, table, turns, .. } => {
+                row.iter().copied().try_for_each(&mut define)?;
+                if table.len() != turns * row.len() {
+                    return Err(format!("a table of {} values for {turns} rows of {}", table.len(), row.len()));
+                }
+            }
+            _ => {}
+        }
+        for statement in &region.body {
+            known.take(statement)?;
+            if !statement.writes().is_empty() || matches!(statement, Stmt::Keep(..) | Stmt::Recall(..) | Stmt::Spill(..)) {
+                return Err(format!("{statement:?} in a region"));
+            }
+        }
+        region.ends().try_for_each(|operand| known.value(operand))?;
+        match &region.turns {
+            Turns::Until { mask: Operand::Temp(mask), .. } if !known.masks.contains(mask) => Err("it ends where no mask holds".to_owned()),
+            _ => Ok(()),
+        }
+    }
+
+    fn is_mask(&self, operand: &Operand) -> bool {
+        operand.temp().is_some_and(|temp| self.masks.contains(&temp))
     }
 
     fn value(&self, operand: &Operand) -> Result<(), String> {

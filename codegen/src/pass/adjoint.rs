@@ -7,6 +7,9 @@
 //!
 //! Limbs are put into lanes after this, so there are no lanes here.
 
+use std::collections::HashMap;
+
+use super::region_derivatives::Occurrence;
 use super::{copy, rebuild};
 use crate::graph::{Graph, Node, NodeId, Op};
 
@@ -33,7 +36,7 @@ pub(crate) fn gradients(
     for node in &graph.nodes()[..count] {
         active.push(place(node).is_some() || node.op != Op::Positive && node.operands().any(|operand| active[operand.index()]));
     }
-    let mut sweep = Sweep { adjoints: vec![None; count], active, graph };
+    let mut sweep = Sweep { adjoints: vec![None; count], active, of_regions: HashMap::new(), graph };
     for (k, output) in outputs.iter().enumerate() {
         if sweep.active[output.index()] {
             let weight = weight(sweep.graph, k);
@@ -57,6 +60,8 @@ struct Sweep<'a> {
     adjoints: Vec<Option<NodeId>>,
     /// Whether a node of f depends on x.
     active: Vec<bool>,
+    /// Of the values that come out of regions.
+    of_regions: HashMap<NodeId, Vec<Option<NodeId>>>,
 }
 
 impl Sweep<'_> {
@@ -78,7 +83,22 @@ impl Sweep<'_> {
         let [on_a, on_b, on_c] = [0, 1, 2].map(is_active);
         let times = |sweep: &mut Self, x: NodeId| sweep.graph.apply(Op::Mul, &[adjoint, x]);
         match node.op {
-            Op::Constant | Op::Input | Op::Positive => {}
+            Op::Constant | Op::Input | Op::Positive | Op::List => {}
+            Op::RegionValue => {
+                let values = self.graph.region_of(&self.graph.node(a)).values();
+                self.of_regions.entry(a).or_insert_with(|| vec![None; values])[node.args[1] as usize] = Some(adjoint);
+                // Only that it has one counts.
+                self.adjoints[a.index()] = Some(adjoint);
+            }
+            Op::Region => {
+                let (region, weights) = (Occurrence::new(self.graph, of), self.of_regions.remove(&of).unwrap_or_default());
+                let active: Vec<bool> = region.given.iter().map(|id| self.active[id.index()]).collect();
+                for (k, adjoint) in region.adjoint(self.graph, &weights, &active) {
+                    if active[k] {
+                        self.add(region.given[k], adjoint, false);
+                    }
+                }
+            }
             Op::LaneConstant | Op::LaneInput | Op::Broadcast | Op::ReduceAdd => debug_assert!(false, "no lanes here"),
             Op::Add | Op::Sub => {
                 if on_a {

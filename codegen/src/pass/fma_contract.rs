@@ -120,7 +120,8 @@ impl Builder<'_> {
             return self.note(id);
         }
         let operands: Vec<NodeId> = node.operands().map(|a| self.ids[a.index()]).collect();
-        self.push(node.op, &operands)
+        let id = self.new.on_operands(*node, &operands);
+        self.note(id)
     }
 
     fn note(&mut self, id: NodeId) -> NodeId {

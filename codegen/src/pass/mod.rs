@@ -8,6 +8,8 @@ mod dce;
 mod factor;
 mod fma_contract;
 mod from_the_last;
+mod hoist;
+mod region_derivatives;
 mod sink_into_reduction;
 mod sums;
 mod tangent;
@@ -19,13 +21,14 @@ pub use dce::dce;
 pub use factor::factor;
 pub use fma_contract::fma_contract;
 pub use from_the_last::from_the_last;
+pub use hoist::hoist;
 pub use sink_into_reduction::sink_into_reduction;
 pub use tangent::tangent;
 pub(crate) use tangent::tangents;
 
 use articulated_core::running::Running;
 
-use crate::graph::{Graph, Node, NodeId};
+use crate::graph::{Graph, Node, NodeId, Op, Region};
 
 /// A pass over graphs.
 pub type GraphPass = fn(&Graph) -> Graph;
@@ -76,6 +79,10 @@ pub const GRAPH_PASSES: &[Row] = &[
 /// The graph after all passes in order; `see` is called after each of them. In debug builds each
 /// pass is checked, as in [`run`].
 pub(crate) fn run_all(graph: Graph, mut see: impl FnMut(&'static str, &Graph)) -> Graph {
+    fn checked(body: Graph) -> Graph {
+        run_all(body, |_, _| {})
+    }
+    let graph = if graph.has_regions() { bodies(&run("hoist", hoist, &dce(&graph)), checked) } else { graph };
     GRAPH_PASSES.iter().fold(graph, |graph, row| {
         let new = run(row.name, row.pass, &graph);
         see(row.name, &new);
@@ -85,7 +92,13 @@ pub(crate) fn run_all(graph: Graph, mut see: impl FnMut(&'static str, &Graph)) -
 
 /// The same without checks, for graphs that are only counted.
 pub(crate) fn run_all_unchecked(graph: Graph) -> Graph {
+    let graph = if graph.has_regions() { bodies(&hoist(&dce(&graph)), run_all_unchecked) } else { graph };
     GRAPH_PASSES.iter().fold(graph, |graph, row| (row.pass)(&graph))
+}
+
+/// The graph with the passes run on the bodies of its regions.
+fn bodies(graph: &Graph, passes: fn(Graph) -> Graph) -> Graph {
+    graph.clone().with_regions(|region| Region { body: passes(region.body.clone()), ..region.clone() })
 }
 
 /// Rebuilds a graph node by node: `rewrite(new, node, operands)` gives the new node for each old
@@ -106,9 +119,24 @@ pub(crate) fn rebuild(old: &Graph, keep: impl Fn(usize) -> bool, mut rewrite: im
     new
 }
 
+/// Adds the nodes of `graph` to another, with some of its inputs replaced. Returns its outputs.
+pub(crate) fn splice(new: &mut Graph, graph: &Graph, mut input: impl FnMut(&mut Graph, usize, usize) -> Option<NodeId>) -> Vec<NodeId> {
+    let mut ids: Vec<NodeId> = Vec::with_capacity(graph.nodes().len());
+    for node in graph.nodes() {
+        let operands: Vec<NodeId> = node.operands().map(|operand| ids[operand.index()]).collect();
+        ids.push(match node.op {
+            Op::Input => input(new, node.args[0] as usize, node.args[1] as usize).unwrap_or_else(|| new.leaf(*node)),
+            _ if operands.is_empty() => new.leaf(*node),
+            Op::List | Op::Region | Op::RegionValue => new.adopted(graph, *node, &operands),
+            op => new.apply(op, &operands),
+        });
+    }
+    graph.outputs.iter().map(|output| ids[output.index()]).collect()
+}
+
 /// Copies a node as it is.
 pub(crate) fn copy(new: &mut Graph, node: Node, operands: &[NodeId]) -> NodeId {
-    new.exactly(node.op, operands)
+    new.on_operands(node, operands)
 }
 
 /// Runs a pass; in debug builds checks the result's form, its value on pseudo-random input, and
@@ -136,9 +164,11 @@ fn rounding(one: &Graph, other: &Graph, k: usize) -> bool {
     off <= most || off.is_nan() || most.is_nan()
 }
 
-/// Total cost of a graph.
+/// Total cost of a graph; that of regions at their bounds.
 pub(crate) fn cost(graph: &Graph) -> u32 {
-    graph.nodes().iter().map(|n| n.op.row().cost).sum()
+    let own: u32 = graph.nodes().iter().map(|n| n.op.row().cost).sum();
+    let regions = graph.nodes().iter().filter(|node| node.op == Op::Region).map(|node| graph.region_of(node));
+    regions.fold(own, |sum, region| sum.saturating_add(cost(&region.body).saturating_mul(region.most() as u32)))
 }
 
 /// A fixed irregular number in (−1, 1) for each input.

@@ -83,7 +83,7 @@ impl<'a> Rebuild<'a> {
             return self.new.leaf(node);
         }
         let operands: Vec<NodeId> = node.operands().map(|a| self.ids[a.index()]).collect();
-        self.new.exactly(node.op, &operands)
+        self.new.on_operands(node, &operands)
     }
 
     /// The sum of terms, each with whether it is negative.

@@ -6,6 +6,7 @@
 //!
 //! Limbs are put into lanes after this, so there are no lanes here.
 
+use super::region_derivatives::Occurrence;
 use super::{copy, rebuild};
 use crate::graph::{Graph, Node, NodeId, Op};
 
@@ -49,6 +50,14 @@ fn of_node(graph: &mut Graph, of: NodeId, node: Node, known: &[Option<NodeId>]) 
     let times = |graph: &mut Graph, x: NodeId, dx: Option<NodeId>| dx.map(|dx| graph.apply(Op::Mul, &[x, dx]));
     match node.op {
         Op::Constant | Op::Input | Op::Positive => None,
+        // Only that it has one counts.
+        Op::List => Some(of),
+        Op::Region => {
+            let region = Occurrence::new(graph, of);
+            let slopes: Vec<Option<NodeId>> = region.given.iter().map(|id| known[id.index()]).collect();
+            Some(region.tangent(graph, &slopes))
+        }
+        Op::RegionValue => Occurrence::new(graph, a).tangent_value(graph, da?, node.args[1] as usize),
         Op::LaneConstant | Op::LaneInput | Op::Broadcast | Op::ReduceAdd => {
             debug_assert!(false, "no lanes here");
             None

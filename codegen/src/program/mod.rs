@@ -48,8 +48,9 @@ pub(crate) fn program(spec: FunctionSpec, model: &Model<f64>, parameters: &[Para
     };
     let plain = whole.map_or_else(Graph::default, |(graph, _)| graph);
     let scalar = if can.scalar_too { best.0.clone() } else { Graph::default() };
-    // Limbs need the vector instructions; constants that stay inputs differ from limb to limb.
-    if options.limbs && can.vectors && parameters.is_empty() {
+    // Limbs need the vector instructions; constants that stay inputs differ from limb to limb, and
+    // masks of regions are those of a whole state.
+    if options.limbs && can.vectors && parameters.is_empty() && !best.0.has_regions() {
         for width in [4, 2] {
             let Some(alike) = IsomorphicLimbs::of(model, width) else { continue };
             let other = Candidate { alike: Some(alike), ..candidate }.build(&reduced, unsolved);

@@ -10,6 +10,7 @@ mod solution;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use articulated_core::Scalar;
+use articulated_core::region::repeat_known;
 use num_traits::{One, Zero};
 
 pub use norms::{is_plain, norms};
@@ -159,6 +160,10 @@ impl Scalar for Magnitude {
 
     fn select(mask: bool, a: Self, b: Self) -> Self {
         if mask { a } else { b }
+    }
+
+    fn repeat(most: usize, state: &mut [Self], body: impl FnMut(&mut [Self]) -> bool) -> bool {
+        repeat_known(most, state, body)
     }
 }
 

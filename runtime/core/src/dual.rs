@@ -1,10 +1,11 @@
 //! Numbers with one derivative.
 
+use alloc::vec::Vec;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use num_traits::{One, Zero};
 
-use crate::Scalar;
+use crate::{Scalar, region};
 
 /// x + ε x', with ε² = 0: results computed with it have their exact derivatives (Clifford, *Proc.
 /// London Math. Soc.* 4, 1871). Nested, it has the second derivative too.
@@ -143,6 +144,25 @@ impl<S: Scalar> Scalar for Dual<S> {
 
     fn select(mask: S::Mask, a: Self, b: Self) -> Self {
         Self { value: S::select(mask, a.value, b.value), slope: S::select(mask, a.slope, b.slope) }
+    }
+
+    // The values first, then the slopes at the fixed point.
+    fn repeat(most: usize, state: &mut [Self], mut body: impl FnMut(&mut [Self]) -> S::Mask) -> S::Mask {
+        let mut values: Vec<S> = state.iter().map(|x| x.value).collect();
+        let converged = S::repeat(most, &mut values, |values| {
+            let mut held: Vec<Self> = values.iter().copied().map(Self::constant).collect();
+            let ends = body(&mut held);
+            values.iter_mut().zip(held).for_each(|(value, held)| *value = held.value);
+            ends
+        });
+        let mut slopes = region::zeros(state.len());
+        region::repeat_slopes(most, &mut slopes, |slopes| {
+            let mut moved: Vec<Self> = values.iter().zip(slopes.iter()).map(|(value, slope)| Self::new(*value, *slope)).collect();
+            let _ = body(&mut moved);
+            slopes.iter_mut().zip(moved).for_each(|(slope, moved)| *slope = moved.slope);
+        });
+        state.iter_mut().zip(values.iter().zip(slopes)).for_each(|(x, (value, slope))| *x = Self::new(*value, slope));
+        converged
     }
 }
 

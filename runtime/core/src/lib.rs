@@ -57,6 +57,7 @@ extern crate alloc;
 
 pub mod dual;
 pub mod eigen;
+pub mod region;
 pub mod running;
 pub mod scalar;
 pub mod spatial;

@@ -243,6 +243,20 @@ impl<const BITS: u32, const SINES: u32> Scalar for Running<BITS, SINES> {
         let radius = up(one.radius.max(apart + other.radius));
         Self { value: one.value, radius, error: up(one.error.max(other.error) + 2.0 * radius) }
     }
+
+    /// Where it is uncertain whether a turn is the last, the errors of the state are unbounded.
+    fn repeat(most: usize, state: &mut [Self], mut body: impl FnMut(&mut [Self]) -> Outcome) -> Outcome {
+        let mut certain = true;
+        let holds = (0..most).any(|_| {
+            let ends = body(state);
+            certain &= ends.certain;
+            ends.holds
+        });
+        if !certain {
+            state.iter_mut().for_each(|x| (x.radius, x.error) = (f64::INFINITY, f64::INFINITY));
+        }
+        Outcome { holds, certain }
+    }
 }
 
 #[cfg(test)]

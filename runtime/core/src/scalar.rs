@@ -3,6 +3,8 @@
 use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign};
 use num_traits::{One, Zero};
 
+use crate::region;
+
 /// A real number, or a representation of one: `f32`, `f64`, a symbol, a big float, a dual number.
 ///
 /// There is no ordering on purpose: a program that is traced cannot branch on a value, so a choice
@@ -56,6 +58,51 @@ pub trait Scalar:
     /// |self|.
     fn abs(self) -> Self {
         Self::select(self.positive(), self, -self)
+    }
+
+    /// Repeats `body` on `state` until the mask that it returns holds, at most `most` times.
+    /// Returns whether it held; at the bound `state` has the last values.
+    ///
+    /// Its derivative is that of the fixed point at which it ends: there one more turn must not
+    /// change the state. For a given number of turns use [`Scalar::for_each`].
+    ///
+    /// ```
+    /// use articulated_core::Scalar;
+    ///
+    /// /// √a by Newton's iteration, x ← (x + a/x)/2.
+    /// fn root<S: Scalar>(a: S) -> S {
+    ///     let mut x = [a];
+    ///     let _converged = S::repeat(50, &mut x, |x| {
+    ///         let before = x[0];
+    ///         x[0] = S::from_f64(0.5) * (before + a / before);
+    ///         (S::from_f64(1e-12) * x[0] - (x[0] - before).abs()).positive()
+    ///     });
+    ///     x[0]
+    /// }
+    /// assert!((root(2.0_f64) - 2_f64.sqrt()).abs() < 1e-15);
+    /// ```
+    fn repeat(most: usize, state: &mut [Self], body: impl FnMut(&mut [Self]) -> Self::Mask) -> Self::Mask {
+        region::repeat_all(most, state, body)
+    }
+
+    /// Runs `body` on `state` only where the mask holds.
+    fn when(mask: Self::Mask, state: &mut [Self], body: impl FnOnce(&mut [Self])) {
+        region::when_all(mask, state, body);
+    }
+
+    /// Runs `body` on `state` for each of the `turns` rows of a table, which have the same length:
+    /// `body(row, state, results of this turn)`.
+    ///
+    /// # Panics
+    /// If the length of `table` or of `results` is not a multiple of `turns`.
+    fn for_each(
+        turns: usize,
+        table: &[Self],
+        state: &mut [Self],
+        results: &mut [Self],
+        body: impl FnMut(&[Self], &mut [Self], &mut [Self]),
+    ) {
+        region::for_each_turn(turns, table, state, results, body);
     }
 }
 
@@ -115,6 +162,18 @@ macro_rules! impl_float {
             #[inline(always)]
             fn select(mask: bool, a: Self, b: Self) -> Self {
                 if mask { a } else { b }
+            }
+
+            #[inline(always)]
+            fn repeat(most: usize, state: &mut [Self], body: impl FnMut(&mut [Self]) -> bool) -> bool {
+                region::repeat_known(most, state, body)
+            }
+
+            #[inline(always)]
+            fn when(mask: bool, state: &mut [Self], body: impl FnOnce(&mut [Self])) {
+                if mask {
+                    body(state);
+                }
             }
         }
     };

@@ -13,6 +13,7 @@ mod limbs;
 mod odd_robots;
 mod oracles;
 mod parameters;
+mod regions;
 mod robots;
 mod scenes;
 mod user_functions;

@@ -27,7 +27,8 @@ pub(super) fn text(prefix: &str, real: Real, own_math: bool, called: &BTreeSet<&
     let tag = format!("{prefix}_{}_", real.name());
     let calls = |names: &[&str]| names.iter().any(|name| called.contains(name));
     let mut out = String::from(TYPES);
-    for (names, text) in [(&["k", "sin_cos"][..], CONSTANT), (&["select"], SELECT), (&["sqrt"], SQRT), (&["atan2"], ATAN2)] {
+    for (names, text) in [(&["k", "sin_cos"][..], CONSTANT), (&["select"], SELECT), (&["any"], ANY), (&["sqrt"], SQRT), (&["atan2"], ATAN2)]
+    {
         if calls(names) {
             out += text;
         }
@@ -87,11 +88,12 @@ fn filled(text: &str, prefix: &str, (real, tag, lanes): (Real, &str, &str), own_
 }
 
 /// All texts with names of helpers: [`filled`] fills their words.
-pub(super) const TEXTS: [&str; 17] = [
+pub(super) const TEXTS: [&str; 18] = [
     WIDTH,
     TYPES,
     CONSTANT,
     SELECT,
+    ANY,
     SQRT,
     ATAN2,
     SINES,
@@ -187,6 +189,22 @@ const SELECT: &str = "\
     return (@T_v)((m & (@T_m)a) | (~m & (@T_m)b));
 #else
     return m ? a : b;
+#endif
+}
+
+";
+
+const ANY: &str = "\
+/* Whether m is true in a lane. */
+@U_INLINE int @T_any(@T_m m) {
+#if @U_VECTOR
+    int any = 0;
+    for (int i = 0; i < @LANES; i++) {
+        any |= m[i] != 0;
+    }
+    return any;
+#else
+    return m;
 #endif
 }
 

@@ -107,7 +107,9 @@ impl Printer<'_> {
                 self.put(out, *at, &self.number(number));
                 Ok(())
             }
-            Stmt::Spill(..) | Stmt::Load(..) => unreachable!("C has no spill slots: {statement:?}"),
+            Stmt::Spill(..) | Stmt::Load(..) | Stmt::Region(_) => {
+                unreachable!("C has no spill slots, and limbs no regions: {statement:?}")
+            }
         };
     }
 

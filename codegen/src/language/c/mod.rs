@@ -12,6 +12,7 @@ mod lanes;
 mod limbs;
 mod math;
 mod names;
+mod regions;
 mod requirements;
 mod statements;
 

@@ -6,7 +6,7 @@ use articulated_core::lanes::Real;
 
 use crate::graph::Op;
 use crate::lir::function::Function;
-use crate::lir::{Angle, Body, Expr, Number, Operand, Stmt, Store, Ty};
+use crate::lir::{Angle, Body, Expr, Number, Operand, Stmt, Store, Turns, Ty};
 
 /// Helpers of one module.
 #[derive(Clone, Debug, Default)]
@@ -56,7 +56,7 @@ impl Requirements {
 
     /// A body of plain numbers.
     fn add_numbers(&mut self, body: &Body, is_single: bool, own_math: bool) {
-        for statement in body.pieces.iter().flatten() {
+        for statement in body.statements() {
             match statement {
                 Stmt::Let(_, Expr::Op(op, _)) => function(*op).into_iter().for_each(|name| self.add_math([name], is_single)),
                 Stmt::SinCos { angles, alone: false } if !is_single && angles.len() > 2 => self.sines_of_four = true,
@@ -75,7 +75,7 @@ impl Requirements {
     /// A body of vectors with a lane for each limb.
     fn add_limbs(&mut self, body: &Body, width: usize) {
         self.limbs.insert(width);
-        for statement in body.pieces.iter().flatten() {
+        for statement in body.statements() {
             match statement {
                 Stmt::Let(_, Expr::Op(op, _)) => function(*op).into_iter().for_each(|name| self.add_math([name], false)),
                 Stmt::SinCos { .. } => self.sines_of_limbs = true,
@@ -88,7 +88,7 @@ impl Requirements {
     fn add_states(&mut self, body: &Body, real: Real) {
         let own = self.states.entry(real.name()).or_default();
         let is_constant = |operand: &Operand| operand.temp().is_none();
-        for statement in body.pieces.iter().flatten() {
+        for statement in body.statements() {
             match statement {
                 Stmt::Let(_, Expr::Op(op, operands)) => {
                     let first = usize::from(*op == Op::Select);
@@ -109,6 +109,13 @@ impl Requirements {
                 }
                 Stmt::Store(Store::Two(_, numbers)) => own.extend(numbers.iter().any(|n| is_constant(&n.of)).then_some("k")),
                 Stmt::Store(Store::Fill(..)) => _ = own.insert("k"),
+                Stmt::Region(region) => {
+                    let constants = region.given().chain(region.ends()).any(is_constant);
+                    let (by_masks, until) = (!matches!(region.turns, Turns::Each { .. }), matches!(region.turns, Turns::Until { .. }));
+                    own.extend((constants || until).then_some("k"));
+                    own.extend(by_masks.then_some("select"));
+                    own.extend(by_masks.then_some("any"));
+                }
                 _ => {}
             }
         }

@@ -74,6 +74,10 @@ impl Printer<'_> {
                 let _ = self.store(out, *at, &numbers[0]);
                 self.store(out, at + 1, &numbers[1])
             }
+            Stmt::Region(region) => {
+                self.region(out, region);
+                Ok(())
+            }
             // The capabilities of C have neither vectors nor spill slots.
             Stmt::Thirds { .. }
             | Stmt::SumLanes(..)
@@ -94,12 +98,12 @@ impl Printer<'_> {
     }
 
     /// The type of comparisons.
-    fn mask(&self) -> String {
+    pub(super) fn mask(&self) -> String {
         self.numbers.lanes.as_ref().map_or("int".into(), |lanes| format!("{}_m", lanes.prefix))
     }
 
     /// An operand that has to be a vector where values are vectors.
-    fn vector(&self, operand: &Operand) -> String {
+    pub(super) fn vector(&self, operand: &Operand) -> String {
         let text = self.operand(operand);
         match &self.numbers.lanes {
             Some(lanes) if operand.temp().is_none() => format!("{}_k({text})", lanes.prefix),
@@ -155,7 +159,7 @@ impl Printer<'_> {
     }
 
     /// A call of the mathematical library.
-    fn call(&self, function: &str, operands: &str) -> String {
+    pub(super) fn call(&self, function: &str, operands: &str) -> String {
         if let Some(lanes) = &self.numbers.lanes {
             return format!("{}_{function}({operands})", lanes.prefix);
         }
@@ -198,7 +202,7 @@ impl Printer<'_> {
         }
     }
 
-    fn operand(&self, operand: &Operand) -> String {
+    pub(super) fn operand(&self, operand: &Operand) -> String {
         match operand {
             Operand::Temp(temp) => name(*temp),
             Operand::Constant(x) => self.literal(*x),
@@ -241,7 +245,7 @@ pub(super) fn infinity(own_math: Option<&str>) -> String {
     own_math.map_or_else(|| "INFINITY".to_owned(), |prefix| format!("{}_INFINITY", prefix.to_ascii_uppercase()))
 }
 
-fn name(temp: Temp) -> String {
+pub(super) fn name(temp: Temp) -> String {
     format!("x{}", temp.id)
 }
 

@@ -34,10 +34,10 @@ pub(crate) const OTHERS: &str = "#[cfg(not(any(target_arch = \"aarch64\", target
 /// Whether the function profits from an instruction set that not every processor has.
 pub(crate) fn needs_choice(function: &Function, level: Precision) -> bool {
     let fuses = |s: &Stmt| matches!(s, Stmt::Let(_, Expr::Op(Op::MulAdd | Op::MulSub | Op::NegMulAdd | Op::NegMulSub, _)));
-    !function.in_lanes() && (function.body.pieces.iter().flatten().any(fuses) || has_batch(&function.body) || level.of_two())
+    !function.in_lanes() && (function.body.statements().into_iter().any(fuses) || has_batch(&function.body) || level.of_two())
 }
 
 /// Whether sines of several angles are computed together.
 pub(crate) fn has_batch(body: &Body) -> bool {
-    body.pieces.iter().flatten().any(|s| matches!(s, Stmt::SinCos { alone: false, .. }))
+    body.statements().into_iter().any(|s| matches!(s, Stmt::SinCos { alone: false, .. }))
 }

@@ -9,6 +9,7 @@ mod function;
 mod instructions;
 mod literal;
 mod module;
+mod regions;
 mod requirements;
 mod several;
 mod spills;

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use crate::language::rust::several;
 use crate::language::rust::statements::function;
-use crate::lir::{Body, Expr, Operand, Rows, Stmt, Store, Ty};
+use crate::lir::{Body, Expr, Operand, Rows, Stmt, Store, Turns, Ty};
 
 /// Names of functions that are called.
 #[derive(Clone, Debug, Default)]
@@ -29,8 +29,13 @@ impl Requirements {
         }
         // Values passed between pieces are initialised with zeros.
         self.add(["k"]);
-        for statement in body.pieces.iter().flatten() {
+        for statement in body.statements() {
             match statement {
+                Stmt::Region(region) => match region.turns {
+                    Turns::Until { .. } => self.add(["positive", "select", "sub", "any"]),
+                    Turns::Where(_) => self.add(["select", "any"]),
+                    Turns::Each { .. } => {}
+                },
                 Stmt::Let(_, Expr::Op(op, _)) => self.add([function(*op)]),
                 Stmt::Let(_, Expr::LaneInput { .. }) => self.add(["lanes"]),
                 Stmt::Let(_, Expr::Broadcast(_)) => self.add(["lane"]),

@@ -8,7 +8,7 @@ use crate::lir::{Body, Stmt};
 
 /// Whether a body of vectors computes sines of more than one at once.
 pub(crate) fn is_used(body: &Body) -> bool {
-    body.pieces.iter().flatten().any(|s| matches!(s, Stmt::SinCos { angles, .. } if angles.len() > 1))
+    body.statements().into_iter().any(|s| matches!(s, Stmt::SinCos { angles, .. } if angles.len() > 1))
 }
 
 /// The name of the function for this many vectors.

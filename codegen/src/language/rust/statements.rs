@@ -109,6 +109,10 @@ impl Printer<'_> {
                 writeln!(out, ";")
             }
             Stmt::Result(..) => Ok(()),
+            Stmt::Region(region) => {
+                self.region(out, region, define);
+                Ok(())
+            }
         };
     }
 
@@ -117,7 +121,7 @@ impl Printer<'_> {
             (Expr::Input { argument, index }, Ty::States) => format!("at(&{}[{index}], part)", self.arguments[*argument as usize].name),
             (Expr::Input { argument, index }, Ty::Vector(_)) => format!("k({})", self.element(*argument, *index)),
             (Expr::Input { argument, index }, Ty::Pair) => format!("({}, 0.0)", self.element(*argument, *index)),
-            (Expr::Input { argument, index }, _) => self.input(*argument, *index),
+            (Expr::Input { argument, index }, _) => bare(&self.input(*argument, *index)).to_owned(),
             (Expr::LaneInput { argument, indices }, _) => {
                 let numbers = self.body.lanes.input(*indices).iter().map(|&i| self.element(*argument, i));
                 format!("lanes([{}])", numbers.collect::<Vec<_>>().join(", "))
@@ -152,7 +156,15 @@ impl Printer<'_> {
             Op::MulSub => format!("F::fma({a}, {b}, -{c})"),
             Op::NegMulAdd => format!("F::fma(-{a}, {b}, {c})"),
             Op::NegMulSub => format!("F::fma(-{a}, {b}, -{c})"),
-            Op::Constant | Op::Input | Op::LaneConstant | Op::LaneInput | Op::Broadcast | Op::ReduceAdd => a,
+            Op::Constant
+            | Op::Input
+            | Op::LaneConstant
+            | Op::LaneInput
+            | Op::Broadcast
+            | Op::ReduceAdd
+            | Op::List
+            | Op::Region
+            | Op::RegionValue => a,
         }
     }
 
@@ -303,7 +315,7 @@ impl Printer<'_> {
     }
 
     /// A name, a literal or a slot.
-    fn operand(&self, of: &Operand) -> String {
+    pub(super) fn operand(&self, of: &Operand) -> String {
         match (*of, self.body.ty) {
             (Operand::Temp(temp), _) => name(temp),
             (Operand::Slot(slot), _) => self.slot(slot),
@@ -371,7 +383,7 @@ pub(crate) fn ty(ty: Ty) -> (&'static str, &'static str) {
 }
 
 /// The name of a value.
-fn name(temp: Temp) -> String {
+pub(super) fn name(temp: Temp) -> String {
     if temp.load == 0 { format!("x{}", temp.id) } else { format!("x{}r{}", temp.id, temp.load) }
 }
 
@@ -407,6 +419,7 @@ pub(crate) fn function(op: Op) -> &'static str {
         Op::NegMulSub => "fnmsub",
         Op::ReduceAdd => "reduce_add",
         Op::Constant | Op::Input | Op::LaneConstant | Op::LaneInput | Op::Broadcast | Op::Sin | Op::Cos => "",
+        Op::List | Op::Region | Op::RegionValue => "",
     }
 }
 

@@ -32,12 +32,13 @@ pub(crate) fn outline(statements: Vec<Stmt>, length: usize) -> (Vec<Vec<Stmt>>, 
 fn pieces(statements: Vec<Stmt>, length: usize) -> Vec<Vec<Stmt>> {
     let (mut pieces, mut defining) = (vec![Vec::new()], 0);
     for statement in statements {
-        if matches!(statement, Stmt::Let(..) | Stmt::SinCos { .. }) {
-            if defining == length {
+        if matches!(statement, Stmt::Let(..) | Stmt::SinCos { .. } | Stmt::Region(_)) {
+            if defining >= length {
                 pieces.push(Vec::new());
                 defining = 0;
             }
-            defining += 1;
+            // A region stays in one piece.
+            statement.walk(&mut |_| defining += 1);
         }
         if let Some(piece) = pieces.last_mut() {
             piece.push(statement);

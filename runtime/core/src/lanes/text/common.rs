@@ -12,6 +12,10 @@ lane_functions! {
         array(x)[K]
     }
 
+    pub(super) fn any(m: M) -> bool {
+        !within(select(m, k(1.0), k(0.0)), k(0.5))
+    }
+
     pub(super) fn atan2(y: V, x: V) -> V {
         let (mut angles, x) = (array(y), array(x));
         atan2_each(&mut angles, &x);
