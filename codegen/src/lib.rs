@@ -105,9 +105,7 @@ pub struct Generated {
     pub level: Precision,
     /// Operation counts.
     pub ledger: Ledger,
-    /// The graph of each function, in the order of the ledger: what the source computes. Empty
-    /// where the source has a loop ([`unsolved`](articulated_core::algorithm::Function::unsolved)),
-    /// since the graph is then incomplete.
+    /// The graph of each function, in the order of the ledger: what the source computes.
     pub graphs: Vec<graph::Graph>,
     /// The statements of each function, in the order of the ledger: what the target prints.
     pub bodies: Vec<lir::Bodies>,
@@ -129,10 +127,9 @@ impl Generated {
 
     /// Guaranteed bounds of the rounding error of each result of a function, given by its index in
     /// the ledger, for all arguments in the box of [`bound::in_box`]; infinite where a divisor may
-    /// be zero there. `None` if there is no such function, if the source has a loop, or if the
-    /// precision has no bound.
+    /// be zero there. `None` if there is no such function, or if the precision has no bound.
     pub fn bounds_in_box(&self, place: usize) -> Option<Vec<f64>> {
-        let graph = self.graphs.get(place).filter(|graph| !graph.outputs.is_empty())?;
+        let graph = self.graphs.get(place)?;
         let arguments = &self.ledger.functions.get(place)?.arguments;
         let nominal: Vec<f64> = self.parameters.iter().flat_map(|p| &p.nominal).copied().collect();
         let input = |argument: usize, k: usize| match arguments.get(argument) {
@@ -196,7 +193,7 @@ pub fn generate(request: &Request) -> Result<Generated, Diagnostics> {
     };
     let files = request.options.target.print(&module);
     let bodies = module.functions.into_iter().map(lir::function::Function::into_bodies).collect();
-    let graphs = programs.into_iter().map(|p| if p.columns.is_some() { graph::Graph::default() } else { p.graph }).collect();
+    let graphs = programs.into_iter().map(|p| p.with_loop.unwrap_or(p.graph)).collect();
     let source = files.last().map(|file| file.text.clone()).unwrap_or_default();
     Ok(Generated { source, files, model, parameters, level: request.options.level, ledger, graphs, bodies, warnings, unused, snapped })
 }

@@ -32,6 +32,8 @@ pub(crate) struct Program {
     pub(crate) entry: Entry,
     /// The part emitted as a loop; `graph` is the part before it.
     pub(crate) columns: Option<MultiRhsSolve>,
+    /// The graph of the whole function where there is such a loop: the loop is a region.
+    pub(crate) with_loop: Option<Graph>,
 }
 
 /// The program of a function by its cheapest strategy, with isomorphic limbs in lanes if that is
@@ -47,6 +49,7 @@ pub(crate) fn program(spec: FunctionSpec, model: &Model<f64>, parameters: &[Para
         _ => candidate.build(&reduced, unsolved),
     };
     let plain = whole.map_or_else(Graph::default, |(graph, _)| graph);
+    let with_loop = columns.as_ref().map(|columns| columns.whole(&best.0));
     let scalar = if can.scalar_too { best.0.clone() } else { Graph::default() };
     // Limbs need the vector instructions; constants that stay inputs differ from limb to limb, and
     // masks of regions are those of a whole state.
@@ -63,7 +66,7 @@ pub(crate) fn program(spec: FunctionSpec, model: &Model<f64>, parameters: &[Para
     if let Some(columns) = &columns {
         columns.count(&mut entry);
     }
-    Program { spec, graph, plain, scalar, entry, columns }
+    Program { spec, graph, plain, scalar, entry, columns, with_loop }
 }
 
 /// Minimal gain of lanes, which have costs that no count shows (values inserted and extracted one

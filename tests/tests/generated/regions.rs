@@ -303,3 +303,32 @@ fn bounds_hold_where_an_end_is_certain() {
         }
     }
 }
+
+/// Derivatives of forward dynamics end with a loop over the columns of M X = B. Their graph has it
+/// as a region, and so a bound.
+#[test]
+fn the_graph_of_a_solution_column_by_column_is_complete() {
+    for (name, base) in [("panda_like", Base::Fixed), ("quadruped", Base::Floating)] {
+        let urdf = articulated_models::robot(name).expect("a bundled robot").urdf;
+        let mut request = Request::new("robot.urdf", urdf);
+        request.options.robot.base = base;
+        request.options.functions = vec!["forward_dynamics_derivatives".into()];
+        let generated = generate(&request).unwrap();
+        assert!(generated.bodies[0].is_followed_by_columns, "{name}");
+        let case = Case::new(name, read(urdf), base);
+        let state = case.state(&mut Random::new(3));
+        let arguments = [&state.q[..], &state.v, &state.tau];
+        let exact: Vec<Vec<Big>> = arguments.iter().map(|x| x.iter().map(|x| Big::from_f64(*x)).collect()).collect();
+        let exact: Vec<&[Big]> = exact.iter().map(Vec::as_slice).collect();
+        let expected = case.call::<Big>("forward_dynamics_derivatives", &exact);
+        let graph = &generated.graphs[0];
+        let found = graph.evaluate(|argument, k| arguments[argument][k]);
+        let bounded = graph.evaluate_as(|argument, k| Running::<53, 0>::within(arguments[argument][k], 0.0));
+        assert_eq!((found.len(), bounded.len()), (expected.len(), expected.len()));
+        let largest = found.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        for ((found, bound), expected) in found.iter().zip(bounded).zip(expected) {
+            let off = (Big::from_f64(*found) - expected).abs().to_f64();
+            assert!(off <= bound.error && bound.error < 1e-6 * largest, "{name}: {off:e} {:e} of {largest}", bound.error);
+        }
+    }
+}

@@ -37,10 +37,10 @@ pub(super) struct Found<'a> {
     pub(super) own: Option<(&'a Graph, Precision)>,
 }
 
-/// The graph of a function, if it is complete.
+/// The graph of a function.
 pub(super) fn graph<'a>(generated: &'a Generated, function: &str) -> Option<&'a Graph> {
     let place = generated.ledger.functions.iter().position(|f| f.function == function)?;
-    generated.graphs.get(place).filter(|graph| !graph.outputs.is_empty())
+    generated.graphs.get(place)
 }
 
 /// The results of a state for each; `None` without a valid reference. `state`: the arguments in the

@@ -265,7 +265,7 @@ mod tests {
         let mut graph = Graph::default();
         let zero = graph.constant(0.0);
         graph.outputs = vec![zero; spec.parts.iter().map(numbers).sum()];
-        let program = Program { spec, graph, plain: Graph::default(), scalar: Graph::default(), entry, columns: None };
+        let program = Program { spec, graph, plain: Graph::default(), scalar: Graph::default(), entry, columns: None, with_loop: None };
         let level = Precision::default();
         let can = Capabilities { level, vectors: true, raw_memory: true, scalar_too: false, loops: true, spills: true, states: false };
         let mut function = Function::of(&program, shape, false, can);
