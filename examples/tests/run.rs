@@ -52,6 +52,15 @@ fn a_controller_of_ones_own_is_that_by_hand_in_fewer_instructions() {
 }
 
 #[test]
+fn the_hand_reaches_each_place_alone_and_in_vectors() {
+    let text = printed(env!("CARGO_BIN_EXE_inverse_kinematics"));
+    assert!(text.contains("100000 of 100000 places reached"), "{text}");
+    assert!(number(&text.replace(" m\n", "\n"), "the farthest within") < 1e-9, "{text}");
+    assert!(number(&text.replace(" rad", ""), "largest difference") < 1e-9, "{text}");
+    assert!((number(&text, "a place that moves by 1") - 1.0).abs() < 1e-6, "{text}");
+}
+
+#[test]
 fn products_with_jacobians_agree_from_both_sides() {
     let text = printed(env!("CARGO_BIN_EXE_gradients"));
     assert!(number(&text, "arm: ") < 1e-12 && number(&text, "legs: ") < 1e-12, "{text}");
