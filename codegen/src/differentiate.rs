@@ -9,7 +9,7 @@ use articulated_core::model::Model;
 use num_traits::Zero;
 
 use crate::function_spec::{Derivative, FunctionSpec, FunctionTerm, Output, Transform, weights};
-use crate::graph::{Graph, NodeId, Op};
+use crate::graph::{Graph, NodeId};
 use crate::pass::{self, adjoint, dce, splice, tangent};
 use crate::sym::Sym;
 
@@ -42,11 +42,6 @@ impl<'a> Steps<'a> {
     fn step(&self, argument: Argument) -> Option<usize> {
         let place = self.transform.wrt.iter().position(|a| *a == argument)?;
         (argument.is_configuration() && !self.transform.in_coordinates).then_some(self.arguments.len() + 1 + place)
-    }
-
-    /// The steps, if this is in coordinates. A part that is only evaluated then takes q/|q| too.
-    pub(crate) fn in_coordinates(&self) -> Option<&Self> {
-        Some(self).filter(|_| self.transform.in_coordinates)
     }
 
     /// q ⊕ δ for a configuration by which the function is differentiated; other arguments as given.
@@ -124,7 +119,7 @@ impl<'a> Steps<'a> {
             Derivative::Hessian => self.hessian(&dce(&adjoint(graph, &inputs, weight)), &inputs),
             Derivative::Jacobian => self.jacobian(graph, &inputs),
         };
-        self.at_rest(&found)
+        pass::inline(&self.at_rest(&found))
     }
 
     /// The columns of the derivative of the gradient by forward mode, on and below the diagonal.
@@ -191,7 +186,7 @@ impl<'a> Steps<'a> {
             below += result;
         }
         (forward.outputs, reverse.outputs) = (by_columns, by_rows);
-        let [forward, reverse] = [forward, reverse].map(|graph| dce(&self.at_rest(&graph)));
+        let [forward, reverse] = [forward, reverse].map(|graph| pass::inline(&self.at_rest(&graph)));
         if is_wide || is_tall {
             return if is_wide { reverse } else { forward };
         }
@@ -228,97 +223,6 @@ impl<'a> Steps<'a> {
         let graph = dce(graph);
         let mut new = graph.emptied();
         new.outputs = splice(&mut new, &graph, |new, argument, _| steps.contains(&argument).then(|| new.constant(0.0)));
-        new
-    }
-}
-
-/// The derivatives of forward dynamics by those of inverse dynamics, which are cheaper and divide
-/// less. From ID(q, v, a, w) = τ for a = FD(q, v, τ, w):
-///
-/// ```text
-/// da = M⁻¹ (dτ − ∂ID·(dq, dv, dw)),   λᵀ da = μᵀ dτ − μᵀ ∂ID·(dq, dv, dw)   with   μ = M⁻¹ λ
-/// ```
-pub(crate) struct ImplicitRule<'a> {
-    steps: &'a Steps<'a>,
-    part: &'a FunctionTerm,
-}
-
-impl<'a> ImplicitRule<'a> {
-    /// For a derivative that it applies to. Torques that motors change are not τ of the equation.
-    pub(crate) fn of(spec: &'a FunctionSpec, steps: &'a Steps<'a>, model: &Model<f64>) -> Option<Self> {
-        let part = &spec.parts[0];
-        let is_forward = part.function.general == FunctionId::forward_dynamics_with_wrenches;
-        let is_known = matches!(steps.transform.kind, Derivative::Vjp | Derivative::Jvp);
-        (is_forward && is_known && !model.has_motors()).then_some(Self { steps, part })
-    }
-
-    /// The forward dynamics, the solution of M x = b, and the inverse dynamics.
-    pub(crate) fn terms(&self) -> [FunctionTerm; 3] {
-        let takes_wrenches = self.part.function.takes.contains(&Argument::Wrenches);
-        let inverse = if takes_wrenches { FunctionId::inverse_dynamics_with_wrenches } else { FunctionId::inverse_dynamics };
-        let of = |id: FunctionId| {
-            let function = id.row();
-            let constants =
-                self.part.constants.iter().filter(|(a, _)| function.takes.contains(a) && *a != Argument::Tau).cloned().collect();
-            FunctionTerm { function, constants, sines: self.part.sines }
-        };
-        [self.part.clone(), of(FunctionId::solve_mass_matrix), of(inverse)]
-    }
-
-    /// Numbers of arguments that are free: b, a and μ.
-    fn free(&self, which: usize) -> usize {
-        self.steps.arguments.len() + 1 + self.steps.transform.wrt.len() + which
-    }
-
-    fn place(&self, argument: Argument) -> Option<usize> {
-        self.steps.arguments.iter().position(|a| *a == argument)
-    }
-
-    /// Where the solution of M x = b takes its arguments from.
-    pub(crate) fn place_in_solution(&self, argument: Argument) -> Option<usize> {
-        if argument == Argument::Tau { Some(self.free(0)) } else { self.place(argument) }
-    }
-
-    /// Where the inverse dynamics takes its arguments from.
-    pub(crate) fn place_in_inverse(&self, argument: Argument) -> Option<usize> {
-        if argument == Argument::A { Some(self.free(1)) } else { self.place(argument) }
-    }
-
-    /// The derivative, from the graphs of the terms.
-    pub(crate) fn derivative(&self, [forward, solution, inverse]: [Graph; 3]) -> Graph {
-        let steps = self.steps;
-        let mut new = forward.emptied();
-        let acceleration = splice(&mut new, &forward, |_, _, _| None);
-        let solve =
-            |new: &mut Graph, b: &[NodeId]| splice(new, &solution, |_, argument, index| (argument == self.free(0)).then(|| b[index]));
-        let nv = acceleration.len();
-        let torque = |new: &mut Graph, argument: &str| (0..nv).map(|k| new.input(steps.argument(argument), k)).collect::<Vec<_>>();
-        new.outputs = if steps.transform.kind == Derivative::Jvp {
-            let held = steps.at_rest(&steps.along(&inverse));
-            let change = splice(&mut new, &held, |_, argument, index| (argument == self.free(1)).then(|| acceleration[index]));
-            let driven = if steps.transform.wrt.contains(&Argument::Tau) { torque(&mut new, "dtau") } else { Vec::new() };
-            let minus = |(k, change): (usize, &NodeId)| match driven.get(k) {
-                Some(driven) => new.apply(Op::Sub, &[*driven, *change]),
-                None => new.apply(Op::Neg, &[*change]),
-            };
-            let b: Vec<NodeId> = change.iter().enumerate().map(minus).collect();
-            solve(&mut new, &b)
-        } else {
-            let weights = torque(&mut new, "weights");
-            let mu = solve(&mut new, &weights);
-            let held = steps.at_rest(&adjoint(&inverse, &steps.inputs(), |graph, k| graph.input(self.free(2), k)));
-            let mut gradient = splice(&mut new, &held, |_, argument, index| match argument {
-                _ if argument == self.free(1) => Some(acceleration[index]),
-                _ if argument == self.free(2) => Some(mu[index]),
-                _ => None,
-            });
-            // One result for each input, of which τ is no input of the inverse dynamics.
-            let tau = self.place(Argument::Tau);
-            for (result, (argument, index)) in gradient.iter_mut().zip(steps.inputs()) {
-                *result = if Some(argument) == tau { mu[index] } else { new.apply(Op::Neg, &[*result]) };
-            }
-            gradient
-        };
         new
     }
 }

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use articulated_core::{Scalar, region};
 use num_traits::{One, Zero};
 
-use crate::graph::{CAPTURED, CARRIED, Graph, Kind, NodeId, Op, ROW, Region};
+use crate::graph::{CAPTURED, CARRIED, Equation, Graph, Kind, NodeId, Op, ROW, Region};
 
 thread_local! {
     static TRACE: RefCell<Trace> = RefCell::default();
@@ -33,6 +33,8 @@ struct Trace {
     bodies: Vec<Body>,
     /// How many regions were opened.
     opened: u32,
+    /// Whether equations are kept for derivatives.
+    with_equations: bool,
 }
 
 /// The body of a region while it is traced.
@@ -153,7 +155,17 @@ impl Sym {
 /// If a body of a region hands a value to the program around it, other than by its state and its
 /// results.
 pub fn trace(program: impl FnOnce() -> Vec<Sym>) -> Graph {
-    let outer = TRACE.take();
+    traced(false, program)
+}
+
+/// The same for a program that is differentiated: what solves an equation stays a region until
+/// [`inline`](crate::pass::inline).
+pub(crate) fn trace_with_equations(program: impl FnOnce() -> Vec<Sym>) -> Graph {
+    traced(true, program)
+}
+
+fn traced(with_equations: bool, program: impl FnOnce() -> Vec<Sym>) -> Graph {
+    let outer = TRACE.replace(Trace { with_equations, ..Trace::default() });
     let outputs = program();
     let mut trace = TRACE.replace(outer);
     let outputs = outputs.into_iter().map(|symbol| trace.node(symbol)).collect();
@@ -172,28 +184,35 @@ fn apply(op: Op, operands: &[Sym]) -> Sym {
     })
 }
 
-/// Traces the body of a region. `body` gets the symbols of carried values and of a row, and returns
-/// the results. Returns the values that come out.
-fn region(kind: Kind, starts: &[Sym], more: &[Sym], body: impl FnOnce(&[Sym], &[Sym]) -> Vec<Sym>) -> Vec<Sym> {
-    let row = if let Kind::ForEach { row, .. } = kind { row } else { 0 };
-    let (state, rows) = TRACE.with_borrow_mut(|trace| {
+/// Traces a body as a graph of its own. It gets the symbols of `inputs[k]` elements of argument k,
+/// and returns the results. `captured`: the nodes of the graph around it that bodies before it
+/// captured, behind which its own come.
+fn body(inputs: [usize; 3], captured: &mut Vec<NodeId>, body: impl FnOnce([&mut [Sym]; 3]) -> Vec<Sym>) -> Graph {
+    let mut symbols = TRACE.with_borrow_mut(|trace| {
         trace.opened += 1;
         let (level, mut graph) = (trace.opened, Graph::default());
-        let mut inputs =
-            |argument: usize, count: usize| (0..count).map(|k| Sym { node: graph.input(argument, k), level }).collect::<Vec<_>>();
-        let symbols = (inputs(CARRIED, starts.len()), inputs(ROW, row));
-        trace.bodies.push(Body { level, graph, captured: Vec::new() });
+        let symbols = [CARRIED, CAPTURED, ROW]
+            .map(|argument| (0..inputs[argument]).map(|k| Sym { node: graph.input(argument, k), level }).collect::<Vec<_>>());
+        trace.bodies.push(Body { level, graph, captured: std::mem::take(captured) });
         symbols
     });
-    let results = body(&state, &rows);
+    let results = body(symbols.each_mut().map(Vec::as_mut_slice));
     TRACE.with_borrow_mut(|trace| {
         let outputs = results.into_iter().map(|symbol| trace.node(symbol)).collect();
-        let Some(Body { mut graph, captured, .. }) = trace.bodies.pop() else { return Vec::new() };
-        graph.outputs = outputs;
+        let Some(mut done) = trace.bodies.pop() else { return Graph::default() };
+        *captured = done.captured;
+        done.graph.outputs = outputs;
+        done.graph
+    })
+}
+
+/// Adds a region on these starts and further values, and returns the values that come out.
+fn opened(kind: Kind, body: Graph, equation: Option<Equation>, starts: &[Sym], captured: &[NodeId], more: &[Sym]) -> Vec<Sym> {
+    TRACE.with_borrow_mut(|trace| {
         let mut given: Vec<NodeId> = starts.iter().map(|symbol| trace.node(*symbol)).collect();
-        given.extend(&captured);
+        given.extend(captured);
         given.extend(more.iter().map(|symbol| trace.node(*symbol)).collect::<Vec<_>>());
-        let region = Region { kind, carried: starts.len(), captured: captured.len(), body: graph };
+        let region = Region { kind, carried: starts.len(), captured: captured.len(), body, equation };
         let (values, level) = (region.values(), trace.level());
         let graph = trace.graph();
         let region = graph.region(Arc::new(region), &given);
@@ -289,32 +308,33 @@ impl Scalar for Sym {
         apply(Op::Select, &[mask, a, b])
     }
 
-    fn repeat(most: usize, state: &mut [Self], mut body: impl FnMut(&mut [Self]) -> Self) -> Self {
+    fn repeat(most: usize, state: &mut [Self], mut turn: impl FnMut(&mut [Self]) -> Self) -> Self {
         if most == 0 {
             return Self::zero().positive();
         }
-        let values = region(Kind::Repeat { most }, state, &[], |carried, _| {
-            let mut next = carried.to_vec();
-            let ends = body(&mut next);
-            next.push(ends);
-            next
+        let mut captured = Vec::new();
+        let graph = body([state.len(), 0, 0], &mut captured, |[carried, ..]| {
+            let ends = turn(carried);
+            [&*carried, &[ends]].concat()
         });
+        let values = opened(Kind::Repeat { most }, graph, None, state, &captured, &[]);
         let (next, held) = values.split_at(state.len());
         state.copy_from_slice(next);
         held[0].positive()
     }
 
-    fn when(mask: Self, state: &mut [Self], body: impl FnOnce(&mut [Self])) {
+    fn when(mask: Self, state: &mut [Self], turn: impl FnOnce(&mut [Self])) {
         match TRACE.with_borrow(|trace| trace.constant(mask)) {
             Some(0.0) => return,
-            Some(_) => return body(state),
+            Some(_) => return turn(state),
             None => {}
         }
-        let values = region(Kind::When, state, &[mask], |carried, _| {
-            let mut next = carried.to_vec();
-            body(&mut next);
-            next
+        let mut captured = Vec::new();
+        let graph = body([state.len(), 0, 0], &mut captured, |[carried, ..]| {
+            turn(carried);
+            carried.to_vec()
         });
+        let values = opened(Kind::When, graph, None, state, &captured, &[mask]);
         state.copy_from_slice(&values);
     }
 
@@ -323,22 +343,51 @@ impl Scalar for Sym {
         table: &[Self],
         state: &mut [Self],
         results: &mut [Self],
-        mut body: impl FnMut(&[Self], &mut [Self], &mut [Self]),
+        mut turn: impl FnMut(&[Self], &mut [Self], &mut [Self]),
     ) {
         let [row, own] = region::widths(turns, table.len(), results.len());
         if turns < 2 {
-            return region::for_each_turn(turns, table, state, results, body);
+            return region::for_each_turn(turns, table, state, results, turn);
         }
-        let kind = Kind::ForEach { turns, row, results: own };
-        let values = region(kind, state, table, |carried, row| {
-            let mut all = [carried.to_vec(), vec![Self::zero(); own]].concat();
-            let (state, results) = all.split_at_mut(carried.len());
-            body(row, state, results);
-            all
+        let (kind, mut captured) = (Kind::ForEach { turns, row, results: own }, Vec::new());
+        let graph = body([state.len(), 0, row], &mut captured, |[carried, _, row]| {
+            let mut results = vec![Self::zero(); own];
+            turn(row, carried, &mut results);
+            [&*carried, &results].concat()
         });
+        let values = opened(kind, graph, None, state, &captured, table);
         let (next, found) = values.split_at(state.len());
         state.copy_from_slice(next);
         results.copy_from_slice(found);
+    }
+
+    fn implicit<C>(
+        context: &mut C,
+        x: &mut [Self],
+        value: impl FnOnce(&mut C, &mut [Self]),
+        residual: impl FnOnce(&mut C, &[Self], &mut [Self]),
+        solve: impl FnOnce(&mut C, &mut [Self]),
+    ) {
+        if !TRACE.with_borrow(|trace| trace.with_equations) {
+            return value(context, x);
+        }
+        let (n, mut captured) = (x.len(), Vec::new());
+        let found = body([0, 0, 0], &mut captured, |_| {
+            let mut x = vec![Self::zero(); n];
+            value(context, &mut x);
+            x
+        });
+        let residual = body([n, 0, 0], &mut captured, |[x, ..]| {
+            let mut r = vec![Self::zero(); n];
+            residual(context, x, &mut r);
+            r
+        });
+        let solve = body([n, 0, 0], &mut captured, |[b, ..]| {
+            solve(context, b);
+            b.to_vec()
+        });
+        let kind = Kind::ForEach { turns: 1, row: 0, results: n };
+        x.copy_from_slice(&opened(kind, found, Some(Equation { residual, solve }), &[], &captured, &[]));
     }
 }
 

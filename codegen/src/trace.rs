@@ -7,7 +7,7 @@ use articulated_core::algorithm::{Argument, Variant, divide_by_length};
 use articulated_core::model::Model;
 use num_traits::Zero;
 
-use crate::differentiate::{ImplicitRule, Steps};
+use crate::differentiate::Steps;
 use crate::function_spec::{FunctionSpec, FunctionTerm};
 use crate::graph::{Graph, Op};
 use crate::limbs::{Constants, IsomorphicLimbs, pack};
@@ -110,7 +110,7 @@ fn traced(
     mut view: impl FnMut(&FunctionTerm, &Strategy) -> View<Sym>,
 ) -> Graph {
     let place = |argument: Argument| arguments.iter().position(|a| *a == argument);
-    let mut graph_of = |terms: &[FunctionTerm], place: &dyn Fn(Argument) -> Option<usize>, steps: Option<&Steps<'_>>| {
+    let mut graph_of = |terms: &[FunctionTerm], steps: Option<&Steps<'_>>| {
         let mut one = |(term, strategy): (&FunctionTerm, &Strategy)| {
             let strategy = strategy.for_function(term.function);
             let view = view(term, &strategy);
@@ -122,25 +122,16 @@ fn traced(
                 }
                 None => given,
             };
-            run(term, &strategy, &view, place, &moved)
+            run(term, &strategy, &view, &place, &moved)
         };
-        sym::trace(|| terms.iter().zip(strategies).flat_map(&mut one).collect())
+        let all = || terms.iter().zip(strategies).flat_map(&mut one).collect();
+        if steps.is_some() { sym::trace_with_equations(all) } else { sym::trace(all) }
     };
-    let Some(steps) = Steps::of(spec, arguments, model) else { return graph_of(&spec.parts, &place, None) };
-    if let Some(rule) = ImplicitRule::of(spec, &steps, model) {
-        let [forward, solution, inverse] = rule.terms();
-        let graphs = [
-            graph_of(&[forward], &place, steps.in_coordinates()),
-            graph_of(&[solution], &|argument| rule.place_in_solution(argument), steps.in_coordinates()),
-            graph_of(&[inverse], &|argument| rule.place_in_inverse(argument), Some(&steps)),
-        ];
-        let requested = graphs[0].clone();
-        return rule.derivative(graphs).requested_as(&requested);
-    }
-    let graph = graph_of(&spec.parts, &place, Some(&steps));
+    let Some(steps) = Steps::of(spec, arguments, model) else { return graph_of(&spec.parts, None) };
+    let graph = graph_of(&spec.parts, Some(&steps));
     let derivative = steps.derivative(&graph).requested_as(&graph);
     match steps.own_algorithm(&spec.parts[0]) {
-        Some(term) => cheaper(derivative, steps.blocks(graph_of(&[term], &place, None))),
+        Some(term) => cheaper(derivative, steps.blocks(graph_of(&[term], None))),
         None => derivative,
     }
 }

@@ -60,6 +60,17 @@ pub struct Region {
     pub captured: usize,
     /// The body.
     pub body: Graph,
+    /// The equation that the results of a body of one turn solve, for derivatives.
+    pub equation: Option<Equation>,
+}
+
+/// r(x, p) = 0, with x as carried values and p as the captured values of the region.
+#[derive(Clone, Debug)]
+pub struct Equation {
+    /// r.
+    pub residual: Graph,
+    /// (∂r/∂x)⁻¹ b, with b as carried values; ∂r/∂x is symmetric.
+    pub solve: Graph,
 }
 
 impl Region {

@@ -5,13 +5,14 @@
 //!   "Reverse accumulation and attractive fixed points", Optimization Methods and Software 3,
 //!   1994). Both are iterations with the same rate of convergence. The start does not matter.
 //! * What runs where a mask holds has its derivative there, and the identity elsewhere.
+//! * What solves r(x, p) = 0 has dx = −A⁻¹ ∂r/∂p dp, p̄ = −(∂r/∂p)ᵀ A⁻¹ x̄ with a symmetric A = ∂r/∂x.
 //! * Turns of a table have tangents turn by turn, and adjoints from the last turn to the first, for
 //!   which the states are stored.
 
 use std::sync::Arc;
 
 use super::{dce, gradients, splice, tangents};
-use crate::graph::{CAPTURED, CARRIED, Graph, Kind, NodeId, Op, ROW, Region};
+use crate::graph::{CAPTURED, CARRIED, Equation, Graph, Kind, NodeId, Op, ROW, Region};
 
 /// Turns of the iteration for a derivative, for each turn of the iteration itself.
 const LONGER: usize = 2;
@@ -77,6 +78,9 @@ impl Occurrence {
         let active: Vec<usize> = (0..m).filter(|j| known[n + j].is_some()).collect();
         let moved = || active.iter().filter_map(|j| known[n + j]);
         let starts = || known[..n].iter().map(|start| start.unwrap_or(zero));
+        if let Some(equation) = &self.region.equation {
+            return self.tangent_by(equation, graph, &active, moved());
+        }
         if let Kind::ForEach { turns, row, results } = self.region.kind {
             return self.tangent_of_turns(graph, known, (turns, row, results), &active);
         }
@@ -103,7 +107,45 @@ impl Occurrence {
             }
         };
         body.outputs = slopes;
-        graph.region(Arc::new(Region { kind, carried: n, captured: n + m + active.len(), body }), &given)
+        graph.region(Arc::new(Region { kind, carried: n, captured: n + m + active.len(), body, equation: None }), &given)
+    }
+
+    /// The values of an equation: results of one turn.
+    fn solution(&self, graph: &mut Graph) -> Vec<NodeId> {
+        (0..self.region.values()).map(|k| graph.region_value(self.of, k)).collect()
+    }
+
+    /// dx = −A⁻¹ ∂r/∂p dp; captured values: x, p, dp.
+    fn tangent_by(&self, equation: &Equation, graph: &mut Graph, active: &[usize], moved: impl Iterator<Item = NodeId>) -> NodeId {
+        let (n, m) = (self.region.values(), self.region.captured);
+        let (mut body, residual) = at_solution(&equation.residual, n);
+        let count = body.nodes().len();
+        let slopes = tangents(&mut body, &residual, count, |g, _, k| {
+            let place = active.iter().position(|j| n + j == k)?;
+            Some(g.input(CAPTURED, n + m + place))
+        });
+        let b: Vec<NodeId> = slopes.iter().map(|slope| body.apply(Op::Neg, &[*slope])).collect();
+        body.outputs = solved(&mut body, equation, &b);
+        let given: Vec<NodeId> = self.solution(graph).into_iter().chain(self.captured().iter().copied()).chain(moved).collect();
+        graph.region(Arc::new(once(body, n + m + active.len())), &given)
+    }
+
+    /// p̄ = −(∂r/∂p)ᵀ A⁻¹ x̄; captured values: x, p, x̄.
+    fn adjoint_by(&self, equation: &Equation, graph: &mut Graph, weights: &[Option<NodeId>], active: &[bool]) -> Vec<(usize, NodeId)> {
+        let (n, m) = (self.region.values(), self.region.captured);
+        let zero = graph.constant(0.0);
+        let wanted: Vec<usize> = (0..m).filter(|j| active[*j]).collect();
+        let (mut body, residual) = at_solution(&equation.residual, n);
+        let count = body.nodes().len();
+        let seeds: Vec<NodeId> = (0..n).map(|k| body.input(CAPTURED, n + m + k)).collect();
+        let mu = solved(&mut body, equation, &seeds);
+        let wrt: Vec<(usize, usize)> = wanted.iter().map(|j| (CAPTURED, n + j)).collect();
+        let found = gradients(&mut body, &residual, count, &wrt, |_, k| mu[k]);
+        body.outputs = found.iter().map(|x| body.apply(Op::Neg, &[*x])).collect();
+        let mut given: Vec<NodeId> = self.solution(graph).into_iter().chain(self.captured().iter().copied()).collect();
+        given.extend(weights.iter().map(|weight| weight.unwrap_or(zero)));
+        let back = graph.region(Arc::new(once(body, n + m + n)), &given);
+        wanted.into_iter().enumerate().map(|(k, place)| (place, graph.region_value(back, k))).collect()
     }
 
     fn tangent_of_turns(
@@ -135,7 +177,7 @@ impl Occurrence {
             given.extend(columns.iter().map(|column| known[first + column].unwrap_or(zero)));
         }
         let kind = Kind::ForEach { turns, row: row + columns.len(), results };
-        graph.region(Arc::new(Region { kind, carried: 2 * n, captured: m + active.len(), body }), &given)
+        graph.region(Arc::new(Region { kind, carried: 2 * n, captured: m + active.len(), body, equation: None }), &given)
     }
 
     /// The tangent of value `k` that comes out, from the region of the tangents.
@@ -151,6 +193,9 @@ impl Occurrence {
     /// Adds the regions of the adjoints. `weights`: the adjoints of the values that come out;
     /// `active`: which of the values that go in have one. Returns those.
     pub(super) fn adjoint(&self, graph: &mut Graph, weights: &[Option<NodeId>], active: &[bool]) -> Vec<(usize, NodeId)> {
+        if let Some(equation) = &self.region.equation {
+            return self.adjoint_by(equation, graph, weights, active);
+        }
         match self.region.kind {
             Kind::Repeat { most } => self.adjoint_of_iteration(graph, weights, active, most),
             Kind::When => self.adjoint_where(graph, weights, active),
@@ -176,7 +221,7 @@ impl Occurrence {
         body.outputs = next;
         let given = [&seeds[..], &at, &seeds].concat();
         let kind = Kind::Repeat { most: LONGER * most };
-        let held = graph.region(Arc::new(Region { kind, carried: n, captured: n + m + n, body }), &given);
+        let held = graph.region(Arc::new(Region { kind, carried: n, captured: n + m + n, body, equation: None }), &given);
         // p̄ = F_pᵀ w
         let wanted: Vec<usize> = (0..m).filter(|j| active[n + j]).collect();
         let (mut after, outputs) = self.at_state();
@@ -198,7 +243,7 @@ impl Occurrence {
         let mut given: Vec<NodeId> = weights.iter().map(|weight| weight.unwrap_or(zero)).collect();
         given.extend(wanted.iter().map(|_| zero));
         given.extend(self.starts().iter().chain(self.captured()).chain(self.table()));
-        let region = Region { kind: Kind::When, carried: n + wanted.len(), captured: n + m, body };
+        let region = Region { kind: Kind::When, carried: n + wanted.len(), captured: n + m, body, equation: None };
         let found = graph.region(Arc::new(region), &given);
         let places = (0..n).chain(wanted.into_iter().map(|j| n + j));
         places.enumerate().map(|(k, place)| (place, graph.region_value(found, k))).collect()
@@ -243,7 +288,7 @@ impl Occurrence {
         }
         let carried = n + wanted.len();
         let kind = Kind::ForEach { turns, row: n + row + results, results: columns.len() };
-        let back = graph.region(Arc::new(Region { kind, carried, captured: m, body }), &given);
+        let back = graph.region(Arc::new(Region { kind, carried, captured: m, body, equation: None }), &given);
         let mut all: Vec<usize> = (0..n).chain(wanted.iter().map(|j| n + j)).collect();
         all.extend((0..turns).rev().flat_map(|turn| columns.iter().map(move |column| n + m + turn * row + column)));
         all.into_iter().enumerate().map(|(k, place)| (place, graph.region_value(back, k))).collect()
@@ -252,14 +297,37 @@ impl Occurrence {
     /// The states at the start of each turn.
     fn states(&self, graph: &mut Graph, turns: usize, row: usize) -> Vec<NodeId> {
         let n = self.region.carried;
+        if n == 0 {
+            return Vec::new();
+        }
         let mut body = self.region.body.clone();
         body.outputs.truncate(n);
         let before: Vec<NodeId> = (0..n).map(|k| body.input(CARRIED, k)).collect();
         body.outputs.extend(before);
         let kind = Kind::ForEach { turns, row, results: n };
-        let stored = graph.region(Arc::new(Region { kind, carried: n, captured: self.region.captured, body: dce(&body) }), &self.given);
+        let stored = graph
+            .region(Arc::new(Region { kind, carried: n, captured: self.region.captured, body: dce(&body), equation: None }), &self.given);
         (0..turns * n).map(|k| graph.region_value(stored, n + k)).collect()
     }
+}
+
+/// A body with x as captured values, and p behind them.
+fn at_solution(residual: &Graph, n: usize) -> (Graph, Vec<NodeId>) {
+    let mut body = Graph::default();
+    let outputs = splice(&mut body, residual, |g, argument, k| Some(g.input(CAPTURED, if argument == CARRIED { k } else { n + k })));
+    (body, outputs)
+}
+
+/// A⁻¹ b in a body with x and p as captured values.
+fn solved(body: &mut Graph, equation: &Equation, b: &[NodeId]) -> Vec<NodeId> {
+    let n = b.len();
+    splice(body, &equation.solve, |g, argument, k| Some(if argument == CARRIED { b[k] } else { g.input(CAPTURED, n + k) }))
+}
+
+/// A region of one turn without a table.
+fn once(body: Graph, captured: usize) -> Region {
+    let kind = Kind::ForEach { turns: 1, row: 0, results: body.outputs.len() };
+    Region { kind, carried: 0, captured, body, equation: None }
 }
 
 /// The mask that the carried values no longer change, as in `articulated_core::region`.

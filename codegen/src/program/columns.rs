@@ -90,7 +90,7 @@ impl MultiRhsSolve {
             }));
         }
         let kind = Kind::ForEach { turns: 3 * n, row: n, results: n };
-        let region = Region { kind, carried: 0, captured: entries.len(), body: pass::run_all_unchecked(body) };
+        let region = Region { kind, carried: 0, captured: entries.len(), body: pass::run_all_unchecked(body), equation: None };
         let solved = graph.region(Arc::new(region), &given);
         let value = |at: usize| (at / n / n * n + at % n) * n + at / n % n;
         graph.outputs = (0..3 * n * n).map(|at| graph.region_value(solved, value(at))).collect();

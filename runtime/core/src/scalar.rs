@@ -104,6 +104,22 @@ pub trait Scalar:
     ) {
         region::for_each_turn(turns, table, state, results, body);
     }
+
+    /// Computes x by `value`, and declares that it solves r(x, p) = 0 with a symmetric ∂r/∂x.
+    ///
+    /// `residual(x, r)` has r at x, `solve(b)` replaces b by (∂r/∂x)⁻¹ b. Only a symbol calls these
+    /// two: derivatives of generated code are then those of the equation,
+    /// dx = −(∂r/∂x)⁻¹ ∂r/∂p dp, and not those of the way on which x was found.
+    fn implicit<C>(
+        context: &mut C,
+        x: &mut [Self],
+        value: impl FnOnce(&mut C, &mut [Self]),
+        residual: impl FnOnce(&mut C, &[Self], &mut [Self]),
+        solve: impl FnOnce(&mut C, &mut [Self]),
+    ) {
+        let _ = (residual, solve);
+        value(context, x);
+    }
 }
 
 /// 2^n, of −1022 or more and 1023 or less; of a lesser n that of −1022.

@@ -7,6 +7,7 @@
 //! after the other.
 
 use super::effects::{self, LoadCase};
+use super::forward_dynamics::by_equation;
 use super::workspace::Column;
 use super::{Workspace, wrenches};
 use crate::Scalar;
@@ -45,7 +46,11 @@ pub fn articulated_body_with_wrenches<S: Scalar>(
     wrenches: &[S],
     out: &mut [S],
 ) {
-    solve(model, ws, q, v, tau, &LoadCase::of(model, wrenches), out);
+    let value = |ws: &mut Workspace<S>, out: &mut [S]| solve(model, ws, q, v, tau, &LoadCase::of(model, wrenches), out);
+    by_equation(model, ws, (q, v, tau, wrenches), out, value, |ws, b| {
+        let torque = b.to_vec();
+        solve_by_articulated_body(model, ws, q, &torque, b);
+    });
 }
 
 /// M(q)⁻¹·τ: forward dynamics at rest and without gravity.

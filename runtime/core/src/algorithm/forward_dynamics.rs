@@ -28,15 +28,42 @@ pub fn forward_dynamics_with_wrenches<S: Scalar>(
     wrenches: &[S],
     out: &mut [S],
 ) {
-    inverse_dynamics_with_wrenches(model, ws, q, v, &[], wrenches, out);
-    // b = τ − h
-    let mut driven = core::mem::take(&mut ws.driven);
-    effects::motor_torque(model, v, tau, &mut driven);
-    out.iter_mut().zip(&driven).for_each(|(b, tau)| *b = *tau - *b);
-    ws.driven = driven;
-    let matrix = factored(model, ws, q);
-    solve(&matrix, &ws.parent_dof, out);
-    ws.matrix = matrix;
+    let value = |ws: &mut Workspace<S>, out: &mut [S]| {
+        inverse_dynamics_with_wrenches(model, ws, q, v, &[], wrenches, out);
+        // b = τ − h
+        let mut driven = core::mem::take(&mut ws.driven);
+        effects::motor_torque(model, v, tau, &mut driven);
+        out.iter_mut().zip(&driven).for_each(|(b, tau)| *b = *tau - *b);
+        ws.driven = driven;
+        let matrix = factored(model, ws, q);
+        solve(&matrix, &ws.parent_dof, out);
+        ws.matrix = matrix;
+    };
+    by_equation(model, ws, (q, v, tau, wrenches), out, value, |ws, b| {
+        let matrix = factored(model, ws, q);
+        solve(&matrix, &ws.parent_dof, b);
+        ws.matrix = matrix;
+    });
+}
+
+/// Accelerations computed by `value`, as what solves M(q) a + h(q, v) − τ − Σ Jᵀw = 0; `solve`: M⁻¹
+/// b in the place of b.
+pub(super) fn by_equation<S: Scalar>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    (q, v, tau, wrenches): (&[S], &[S], &[S], &[S]),
+    out: &mut [S],
+    value: impl FnOnce(&mut Workspace<S>, &mut [S]),
+    solve: impl FnOnce(&mut Workspace<S>, &mut [S]),
+) {
+    let residual = |ws: &mut Workspace<S>, a: &[S], r: &mut [S]| {
+        inverse_dynamics_with_wrenches(model, ws, q, v, a, wrenches, r);
+        let mut driven = core::mem::take(&mut ws.driven);
+        effects::motor_torque(model, v, tau, &mut driven);
+        r.iter_mut().zip(&driven).for_each(|(r, tau)| *r -= *tau);
+        ws.driven = driven;
+    };
+    S::implicit(ws, &mut out[..model.nv], value, residual, solve);
 }
 
 /// M(q)⁻¹·τ, without M⁻¹.
