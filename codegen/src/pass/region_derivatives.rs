@@ -5,7 +5,7 @@
 //!   "Reverse accumulation and attractive fixed points", Optimization Methods and Software 3,
 //!   1994). Both are iterations with the same rate of convergence. The start does not matter.
 //! * What runs where a mask holds has its derivative there, and the identity elsewhere.
-//! * What solves r(x, p) = 0 has dx = −A⁻¹ ∂r/∂p dp, p̄ = −(∂r/∂p)ᵀ A⁻¹ x̄ with a symmetric A = ∂r/∂x.
+//! * What solves r(x, p) = 0 has dx = −A⁻¹ ∂r/∂p dp and p̄ = −(∂r/∂p)ᵀ A⁻¹ x̄, A = ∂r/∂x symmetric.
 //! * Turns of a table have tangents turn by turn, and adjoints from the last turn to the first, for
 //!   which the states are stored.
 

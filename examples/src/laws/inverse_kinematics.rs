@@ -8,7 +8,7 @@ use articulated_core::user_function;
 const NEAR: f64 = 1e-10;
 
 user_function! {
-    /// Coordinates in which the hand is at a place, found by Newton's method: q ← q + Jᵀ (J Jᵀ)⁻¹ e,
+    /// Coordinates in which the hand is at a place, by Newton's method: q ← q + Jᵀ (J Jᵀ)⁻¹ e with
     /// e = place − p(q). `missed` is 1 where 50 turns were not enough.
     pub struct Reach;
     fn reach<S>(robot, work, start: [Nv] "rad", place: [Of(3)] "m, world axes") -> (found: [Nv] "rad", missed: [] "1") {
