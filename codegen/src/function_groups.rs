@@ -4,9 +4,13 @@ use std::collections::BTreeMap;
 
 pub use articulated_core::algorithm::Group;
 use articulated_core::diagnostic::Spanned;
+use articulated_core::step::steps;
 
 /// The word for all functions that the motion of a scene calls.
 pub const MOTION: &str = "motion";
+
+/// The word for all steps of time.
+pub const STEPS: &str = "steps";
 
 /// The word for all functions of the table.
 pub const ALL: &str = "all";
@@ -15,6 +19,7 @@ pub const ALL: &str = "all";
 pub fn functions_of(name: &str) -> Option<Vec<String>> {
     match Group::named(name) {
         Some(group) => Some(group.functions().map(str::to_owned).collect()),
+        None if name == STEPS => Some(steps::<f64>().iter().map(|f| f.name.to_owned()).collect()),
         None => (name == ALL).then(all),
     }
 }

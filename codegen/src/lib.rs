@@ -62,6 +62,7 @@ use std::fmt::Write as _;
 use articulated_core::algorithm::{Function, functions};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Unused};
 use articulated_core::model::Model;
+use articulated_core::step;
 use articulated_formats::Reading;
 use articulated_scene::BuiltRobot;
 use function_groups::Group;
@@ -211,20 +212,20 @@ fn long_code(file: &str, entry: &ledger::Entry) -> Option<Diagnostic> {
     (instructions > LONG).then(warning)
 }
 
-/// The function called `name`.
+/// The function of the table, or the step, called `name`.
 ///
 /// # Errors An unknown name; the error names the nearest function.
 pub fn function(name: &str) -> Result<&'static Function<Sym>, Diagnostic> {
-    articulated_core::algorithm::function(name).ok_or_else(|| {
+    articulated_core::algorithm::function(name).or_else(|| step::step(name)).ok_or_else(|| {
         if name == function_groups::MOTION {
             let sentence =
                 format!("`{name}`: it stands for what the motion of a scene calls, by itself in a list: found no scene with [simulation]");
             return Diagnostic::refusal("", Place::DOCUMENT, Code::FunctionSpec, sentence);
         }
         // In a sum of functions, a group is not allowed.
-        let groups = Group::ALL.map(Group::name).into_iter().chain([function_groups::ALL]);
+        let groups = Group::ALL.map(Group::name).into_iter().chain([function_groups::STEPS, function_groups::ALL]);
         let groups = groups.filter(|_| function_groups::functions_of(name).is_none());
-        let known: Vec<&str> = functions::<Sym>().iter().map(|f| f.name).chain(groups).collect();
+        let known: Vec<&str> = functions::<Sym>().iter().chain(step::steps()).map(|f| f.name).chain(groups).collect();
         let nearest = resolve_synonym(name, known.iter().copied());
         let rest = nearest.map_or_else(
             || format!("there are: {}; a function of your own is given to a build script, by Build::function", known.join(", ")),

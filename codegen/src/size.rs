@@ -4,7 +4,7 @@
 //! of joints quadratically, and one that inverts the mass matrix cubically. A test compares
 //! predictions with generated code.
 
-use articulated_core::algorithm::Shape;
+use articulated_core::algorithm::{FunctionId, Shape};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::index::{BodyId, ById};
 use articulated_core::model::Model;
@@ -92,7 +92,7 @@ impl Tree {
     fn instructions(&self, part: &FunctionTerm, columns: bool) -> f64 {
         let factors = 0.5 * self.squares;
         let inverse = self.freedoms * self.pairs;
-        let own = match part.function.general.name() {
+        let of = |function: FunctionId| match function.row::<f64>().general.name() {
             "mass_matrix" => 20.0 * self.pairs,
             "coriolis_matrix" => 30.0 * self.pairs,
             "inverse_dynamics_derivatives_with_wrenches" => 55.0 * self.pairs,
@@ -111,6 +111,8 @@ impl Tree {
             }
             _ => 0.0,
         };
+        let contains = part.function.contains;
+        let own = if contains.is_empty() { of(part.function.id) } else { contains.iter().map(|id| of(*id)).sum() };
         let frames = if part.function.asks_for_frames() { self.frames } else { 0.0 };
         own + 100.0 * self.bodies + 20.0 * frames
     }

@@ -37,7 +37,7 @@ impl Candidate<'_> {
         let strategies = in_the_best_unit(spec, strategies, self);
         let (traced, mut stages) = self.traced(spec, &strategies, all);
         let mut graph = pass::run_all(traced, |name, graph| stages.push((name, graph.counts())));
-        if spec.transform.is_none() && spec.parts.iter().all(|part| Form::FromTheLast.fits(part.function.id)) {
+        if spec.transform.is_none() && spec.parts.iter().all(|part| Form::FromTheLast.fits(part.function)) {
             graph = pass::run("from the last", pass::from_the_last, &graph);
         }
         let ways = strategies.iter().flat_map(Strategy::names).collect();
@@ -111,7 +111,7 @@ fn cheapest(part: &FunctionTerm, transform: Option<Transform>, candidate: &Candi
     let tried = candidate.parameters.is_empty() && candidate.model.bodies().len() <= FOLDED_BODIES;
     let folded = if tried { foldable_rotations(part, candidate.model) } else { Vec::new() };
     let folded: Vec<Option<FoldedRotations>> = once(None).chain(folded.into_iter().map(Some)).collect();
-    let shifted: &[bool] = if tried && Form::ShiftedMasses.fits(part.function.id) { &[false, true] } else { &[false] };
+    let shifted: &[bool] = if tried && Form::ShiftedMasses.fits(part.function) { &[false, true] } else { &[false] };
     let forms = || folded.iter().flat_map(|&folded| shifted.iter().map(move |&shifted| (folded, shifted)));
     let of = |way, passes| forms().map(move |(folded, shifted)| Strategy { folded, shifted, ..Strategy::plain(way, passes) });
     let candidates: Vec<(Strategy, u64)> =
@@ -142,7 +142,7 @@ fn cost(spec: &FunctionSpec, strategy: Strategy, candidate: &Candidate) -> u32 {
 /// The strategies with axis rates, if that takes fewer multiplications and no further instructions.
 /// For robots with many bodies, which take long to trace, without a trial.
 pub(super) fn by_axes(spec: &FunctionSpec, strategies: Vec<Strategy>, candidate: &Candidate) -> Vec<Strategy> {
-    let turns = |part: &FunctionTerm| Form::AxisAccelerations.fits(part.function.id);
+    let turns = |part: &FunctionTerm| Form::AxisAccelerations.fits(part.function);
     if !spec.parts.iter().any(turns) {
         return strategies;
     }

@@ -1,6 +1,8 @@
 //! The functions to which each form of generated code applies.
 
-use articulated_core::algorithm::{Argument, FunctionId};
+use articulated_core::algorithm::{Argument, Function, FunctionId};
+
+use crate::sym::Sym;
 
 /// A form of generated code that applies to some functions only. The first two keep the results and
 /// are taken where they cost less.
@@ -19,8 +21,15 @@ pub(crate) enum Form {
 }
 
 impl Form {
-    /// Whether it applies to a function.
-    pub(crate) fn fits(self, function: FunctionId) -> bool {
+    /// Whether it applies to a function: to one that it consists of.
+    pub(crate) fn fits(self, function: &Function<Sym>) -> bool {
+        match function.contains {
+            [] => self.fits_row(function.id),
+            all => all.iter().any(|id| self.fits_row(*id)),
+        }
+    }
+
+    fn fits_row(self, function: FunctionId) -> bool {
         use FunctionId as F;
         let row = function.row::<f64>();
         // At rest no body rotates.

@@ -92,6 +92,8 @@ pub mod precision;
 #[cfg(feature = "alloc")]
 pub mod settings;
 #[cfg(feature = "alloc")]
+pub mod step;
+#[cfg(feature = "alloc")]
 pub mod suggest;
 
 pub use nalgebra;

@@ -16,4 +16,5 @@ mod parameters;
 mod regions;
 mod robots;
 mod scenes;
+mod steps;
 mod user_functions;

@@ -116,7 +116,8 @@ fn eliminate_joint<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: BodyId
         let column = &mut ws.columns[c];
         // U = I S;  D = SᵀU;  u = τ − Sᵀp
         column.u = inertia.apply(&column.axis);
-        let rotor = effects::rotor(model, i, k);
+        let own = ws.diagonal.get(column.at).copied().flatten();
+        let rotor = [effects::rotor(model, i, k), own].into_iter().flatten().reduce(|rotor, own| rotor + own);
         let pivot = column.u.power(&column.axis);
         column.inverse = S::one() / rotor.map_or(pivot, |rotor| pivot + rotor);
         column.residue = tau[column.at] - bias.power(&column.axis);

@@ -62,6 +62,9 @@ pub(super) fn by_equation<S: Scalar>(
         effects::motor_torque(model, v, tau, &mut driven);
         r.iter_mut().zip(&driven).for_each(|(r, tau)| *r -= *tau);
         ws.driven = driven;
+        for ((r, own), a) in r.iter_mut().zip(&ws.diagonal).zip(a) {
+            own.iter().for_each(|own| *r += *own * *a);
+        }
     };
     S::implicit(ws, &mut out[..model.nv], value, residual, solve);
 }
@@ -95,6 +98,9 @@ pub fn mass_matrix_inverse<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q
 pub(super) fn factored<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]) -> alloc::vec::Vec<S> {
     let mut matrix = core::mem::take(&mut ws.matrix);
     mass_matrix(model, ws, q, &mut matrix);
+    for (i, own) in ws.diagonal.iter().enumerate() {
+        own.iter().for_each(|own| matrix[i * model.nv + i] += *own);
+    }
     factor(&mut matrix, &ws.parent_dof);
     matrix
 }

@@ -161,7 +161,7 @@ pub fn neutral<S: Scalar>(model: &Model<S>, out: &mut [S]) {
 }
 
 /// The space of a joint's coordinates.
-pub(super) enum Space {
+pub(crate) enum Space {
     /// Numbers, to which steps are added.
     Numbers,
     /// Rotations, as unit quaternions.
@@ -171,7 +171,7 @@ pub(super) enum Space {
 }
 
 impl Space {
-    pub(super) fn of(kind: JointKind) -> Self {
+    pub(crate) fn of(kind: JointKind) -> Self {
         use JointKind::{Continuous, Fixed, Floating, Helical, Planar, Prismatic, Revolute, Spherical, Universal};
         match kind {
             Fixed | Revolute | Continuous | Prismatic | Helical | Universal | Planar => Self::Numbers,
@@ -181,7 +181,7 @@ impl Space {
     }
 }
 
-pub(super) fn range((first, n): (usize, usize)) -> core::ops::Range<usize> {
+pub(crate) fn range((first, n): (usize, usize)) -> core::ops::Range<usize> {
     first..first + n
 }
 
@@ -189,16 +189,16 @@ fn plain<S: Scalar>(out: &mut [S], a: &[S], b: &[S], f: impl Fn(S, S) -> S) {
     out.iter_mut().zip(a).zip(b).for_each(|((out, a), b)| *out = f(*a, *b));
 }
 
-pub(super) fn three<S: Scalar>(x: &[S]) -> Vector3<S> {
+pub(crate) fn three<S: Scalar>(x: &[S]) -> Vector3<S> {
     Vector3::new(x[0], x[1], x[2])
 }
 
-fn quaternion<S: Scalar>(x: &[S]) -> Quaternion<S> {
+pub(crate) fn quaternion<S: Scalar>(x: &[S]) -> Quaternion<S> {
     Quaternion::from_array([x[0], x[1], x[2], x[3]])
 }
 
 /// A floating joint's step.
-pub(super) fn six<S: Scalar>(step: &[S]) -> Twist<S> {
+pub(crate) fn six<S: Scalar>(step: &[S]) -> Twist<S> {
     Twist { angular: three(step), linear: three(&step[3..]) }
 }
 
@@ -215,15 +215,15 @@ pub(super) fn turn_between<S: Scalar>(q: &[S], target: &[S]) -> Vector3<S> {
 }
 
 /// Position and rotation of a floating joint.
-fn placement<S: Scalar>(q: &[S]) -> (Vector3<S>, Quaternion<S>) {
+pub(crate) fn placement<S: Scalar>(q: &[S]) -> (Vector3<S>, Quaternion<S>) {
     (three(q), quaternion(&q[3..]))
 }
 
-fn put<S: Scalar>(out: &mut [S], x: &Vector3<S>) {
+pub(crate) fn put<S: Scalar>(out: &mut [S], x: &Vector3<S>) {
     out[..3].copy_from_slice(x.as_slice());
 }
 
-fn put_quaternion<S: Scalar>(out: &mut [S], q: &Quaternion<S>) {
+pub(crate) fn put_quaternion<S: Scalar>(out: &mut [S], q: &Quaternion<S>) {
     out[..4].copy_from_slice(&q.normalised().to_array());
 }
 

@@ -78,7 +78,7 @@ impl<'a, S> Inputs<'a, S> {
 }
 
 /// An algorithm as the table holds it, lengths checked.
-pub(super) type Run<S> = &'static (dyn Fn(&Model<S>, &mut Workspace<S>, &Inputs<'_, S>, &mut [S]) + Send + Sync);
+pub(crate) type Run<S> = &'static (dyn Fn(&Model<S>, &mut Workspace<S>, &Inputs<'_, S>, &mut [S]) + Send + Sync);
 
 /// One way to compute a function.
 pub struct Variant<S: 'static> {
@@ -89,7 +89,7 @@ pub struct Variant<S: 'static> {
     /// Lower bound of its multiplications if all joints feel each other; zero if the bound is
     /// unknown. A way that cannot be the cheapest need not be tried.
     pub least: fn(&Model<S>) -> u64,
-    pub(super) run: Run<S>,
+    pub(crate) run: Run<S>,
 }
 
 /// A group of functions: for printed lists, and to request them by one word.
@@ -111,6 +111,8 @@ pub enum Group {
     Effects,
     /// Steps, differences and draws.
     Configurations,
+    /// Whole steps of time, which are in a table of their own ([`crate::step`]).
+    Steps,
     /// Functions of users, which are not in the table.
     User,
 }
@@ -139,6 +141,7 @@ impl Group {
             Self::OperationalSpace => "operational_space",
             Self::Effects => "effects",
             Self::Configurations => "configurations",
+            Self::Steps => "steps",
             Self::User => "user",
         }
     }
@@ -159,6 +162,7 @@ impl Group {
             Self::OperationalSpace => "Operational space",
             Self::Effects => "Effects of a scene",
             Self::Configurations => "Configurations",
+            Self::Steps => "Steps of time",
             Self::User => "Functions of users",
         }
     }
@@ -205,6 +209,9 @@ pub struct Function<S: 'static> {
     /// Ways to compute it. The generator takes the cheapest, [`Function::call`] the first that
     /// applies.
     pub ways: &'static [Variant<S>],
+    /// The functions of the table that it consists of, one for each call; empty for those of the
+    /// table and of users.
+    pub contains: &'static [FunctionId],
     /// All of it but the solution of M X = −B for all columns of `[3][nv][nv]` numbers: two
     /// matrices B, and the factors of M = Lᵀ D L in the third, L below the diagonal and D⁻¹ on it;
     /// the third X is M⁻¹. For callers that solve column by column by themselves.
@@ -237,7 +244,7 @@ impl<S: Scalar> Function<S> {
     pub fn asks_for_frames(&self) -> bool {
         let of_frames = |dims: &[Dim]| dims.contains(&Dim::Frames);
         // A user's function may use any frame.
-        self.id == FunctionId::user || of_frames(self.gives) || self.takes.iter().any(|a| of_frames(a.dims()))
+        self.group == Group::User || of_frames(self.gives) || self.takes.iter().any(|a| of_frames(a.dims()))
     }
 
     /// The number of its results.

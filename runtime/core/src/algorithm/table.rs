@@ -227,6 +227,7 @@ macro_rules! entry {
             needs: Needs::$needs,
             regrouped: $regrouped,
             ways: ways!($name, ($($argument),*) $(, $ways)?),
+            contains: &[],
             unsolved: unsolved!(($($argument),*) $(, $unsolved)?),
         }
     };
@@ -302,6 +303,7 @@ macro_rules! rows {
                 needs: Needs::Nothing,
                 regrouped: false,
                 ways: &[],
+                contains: &[],
                 unsolved: None,
             };
 
@@ -329,22 +331,22 @@ struct Table<S>(PhantomData<S>);
 
 for_each_function!(rows);
 
-fn always<S>(_: &Model<S>) -> bool {
+pub(crate) fn always<S>(_: &Model<S>) -> bool {
     true
 }
 
-fn nothing<S>(_: &Model<S>) -> u64 {
+pub(crate) fn nothing<S>(_: &Model<S>) -> u64 {
     0
 }
 
 /// Multiplications of M = Lᵀ D L.
-fn factorization<S: Scalar>(model: &Model<S>) -> u64 {
+pub(crate) fn factorization<S: Scalar>(model: &Model<S>) -> u64 {
     super::ltdl::multiplications(&super::workspace::parent_dof(model))
 }
 
 /// Whether no joint follows another: a follower ties branches together, and no recursion along one
 /// branch can invert M.
-fn untied<S: Scalar>(model: &Model<S>) -> bool {
+pub(crate) fn untied<S: Scalar>(model: &Model<S>) -> bool {
     !model.has_followers()
 }
 

@@ -79,6 +79,7 @@ impl<S: Scalar> Function<S> {
             needs: Needs::Nothing,
             regrouped: false,
             ways: Box::leak(vec![variant].into_boxed_slice()),
+            contains: &[],
             unsolved: None,
         }))
     }

@@ -59,6 +59,9 @@ pub struct Workspace<S> {
     /// Accelerations that were solved for, `[nv]`.
     pub(super) solution: Vec<S>,
     /// How the algorithms compute.
+    /// Numbers on the diagonal of M beside those of the robot, for solutions of a step; none
+    /// outside of one.
+    pub(crate) diagonal: Vec<Option<S>>,
     pub(super) formulation: Formulation<S>,
 }
 
@@ -168,6 +171,7 @@ impl<S: Scalar> Workspace<S> {
             six_rows: vec![S::zero(); 6 * nv],
             driven: vec![S::zero(); nv],
             solution: vec![S::zero(); nv],
+            diagonal: Vec::new(),
             formulation,
         }
     }

@@ -164,6 +164,22 @@ fn for_each_force<S: Scalar>(model: &Model<S>, q: &[S], v: &[S], mut visit: impl
     }
 }
 
+/// −∂f/∂v of the force f of each effect on joints that depends on the rate, with its place in v;
+/// of a ball joint and of joints that follow several the diagonal.
+pub(crate) fn damping<S: Scalar>(model: &Model<S>, q: &[S], v: &[S], mut visit: impl FnMut(usize, S)) {
+    for one in all(model) {
+        if let Some(ball) = one.on_ball() {
+            for (k, (_, by_rate)) in ball.slopes(q, v, true).into_iter().enumerate() {
+                by_rate.into_iter().for_each(|column| visit(one.at + k, -column[k]));
+            }
+        } else if let Law::Force { slope, .. } = one.effect.effect.law::<S>() {
+            let p = &duals(&one.effect.parameters)[..one.effect.parameters.len()];
+            let own = slope(p, Dual::constant(one.coordinate(q)), Dual::variable(one.rate(v))).slope;
+            one.terms().for_each(|(at, ratio)| visit(at, -scaled(scaled(own, ratio), ratio)));
+        }
+    }
+}
+
 /// τ −= the forces of effects on joints, which actuators must balance.
 #[inline(always)]
 pub(in crate::algorithm) fn apply_joint_forces<S: Scalar>(model: &Model<S>, q: &[S], v: &[S], tau: &mut [S]) {

@@ -1,0 +1,71 @@
+//! The classical Runge–Kutta method of four stages:
+//!
+//! ```text
+//! k₁ = f(x), k₂ = f(x + ½h k₁), k₃ = f(x + ½h k₂), k₄ = f(x + h k₃),   x₁ = x + h/6 (k₁ + 2k₂ + 2k₃ + k₄)
+//! ```
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::{Start, free};
+use crate::Scalar;
+use crate::algorithm::{Workspace, integrate};
+
+/// Where each stage is: the part of the step behind the stage before it.
+const STAGES: [f64; 3] = [0.5, 0.5, 1.0];
+/// Weights of the stages, in sixths.
+const WEIGHTS: [f64; 4] = [1.0, 2.0, 2.0, 1.0];
+
+/// In step vectors u of q = q₀ ⊕ u, u̇ = J_r(u)⁻¹ v: the order stays four on the manifold.
+pub(super) fn on_the_manifold<S: Scalar>(start: &Start<'_, S>, ws: &mut Workspace<S>, q_next: &mut [S], v_next: &mut [S]) {
+    let Start { model, q: q0, v: v0, h, .. } = *start;
+    let nv = model.nv;
+    let mut rates: [Vec<S>; 4] = core::array::from_fn(|_| vec![S::zero(); nv]);
+    let mut accelerations = rates.clone();
+    rates[0].copy_from_slice(v0);
+    start.acceleration(ws, q0, v0, &mut accelerations[0]);
+    let (mut u, mut v, mut q) = (vec![S::zero(); nv], vec![S::zero(); nv], vec![S::zero(); model.nq]);
+    for (k, part) in STAGES.into_iter().enumerate() {
+        let step = h * S::from_f64(part);
+        u.iter_mut().zip(&rates[k]).for_each(|(u, rate)| *u = step * *rate);
+        v.iter_mut().zip(v0).zip(&accelerations[k]).for_each(|((v, v0), a)| *v = *v0 + step * *a);
+        integrate(model, ws, q0, &u, &mut q);
+        free::chart_rates(model, &u, &v, &mut rates[k + 1]);
+        start.acceleration(ws, &q, &v, &mut accelerations[k + 1]);
+    }
+    u.copy_from_slice(&mean(&rates, h));
+    integrate(model, ws, q0, &u, q_next);
+    v_next.iter_mut().zip(v0).zip(mean(&accelerations, h)).for_each(|((next, v0), change)| *next = *v0 + change);
+}
+
+/// With velocities of origins in axes of the parent, and one motion by the mean of the rates.
+pub(super) fn of_summed_rates<S: Scalar>(start: &Start<'_, S>, ws: &mut Workspace<S>, q_next: &mut [S], v_next: &mut [S]) {
+    let Start { model, q: q0, v: v0, h, .. } = *start;
+    let nv = model.nv;
+    let w0 = free::to_parent(model, q0, v0);
+    let mut rates: [Vec<S>; 4] = core::array::from_fn(|_| w0.clone());
+    let mut accelerations: [Vec<S>; 4] = core::array::from_fn(|_| vec![S::zero(); nv]);
+    let acceleration = |ws: &mut Workspace<S>, q: &[S], v: &[S]| {
+        let mut a = vec![S::zero(); nv];
+        start.acceleration(ws, q, v, &mut a);
+        free::of_origins(model, v, &mut a);
+        free::to_parent(model, q, &a)
+    };
+    accelerations[0] = acceleration(ws, q0, v0);
+    let mut q = vec![S::zero(); model.nq];
+    for (k, part) in STAGES.into_iter().enumerate() {
+        let step = h * S::from_f64(part);
+        free::moved(model, q0, &rates[k], step, &mut q);
+        rates[k + 1] = w0.iter().zip(&accelerations[k]).map(|(w, a)| *w + step * *a).collect();
+        accelerations[k + 1] = acceleration(ws, &q, &free::to_body(model, &q, &rates[k + 1]));
+    }
+    free::moved(model, q0, &mean(&rates, S::one()), h, q_next);
+    let w: Vec<S> = w0.iter().zip(mean(&accelerations, h)).map(|(w, change)| *w + change).collect();
+    v_next.copy_from_slice(&free::to_body(model, q_next, &w));
+}
+
+/// h/6 (k₁ + 2k₂ + 2k₃ + k₄).
+fn mean<S: Scalar>(stages: &[Vec<S>; 4], h: S) -> Vec<S> {
+    let weights = WEIGHTS.map(|weight| h * S::from_f64(weight / 6.0));
+    (0..stages[0].len()).map(|i| (0..4).fold(S::zero(), |sum, k| sum + weights[k] * stages[k][i])).collect()
+}

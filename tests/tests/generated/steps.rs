@@ -1,0 +1,273 @@
+//! Whole steps of time: the library's against simulations, closed forms and halved steps, generated
+//! code against the library's, and their derivatives.
+
+use articulated::simulate::{IntegratorId, Settings, Simulation};
+use articulated_codegen::lir::interpret::interpret;
+use articulated_codegen::{COptions, Options, Real, Request, Target, generate};
+use articulated_core::algorithm::{Argument, Workspace, difference, function, integrate};
+use articulated_core::description::{Base, Origin};
+use articulated_core::dual::Dual;
+use articulated_core::effect::{Applied, EffectId};
+use articulated_core::model::Model;
+use articulated_core::step::{step, steps};
+use articulated_tests::c_program;
+use articulated_tests::case::{Case, State, cast, read};
+use articulated_tests::random::Random;
+use articulated_tests::random_tree::{Flavour, random_tree};
+
+const WALKER: &str = include_str!("../../robots/walker.urdf");
+
+/// A floating robot with limbs, with damped joints.
+fn request(functions: &[&str], options: Options) -> Request {
+    let mut request = Request::new("walker.urdf", WALKER);
+    request.options = options;
+    request.options.robot.base = Base::Floating;
+    request.options.functions = functions.iter().map(|f| (*f).into()).collect();
+    let joints =
+        read(WALKER).joints.iter().filter(|joint| !joint.kind.coordinates().is_empty()).map(|joint| joint.name.clone()).collect::<Vec<_>>();
+    let damping = |on: String| Applied { effect: EffectId::damping, on, at: Origin::default(), parameters: vec![0.7] };
+    request.options.robot.effects.extend(joints.into_iter().map(damping));
+    request
+}
+
+fn stepped(name: &str, model: &Model<f64>, [q, v, tau]: [&[f64]; 3], h: f64) -> (Vec<f64>, Vec<f64>) {
+    let mut out = vec![0.0; model.nq() + model.nv()];
+    step(name).unwrap().call(model, &mut Workspace::new(model), &[q, v, tau, &[h]], &mut out).unwrap();
+    let v = out.split_off(model.nq());
+    (out, v)
+}
+
+/// The difference of two states, in the tangent space.
+fn apart(model: &Model<f64>, one: &(Vec<f64>, Vec<f64>), other: &(Vec<f64>, Vec<f64>)) -> f64 {
+    let mut way = vec![0.0; model.nv()];
+    difference(model, &mut Workspace::new(model), &one.0, &other.0, &mut way);
+    let rates = one.1.iter().zip(&other.1).map(|(a, b)| a - b);
+    way.iter().copied().chain(rates).fold(0.0, |most, x| most.max(x.abs()))
+}
+
+fn state(model: &Model<f64>, random: &mut Random) -> State {
+    let uniform: Vec<f64> = (0..model.nq()).map(|_| random.within(0.0, 1.0)).collect();
+    let mut q = vec![0.0; model.nq()];
+    function::<f64>("random_configuration").unwrap().call(model, &mut Workspace::new(model), &[&uniform], &mut q).unwrap();
+    State::new(q, random.vector(model.nv(), -1.0, 1.0), random.vector(model.nv(), -1.0, 1.0))
+}
+
+#[test]
+fn steps_are_those_of_simulations() {
+    for seed in 0..20 {
+        let base = if seed % 2 == 0 { Base::Floating } else { Base::Fixed };
+        let description = random_tree(seed, Flavour { massless: false, ..Flavour::WRITTEN });
+        let model = Model::<f64>::new(&description, base).unwrap();
+        let State { q, v, a: tau, .. } = state(&model, &mut Random::new(seed));
+        for (name, integrator) in [("step_semi_implicit_euler", IntegratorId::semi_implicit_euler), ("step_rk4", IntegratorId::rk4)] {
+            let h = 1e-3;
+            let settings = Settings { integrator, step: Some(h), end: 1.0, ..Settings::default() };
+            let mut simulation = Simulation::new(&model, settings).unwrap();
+            simulation.start(&q, &v).unwrap();
+            assert!(simulation.step(&mut |_: f64, _: &[f64], _: &[f64], out: &mut [f64]| out.copy_from_slice(&tau)).unwrap());
+            let expected = (simulation.q().to_vec(), simulation.v().to_vec());
+            let found = stepped(name, &model, [&q, &v, &tau], h);
+            let scale = expected.1.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
+            let far = apart(&model, &found, &expected);
+            assert!(far < 1e-11 * scale, "{name}, tree {seed}: {far:e} of {scale:e}");
+        }
+    }
+}
+
+/// Halved steps: the local error falls as the power of the order and one.
+#[test]
+fn errors_fall_with_the_order_of_the_method() {
+    let model = generate(&request(&["kinetic_energy"], Options::default())).unwrap().model;
+    let State { q, v, a: tau, .. } = state(&model, &mut Random::new(4));
+    let reference = |h: f64| {
+        let mut at = (q.clone(), v.clone());
+        (0..64).for_each(|_| at = stepped("step_rk4", &model, [&at.0, &at.1, &tau], h / 64.0));
+        at
+    };
+    for (name, order) in [("step_semi_implicit_euler", 1), ("step_implicit_damping", 1), ("step_rk4", 4), ("step_rk4_mujoco", 2)] {
+        let error = |h: f64| apart(&model, &stepped(name, &model, [&q, &v, &tau], h), &reference(h));
+        let (coarse, fine) = (error(4e-3), error(2e-3));
+        let power = (coarse / fine).log2();
+        assert!((power - f64::from(order + 1)).abs() < 0.35, "{name}: h^{power:.2}, errors {coarse:e} {fine:e}");
+    }
+}
+
+/// A wheel of inertia I on a fixed axle with damping d: v₁ (I + h d) = I v₀ + h τ, whatever the step.
+#[test]
+fn damping_is_implicit() {
+    let urdf = "<robot name='wheel'><link name='base'/><link name='rim'><inertial><mass value='1'/>\
+        <inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='0.25'/></inertial></link>\
+        <joint name='axle' type='continuous'><parent link='base'/><child link='rim'/><axis xyz='0 0 1'/></joint></robot>";
+    let mut request = Request::new("wheel.urdf", urdf);
+    request.options.robot.effects.push(Applied {
+        effect: EffectId::damping,
+        on: "axle".into(),
+        at: Origin::default(),
+        parameters: vec![8.0],
+    });
+    let model = request.build_robot().unwrap().model;
+    for h in [1e-3, 0.1, 10.0] {
+        let (q, v) = stepped("step_implicit_damping", &model, [&[0.3], &[2.0], &[0.5]], h);
+        let expected = (0.25 * 2.0 + h * 0.5) / (0.25 + h * 8.0);
+        assert!((v[0] - expected).abs() < 1e-14 && (q[0] - 0.3 - h * expected).abs() < 1e-13, "{q:?} {v:?} {expected}");
+        let explicit = stepped("step_semi_implicit_euler", &model, [&[0.3], &[2.0], &[0.5]], h).1[0];
+        assert!((explicit - (2.0 + h * (0.5 - 16.0) / 0.25)).abs() < 1e-11 * explicit.abs());
+    }
+}
+
+/// A stone that turns, without gravity: every method keeps the velocity of its centre.
+#[test]
+fn a_free_body_keeps_its_velocity() {
+    let urdf = "<robot name='stone'><link name='stone'><inertial><mass value='2'/>\
+        <inertia ixx='0.3' ixy='0' ixz='0' iyy='0.5' iyz='0' izz='0.7'/></inertial></link></robot>";
+    let case = Case::new("stone", read(urdf), Base::Floating).with_gravity([0.0; 3]);
+    let model = &case.model;
+    let (mut q, mut v) = (vec![0.0; 7], vec![3.0, -2.0, 1.0, 0.5, 0.25, -1.0]);
+    (q[6], v[3]) = (1.0, 0.5);
+    for row in steps::<f64>() {
+        let mut at = (q.clone(), v.clone());
+        (0..100).for_each(|_| at = stepped(row.name, model, [&at.0, &at.1, &[0.0; 6]], 1e-2));
+        let expected = [0.5, 0.25, -1.0];
+        let far = (0..3).map(|k| (at.0[k] - expected[k]).abs()).fold(0.0, f64::max);
+        // The position is a sum of steps; Runge and Kutta turn the velocity with its error.
+        let allowed = if row.name == "step_rk4" { 1e-5 } else { 1e-12 };
+        assert!(far < allowed, "{}: {far:e}", row.name);
+    }
+}
+
+const ALL: [&str; 4] = ["step_semi_implicit_euler", "step_implicit_damping", "step_rk4", "step_rk4_mujoco"];
+
+/// Arguments of a step in some states.
+fn given(model: &Model<f64>, count: usize) -> Vec<[Vec<f64>; 4]> {
+    let mut random = Random::new(9);
+    let of = |state: State| [state.q, state.v, state.a, vec![2e-3]];
+    (0..count).map(|_| of(state(model, &mut random))).collect()
+}
+
+fn assert_steps(model: &Model<f64>, name: &str, given: &[Vec<f64>; 4], found: &[f64], allowed: f64) {
+    let expected = stepped(name, model, [&given[0], &given[1], &given[2]], given[3][0]);
+    let found = (found[..model.nq()].to_vec(), found[model.nq()..].to_vec());
+    let scale = expected.1.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
+    let far = apart(model, &found, &expected);
+    assert!(far <= allowed * scale, "{name}: {far:e} of {scale:e}");
+}
+
+#[test]
+fn graphs_and_statements_are_the_library() {
+    let generated =
+        generate(&request(&["steps", "fixed = step_rk4(h = 0.002)"], Options { batch: vec![Real::F64], ..Options::default() })).unwrap();
+    let names: Vec<&str> = generated.ledger.functions.iter().map(|entry| entry.function.as_str()).collect();
+    assert_eq!(names[..4], ALL);
+    assert!(generated.ledger.functions.iter().all(|entry| entry.lanes > 1), "limbs are computed side by side");
+    let model = &generated.model;
+    for (k, name) in names.iter().enumerate() {
+        let twin = if *name == "fixed" { "step_rk4" } else { name };
+        for given in given(model, 3) {
+            let input = |argument: usize, k: usize| given[argument][k];
+            assert_steps(model, twin, &given, &generated.graphs[k].evaluate(input), 1e-11);
+            for (_, body) in generated.bodies[k].all() {
+                assert_steps(model, twin, &given, &interpret(body, input), 1e-11);
+            }
+        }
+    }
+}
+
+/// Results are a struct in Rust, and arrays in C, where a program prints them.
+#[test]
+fn compiled_steps_are_the_library() {
+    let rust = generate(&request(&ALL, Options::default())).unwrap();
+    for part in ["pub struct StepRk4 {", "pub q_next: [f64; NQ],", "pub v_next: [f64; NV],"] {
+        assert!(rust.source.contains(part), "{part}");
+    }
+    let options = Options { target: Target::C(COptions::default()), batch: vec![Real::F64], ..Options::default() };
+    let generated = generate(&request(&ALL, options)).unwrap();
+    let (model, given) = (&generated.model, given(&generated.model, 3));
+    let list = |x: &[f64]| x.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(", ");
+    let mut main = String::from(
+        "#include <stdio.h>\n#include \"walker.h\"\nint main(void) {\n    double q_next[3 * WALKER_NQ], v_next[3 * WALKER_NV];\n",
+    );
+    let (mut names, print) = (Vec::new(), |n: &str| {
+        format!(
+            "    for (int i = 0; i < {n} * WALKER_NQ; i++) {{ printf(\"%.17g\\n\", q_next[i]); }}\n    \
+             for (int i = 0; i < {n} * WALKER_NV; i++) {{ printf(\"%.17g\\n\", v_next[i]); }}\n"
+        )
+    });
+    for (k, name) in ["q", "v", "tau", "h"].into_iter().enumerate() {
+        let all: Vec<f64> = given.iter().flat_map(|given| given[k].clone()).collect();
+        main += &format!("    const double {name}[] = {{{}}};\n", list(&all));
+    }
+    for name in ALL {
+        for k in 0..given.len() {
+            main += &format!(
+                "    walker_{name}(q + {k} * WALKER_NQ, v + {k} * WALKER_NV, tau + {k} * WALKER_NV, h + {k}, q_next, v_next);\n{}",
+                print("1")
+            );
+            names.push((name, k, 1));
+        }
+        main += &format!("    walker_{name}_batch_f64(3, q, v, tau, h, q_next, v_next);\n{}", print("3"));
+        names.push((name, 0, 3));
+    }
+    let printed = c_program::run_program(&(main + "    return 0;\n}\n"), &generated.files);
+    let mut numbers = printed.lines().map(|line| line.parse::<f64>().unwrap());
+    for (name, first, count) in names {
+        let q: Vec<f64> = numbers.by_ref().take(count * model.nq()).collect();
+        let v: Vec<f64> = numbers.by_ref().take(count * model.nv()).collect();
+        for k in 0..count {
+            let found = [&q[k * model.nq()..][..model.nq()], &v[k * model.nv()..][..model.nv()]].concat();
+            assert_steps(model, name, &given[first + k], &found, 1e-11);
+        }
+    }
+}
+
+/// λᵀ J d from both sides, and J d by dual numbers.
+#[test]
+fn derivatives_of_a_step_are_those_of_dual_numbers() {
+    for name in ALL {
+        let functions = [format!("pull = vjp({name}, q v tau h)"), format!("push = jvp({name}, q v tau h)")];
+        let functions: Vec<&str> = functions.iter().map(String::as_str).collect();
+        let generated = generate(&request(&functions, Options::default())).unwrap();
+        let model = &generated.model;
+        let (nq, nv) = (model.nq(), model.nv());
+        let exact = model.cast::<Dual<f64>>();
+        let mut random = Random::new(2);
+        for given in given(model, 2) {
+            let direction = [random.vector(nv, -1.0, 1.0), random.vector(nv, -1.0, 1.0), random.vector(nv, -1.0, 1.0), vec![0.3]];
+            let mut moved: Vec<Vec<Dual<f64>>> = given.iter().map(|x| cast(x)).collect();
+            let along: Vec<Dual<f64>> = direction[0].iter().map(|d| Dual::new(0.0, *d)).collect();
+            let mut q = moved[0].clone();
+            integrate(&exact, &mut Workspace::new(&exact), &moved[0], &along, &mut q);
+            moved[0] = q;
+            for k in 1..4 {
+                moved[k].iter_mut().zip(&direction[k]).for_each(|(x, d)| x.slope = *d);
+            }
+            let slices: Vec<&[Dual<f64>]> = moved.iter().map(Vec::as_slice).collect();
+            let mut out = vec![Dual::constant(0.0); nq + nv];
+            step(name).unwrap().call(&exact, &mut Workspace::new(&exact), &slices, &mut out).unwrap();
+            let expected: Vec<f64> = out.iter().map(|x| x.slope).collect();
+            let push =
+                generated.graphs[1].evaluate(|argument, k| if argument < 4 { given[argument][k] } else { direction[argument - 4][k] });
+            let scale = expected.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
+            for (a, b) in push.iter().zip(&expected) {
+                assert!((a - b).abs() < 1e-9 * scale, "{name}: {a} {b}");
+            }
+            let weights = random.vector(nq + nv, -1.0, 1.0);
+            let pull = generated.graphs[0].evaluate(|argument, k| match argument {
+                0..4 => given[argument][k],
+                4 => weights[k],
+                _ => weights[nq + k],
+            });
+            let left: f64 = pull.iter().zip(direction.iter().flatten()).map(|(a, b)| a * b).sum();
+            let right: f64 = expected.iter().zip(&weights).map(|(a, b)| a * b).sum();
+            assert!((left - right).abs() < 1e-9 * scale * nv as f64, "{name}: {left} {right}");
+        }
+    }
+}
+
+#[test]
+fn a_step_is_named_in_requests_and_nothing_else_may_be() {
+    let told = |function: &str| generate(&request(&[function], Options::default())).err().map(|e| e.to_string()).unwrap_or_default();
+    assert!(told("step_rk5").contains("did you mean `step_rk4`?"), "{}", told("step_rk5"));
+    assert!(told("step_rk4 = mass_matrix").contains("is what another function is called"), "{}", told("step_rk4 = mass_matrix"));
+    assert!(told("s = step_rk4(h = x)").contains("expected a constant"), "{}", told("s = step_rk4(h = x)"));
+    assert_eq!(steps::<f64>()[0].takes[0], Argument::Q);
+}
