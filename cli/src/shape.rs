@@ -1,6 +1,6 @@
 //! Shapes in words.
 
-use articulated_core::algorithm::{Dim, Function};
+use articulated_core::algorithm::{Dim, Function, Port};
 
 /// `[frames][6][nv]`; empty for a single number.
 pub(crate) fn dims(dims: &[Dim]) -> String {
@@ -10,6 +10,18 @@ pub(crate) fn dims(dims: &[Dim]) -> String {
 /// Shape and unit of a function's result.
 pub(crate) fn result<S>(function: &Function<S>) -> String {
     format!("{} {}", dims(function.gives), function.unit).trim_start().to_owned()
+}
+
+/// Shape of a function's result; of several, each with its name.
+pub(crate) fn gives<S>(function: &Function<S>) -> String {
+    let one = |port: &Port| format!("{} {}", port.name, dims(port.dims));
+    if function.outputs.is_empty() { dims(function.gives) } else { function.outputs.iter().map(one).collect::<Vec<_>>().join(", ") }
+}
+
+/// Unit of a function's result, or those of several.
+pub(crate) fn unit<S>(function: &Function<S>) -> String {
+    let units = function.outputs.iter().map(|port| port.unit).collect::<Vec<_>>();
+    if units.is_empty() { function.unit.to_owned() } else { units.join("; ") }
 }
 
 #[cfg(test)]

@@ -2,13 +2,15 @@
 //!
 //! With respect to a configuration q they are those of f(q ⊕ δ) at δ = 0: the function is traced
 //! with q ⊕ δ in the place of q, differentiated by the inputs δ, and then δ is zero. In coordinates
-//! they are those of f(q/|q|), in which each quaternion has length one.
+//! they are those of f(q/|q|), in which each quaternion has length one. A result that is a
+//! configuration has derivatives in the tangent space where it ends.
 
-use articulated_core::algorithm::{Argument, FunctionId, Shape, divide_by_length, small_step};
+use articulated_core::Scalar;
+use articulated_core::algorithm::{Argument, FunctionId, Shape, divide_by_length, small_difference, small_step};
 use articulated_core::model::Model;
 use num_traits::Zero;
 
-use crate::function_spec::{Derivative, FunctionSpec, FunctionTerm, Output, Transform, weights};
+use crate::function_spec::{Derivative, FunctionSpec, FunctionTerm, Output, Transform};
 use crate::graph::{Graph, NodeId};
 use crate::pass::{self, adjoint, dce, splice, tangent};
 use crate::sym::Sym;
@@ -33,8 +35,8 @@ impl<'a> Steps<'a> {
         let transform = spec.transform.as_ref()?;
         let (part, shape) = (&spec.parts[0], model.shape());
         let length = |output: &Output| output.dims.iter().map(|d| d.len(shape)).product();
-        let results = part.outputs().iter().map(length).collect();
-        Some(Self { transform, arguments, weights: weights(part), results, shape })
+        let results = transform.results(part).iter().map(length).collect();
+        Some(Self { transform, arguments, weights: transform.weights(part), results, shape })
     }
 
     /// The number of the argument δ of a configuration; `None` for arguments that are
@@ -56,6 +58,28 @@ impl<'a> Steps<'a> {
         let mut moved = vec![Sym::zero(); given.len()];
         small_step(model, &given, &delta, &mut moved);
         moved
+    }
+
+    /// The results of the function, of configurations target ⊖ value with the value held.
+    pub(crate) fn charted(&self, part: &FunctionTerm, results: Vec<Sym>, model: &Model<Sym>) -> Vec<Sym> {
+        let mut rest = results.as_slice();
+        if self.transform.in_coordinates || part.function.outputs.is_empty() {
+            return results;
+        }
+        let mut all = Vec::with_capacity(results.len());
+        for output in part.function.outputs {
+            let (own, others) = rest.split_at(output.len(self.shape));
+            rest = others;
+            if output.is_configuration() {
+                let (mut held, mut step) = (own.to_vec(), vec![Sym::zero(); self.shape.nv]);
+                Sym::hold(&mut held);
+                small_difference(model, &held, own, &mut step);
+                all.extend(step);
+            } else {
+                all.extend(own);
+            }
+        }
+        all
     }
 
     /// The number of directions of an argument.

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use articulated_core::{Scalar, region};
 use num_traits::{One, Zero};
 
-use crate::graph::{CAPTURED, CARRIED, Equation, Graph, Kind, NodeId, Op, ROW, Region};
+use crate::graph::{CAPTURED, CARRIED, Equation, Graph, Kind, NodeId, Op, ROW, Region, Rule};
 
 thread_local! {
     static TRACE: RefCell<Trace> = RefCell::default();
@@ -33,7 +33,7 @@ struct Trace {
     bodies: Vec<Body>,
     /// How many regions were opened.
     opened: u32,
-    /// Whether equations are kept for derivatives.
+    /// Whether regions that only derivatives need are kept.
     with_equations: bool,
 }
 
@@ -207,12 +207,12 @@ fn body(inputs: [usize; 3], captured: &mut Vec<NodeId>, body: impl FnOnce([&mut 
 }
 
 /// Adds a region on these starts and further values, and returns the values that come out.
-fn opened(kind: Kind, body: Graph, equation: Option<Equation>, starts: &[Sym], captured: &[NodeId], more: &[Sym]) -> Vec<Sym> {
+fn opened(kind: Kind, body: Graph, rule: Rule, starts: &[Sym], captured: &[NodeId], more: &[Sym]) -> Vec<Sym> {
     TRACE.with_borrow_mut(|trace| {
         let mut given: Vec<NodeId> = starts.iter().map(|symbol| trace.node(*symbol)).collect();
         given.extend(captured);
         given.extend(more.iter().map(|symbol| trace.node(*symbol)).collect::<Vec<_>>());
-        let region = Region { kind, carried: starts.len(), captured: captured.len(), body, equation };
+        let region = Region { kind, carried: starts.len(), captured: captured.len(), body, rule };
         let (values, level) = (region.values(), trace.level());
         let graph = trace.graph();
         let region = graph.region(Arc::new(region), &given);
@@ -317,7 +317,7 @@ impl Scalar for Sym {
             let ends = turn(carried);
             [&*carried, &[ends]].concat()
         });
-        let values = opened(Kind::Repeat { most }, graph, None, state, &captured, &[]);
+        let values = opened(Kind::Repeat { most }, graph, Rule::OfItsKind, state, &captured, &[]);
         let (next, held) = values.split_at(state.len());
         state.copy_from_slice(next);
         held[0].positive()
@@ -334,7 +334,7 @@ impl Scalar for Sym {
             turn(carried);
             carried.to_vec()
         });
-        let values = opened(Kind::When, graph, None, state, &captured, &[mask]);
+        let values = opened(Kind::When, graph, Rule::OfItsKind, state, &captured, &[mask]);
         state.copy_from_slice(&values);
     }
 
@@ -355,10 +355,20 @@ impl Scalar for Sym {
             turn(row, carried, &mut results);
             [&*carried, &results].concat()
         });
-        let values = opened(kind, graph, None, state, &captured, table);
+        let values = opened(kind, graph, Rule::OfItsKind, state, &captured, table);
         let (next, found) = values.split_at(state.len());
         state.copy_from_slice(next);
         results.copy_from_slice(found);
+    }
+
+    fn hold(x: &mut [Self]) {
+        if !TRACE.with_borrow(|trace| trace.with_equations) {
+            return;
+        }
+        let (kind, mut captured) = (Kind::ForEach { turns: 1, row: 0, results: x.len() }, Vec::new());
+        let values = x.to_vec();
+        let graph = body([0, 0, 0], &mut captured, |_| values);
+        x.copy_from_slice(&opened(kind, graph, Rule::Held, &[], &captured, &[]));
     }
 
     fn implicit<C>(
@@ -387,7 +397,7 @@ impl Scalar for Sym {
             b.to_vec()
         });
         let kind = Kind::ForEach { turns: 1, row: 0, results: n };
-        x.copy_from_slice(&opened(kind, found, Some(Equation { residual, solve }), &[], &captured, &[]));
+        x.copy_from_slice(&opened(kind, found, Rule::Equation(Equation { residual, solve }), &[], &captured, &[]));
     }
 }
 

@@ -122,7 +122,11 @@ fn traced(
                 }
                 None => given,
             };
-            run(term, &strategy, &view, &place, &moved)
+            let out = run(term, &strategy, &view, &place, &moved);
+            match steps {
+                Some(steps) => steps.charted(term, out, &view.model),
+                None => out,
+            }
         };
         let all = || terms.iter().zip(strategies).flat_map(&mut one).collect();
         if steps.is_some() { sym::trace_with_equations(all) } else { sym::trace(all) }

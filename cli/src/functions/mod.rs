@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use articulated_codegen::function_groups;
 use articulated_core::algorithm::{Function, function};
+use articulated_core::step::steps;
 
 use crate::arguments::{Format, FunctionsArguments, RobotArguments};
 use crate::console::{self, Progress};
@@ -38,7 +39,8 @@ pub(crate) fn run(arguments: &FunctionsArguments, format: Format) -> Result<(), 
         subjects.push(subject);
         report.robots.push(row);
     }
-    let rows: Vec<&'static Function<f64>> = function_groups::all().iter().filter_map(|name| function::<f64>(name)).collect();
+    let table = function_groups::all();
+    let rows: Vec<&'static Function<f64>> = table.iter().filter_map(|name| function::<f64>(name)).chain(steps()).collect();
     let pairs: Vec<(&Function<f64>, &Subject)> = rows.iter().flat_map(|f| subjects.iter().map(move |s| (*f, s))).collect();
     let progress = Progress::new(pairs.len());
     let cells = parallel::map(&pairs, |(f, s)| {

@@ -32,7 +32,7 @@ pub(super) struct FunctionRow {
     pub(super) group: Group,
     pub(super) takes: Vec<&'static str>,
     pub(super) gives: String,
-    pub(super) unit: &'static str,
+    pub(super) unit: String,
     pub(super) summary: &'static str,
     pub(super) algorithm: &'static str,
     /// For a preset: the function, and its arguments that are zero.
@@ -78,10 +78,10 @@ impl FunctionRow {
     pub(super) fn new(f: &Function<f64>, costs: Vec<Cell>) -> Self {
         Self {
             function: f.name,
-            group: Group::of(f.id),
+            group: f.group,
             takes: f.takes.iter().copied().map(Argument::name).collect(),
-            gives: shape::dims(f.gives),
-            unit: f.unit,
+            gives: shape::gives(f),
+            unit: shape::unit(f),
             summary: f.summary,
             algorithm: f.source,
             preset_of: (f.general != f.id).then(|| Preset { function: f.general.name(), zeros: f.zeros().map(Argument::name).collect() }),

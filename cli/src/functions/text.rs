@@ -27,12 +27,12 @@ pub(super) fn text(report: &Report) -> String {
     let _ = write!(out, "\n{}", costs.text());
     footnotes.lines().for_each(|line| out += &(line + "\n"));
     let mut meanings = Table::new(["function", "what", "units", "algorithm"].map(|t| (t, ""))).left(4);
-    by_group(report, &mut meanings, |f| vec![f.summary.to_owned(), f.unit.to_owned(), f.computed_by("")]);
+    by_group(report, &mut meanings, |f| vec![f.summary.to_owned(), f.unit.clone(), f.computed_by("")]);
     out + "\n" + &meanings.text()
 }
 
 fn by_group(report: &Report, table: &mut Table, mut cells: impl FnMut(&FunctionRow) -> Vec<String>) {
-    for group in Group::ALL {
+    for group in Group::ALL.into_iter().chain([Group::Steps]) {
         table.heading(group.name());
         for f in report.functions.iter().filter(|f| f.group == group) {
             table.row(std::iter::once(format!("  {}", f.function)).chain(cells(f)));
@@ -70,14 +70,14 @@ pub(super) fn markdown(report: &Report) -> String {
         let _ = writeln!(out, "| `{}` | `{}` {}{asked} |", argument.name(), shape::dims(argument.dims()), cell(argument.unit()));
     }
     let mut footnotes = Footnotes::default();
-    for group in Group::ALL {
+    for group in Group::ALL.into_iter().chain([Group::Steps]) {
         let names: String = report.robots.iter().map(|r| format!(" {} |", r.robot)).collect();
         let lines = "--:|".repeat(report.robots.len());
         let _ = writeln!(out, "\n## {}\n\n| function | gives | what it is | algorithm |{names}\n|---|---|---|---|{lines}", group.title());
         for f in report.functions.iter().filter(|f| f.group == group) {
             let gives = if f.gives.is_empty() { "a number".into() } else { format!("`{}`", f.gives) };
             let costs: String = f.costs.iter().map(|c| format!(" {} |", footnotes.cell(c))).collect();
-            let (summary, unit, algorithm) = (cell(f.summary), cell(f.unit), cell(&f.computed_by("`")));
+            let (summary, unit, algorithm) = (cell(f.summary), cell(&f.unit), cell(&f.computed_by("`")));
             let _ = writeln!(out, "| `{}({})` | {gives} {unit} | {summary} | {algorithm} |{costs}", f.function, f.takes.join(", "));
         }
     }

@@ -18,7 +18,6 @@ use articulated_core::model::Model;
 use articulated_core::step::steps;
 
 pub use constant::Constant;
-pub(crate) use transform::weights;
 pub use transform::{Derivative, Transform};
 
 use constant::{constant, entries};

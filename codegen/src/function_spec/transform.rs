@@ -93,16 +93,39 @@ impl Transform {
         if self.in_coordinates { argument.dims() } else { argument.tangent_dims() }
     }
 
+    /// A factor for each number of each result, in the tangent space of results that are
+    /// configurations.
+    pub(crate) fn weights(&self, part: &FunctionTerm) -> Vec<Argument> {
+        const UNIT: &str = "a factor of each number of the result";
+        match part.function.outputs {
+            [] => vec![port("weights", part.function.gives, UNIT)],
+            several => several.iter().map(|output| port(&format!("weights_{}", output.name), self.dims_of(output), UNIT)).collect(),
+        }
+    }
+
+    fn dims_of(&self, result: &Port) -> &'static [Dim] {
+        if self.in_coordinates { result.dims } else { result.tangent_dims() }
+    }
+
+    /// The results of the function, in the tangent space where they are configurations.
+    pub(crate) fn results(&self, part: &FunctionTerm) -> Vec<Output> {
+        let mut results = part.outputs();
+        for (result, port) in results.iter_mut().zip(part.function.outputs) {
+            result.dims = self.dims_of(port).to_vec();
+        }
+        results
+    }
+
     /// Weights, then directions, as far as the derivative takes them.
     pub(super) fn arguments(&self, part: &FunctionTerm) -> Vec<Argument> {
-        let weights = if self.kind.takes_weights() { weights(part) } else { Vec::new() };
+        let weights = if self.kind.takes_weights() { self.weights(part) } else { Vec::new() };
         let directions = self.wrt.iter().filter(|_| self.kind.takes_directions());
         weights.into_iter().chain(directions.map(|a| port(&format!("d{}", a.name()), self.dims(*a), "a direction"))).collect()
     }
 
     /// The results.
     pub(super) fn outputs(&self, part: &FunctionTerm) -> Vec<Output> {
-        let (name, own) = (part.function.name, part.outputs());
+        let (name, own) = (part.function.name, self.results(part));
         if self.kind == Derivative::Jvp {
             let along = |output: Output| Output { unit: format!("{}, per unit of the direction", output.unit), ..output };
             return own.into_iter().map(along).collect();
@@ -200,15 +223,6 @@ pub(super) fn parse(
     }
     let wrt = takes.into_iter().filter(|a| wanted.is_empty() || wanted.contains(a)).collect();
     Ok(Transform { kind, wrt, in_coordinates })
-}
-
-/// A factor for each number of each result.
-pub(crate) fn weights(part: &FunctionTerm) -> Vec<Argument> {
-    const UNIT: &str = "a factor of each number of the result";
-    match part.function.outputs {
-        [] => vec![port("weights", part.function.gives, UNIT)],
-        several => several.iter().map(|output| port(&format!("weights_{}", output.name), output.dims, UNIT)).collect(),
-    }
 }
 
 /// An argument of this name. It lives as long as the program, and once for all functions.

@@ -15,7 +15,7 @@ pub use counts::Counts;
 pub(crate) use evaluate::value as operation;
 pub use lanes::{Lanes, MOST, Value};
 pub use op::{OPS, Op, Row};
-pub use region::{CAPTURED, CARRIED, Equation, Kind, ROW, Region};
+pub use region::{CAPTURED, CARRIED, Equation, Kind, ROW, Region, Rule};
 
 /// A node's number in its graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

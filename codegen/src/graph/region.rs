@@ -60,8 +60,19 @@ pub struct Region {
     pub captured: usize,
     /// The body.
     pub body: Graph,
-    /// The equation that the results of a body of one turn solve, for derivatives.
-    pub equation: Option<Equation>,
+    /// How it is differentiated.
+    pub rule: Rule,
+}
+
+/// How a region is differentiated.
+#[derive(Clone, Debug)]
+pub enum Rule {
+    /// As its kind says.
+    OfItsKind,
+    /// The results of its one turn solve an equation.
+    Equation(Equation),
+    /// Its results are constants.
+    Held,
 }
 
 /// r(x, p) = 0, with x as carried values and p as the captured values of the region.

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::{dce, rebuild};
-use crate::graph::{CAPTURED, CARRIED, Graph, Kind, Node, NodeId, Op, Region};
+use crate::graph::{CAPTURED, CARRIED, Graph, Kind, Node, NodeId, Op, Region, Rule};
 
 /// Moves the operations of bodies that only captured values decide out of their regions, from the
 /// inmost region outwards. A body that may not run at all keeps its operations.
@@ -147,7 +147,7 @@ fn split(outer: &mut Graph, region: &Region, given: &[NodeId], read: &HashSet<us
         })
         .collect();
     let starts: Vec<NodeId> = (0..region.carried).filter(|k| fates[*k] == Fate::Stays).map(|k| starts[k]).collect();
-    let region = Region { kind: region.kind, carried, captured: captured.len(), body: new, equation: None };
+    let region = Region { kind: region.kind, carried, captured: captured.len(), body: new, rule: Rule::OfItsKind };
     (Arc::new(region), [&starts, &captured, rest].concat(), comes)
 }
 
@@ -195,8 +195,8 @@ mod tests {
         body.outputs = vec![next, ends];
         let mut graph = Graph::default();
         let given: Vec<NodeId> = (0..4).map(|k| graph.input(0, k)).collect();
-        let region =
-            graph.region(Arc::new(Region { kind: Kind::Repeat { most: 20 }, carried: 1, captured: 3, body, equation: None }), &given);
+        let region = graph
+            .region(Arc::new(Region { kind: Kind::Repeat { most: 20 }, carried: 1, captured: 3, body, rule: Rule::OfItsKind }), &given);
         graph.outputs = (0..2).map(|k| graph.region_value(region, k)).collect();
         graph
     }

@@ -12,7 +12,7 @@
 use std::sync::Arc;
 
 use super::{dce, gradients, splice, tangents};
-use crate::graph::{CAPTURED, CARRIED, Equation, Graph, Kind, NodeId, Op, ROW, Region};
+use crate::graph::{CAPTURED, CARRIED, Equation, Graph, Kind, NodeId, Op, ROW, Region, Rule};
 
 /// Turns of the iteration for a derivative, for each turn of the iteration itself.
 const LONGER: usize = 2;
@@ -78,7 +78,7 @@ impl Occurrence {
         let active: Vec<usize> = (0..m).filter(|j| known[n + j].is_some()).collect();
         let moved = || active.iter().filter_map(|j| known[n + j]);
         let starts = || known[..n].iter().map(|start| start.unwrap_or(zero));
-        if let Some(equation) = &self.region.equation {
+        if let Rule::Equation(equation) = &self.region.rule {
             return self.tangent_by(equation, graph, &active, moved());
         }
         if let Kind::ForEach { turns, row, results } = self.region.kind {
@@ -107,7 +107,7 @@ impl Occurrence {
             }
         };
         body.outputs = slopes;
-        graph.region(Arc::new(Region { kind, carried: n, captured: n + m + active.len(), body, equation: None }), &given)
+        graph.region(Arc::new(Region { kind, carried: n, captured: n + m + active.len(), body, rule: Rule::OfItsKind }), &given)
     }
 
     /// The values of an equation: results of one turn.
@@ -177,7 +177,7 @@ impl Occurrence {
             given.extend(columns.iter().map(|column| known[first + column].unwrap_or(zero)));
         }
         let kind = Kind::ForEach { turns, row: row + columns.len(), results };
-        graph.region(Arc::new(Region { kind, carried: 2 * n, captured: m + active.len(), body, equation: None }), &given)
+        graph.region(Arc::new(Region { kind, carried: 2 * n, captured: m + active.len(), body, rule: Rule::OfItsKind }), &given)
     }
 
     /// The tangent of value `k` that comes out, from the region of the tangents.
@@ -193,8 +193,10 @@ impl Occurrence {
     /// Adds the regions of the adjoints. `weights`: the adjoints of the values that come out;
     /// `active`: which of the values that go in have one. Returns those.
     pub(super) fn adjoint(&self, graph: &mut Graph, weights: &[Option<NodeId>], active: &[bool]) -> Vec<(usize, NodeId)> {
-        if let Some(equation) = &self.region.equation {
-            return self.adjoint_by(equation, graph, weights, active);
+        match &self.region.rule {
+            Rule::OfItsKind => {}
+            Rule::Equation(equation) => return self.adjoint_by(equation, graph, weights, active),
+            Rule::Held => return Vec::new(),
         }
         match self.region.kind {
             Kind::Repeat { most } => self.adjoint_of_iteration(graph, weights, active, most),
@@ -221,7 +223,7 @@ impl Occurrence {
         body.outputs = next;
         let given = [&seeds[..], &at, &seeds].concat();
         let kind = Kind::Repeat { most: LONGER * most };
-        let held = graph.region(Arc::new(Region { kind, carried: n, captured: n + m + n, body, equation: None }), &given);
+        let held = graph.region(Arc::new(Region { kind, carried: n, captured: n + m + n, body, rule: Rule::OfItsKind }), &given);
         // p̄ = F_pᵀ w
         let wanted: Vec<usize> = (0..m).filter(|j| active[n + j]).collect();
         let (mut after, outputs) = self.at_state();
@@ -243,7 +245,7 @@ impl Occurrence {
         let mut given: Vec<NodeId> = weights.iter().map(|weight| weight.unwrap_or(zero)).collect();
         given.extend(wanted.iter().map(|_| zero));
         given.extend(self.starts().iter().chain(self.captured()).chain(self.table()));
-        let region = Region { kind: Kind::When, carried: n + wanted.len(), captured: n + m, body, equation: None };
+        let region = Region { kind: Kind::When, carried: n + wanted.len(), captured: n + m, body, rule: Rule::OfItsKind };
         let found = graph.region(Arc::new(region), &given);
         let places = (0..n).chain(wanted.into_iter().map(|j| n + j));
         places.enumerate().map(|(k, place)| (place, graph.region_value(found, k))).collect()
@@ -288,7 +290,7 @@ impl Occurrence {
         }
         let carried = n + wanted.len();
         let kind = Kind::ForEach { turns, row: n + row + results, results: columns.len() };
-        let back = graph.region(Arc::new(Region { kind, carried, captured: m, body, equation: None }), &given);
+        let back = graph.region(Arc::new(Region { kind, carried, captured: m, body, rule: Rule::OfItsKind }), &given);
         let mut all: Vec<usize> = (0..n).chain(wanted.iter().map(|j| n + j)).collect();
         all.extend((0..turns).rev().flat_map(|turn| columns.iter().map(move |column| n + m + turn * row + column)));
         all.into_iter().enumerate().map(|(k, place)| (place, graph.region_value(back, k))).collect()
@@ -305,8 +307,10 @@ impl Occurrence {
         let before: Vec<NodeId> = (0..n).map(|k| body.input(CARRIED, k)).collect();
         body.outputs.extend(before);
         let kind = Kind::ForEach { turns, row, results: n };
-        let stored = graph
-            .region(Arc::new(Region { kind, carried: n, captured: self.region.captured, body: dce(&body), equation: None }), &self.given);
+        let stored = graph.region(
+            Arc::new(Region { kind, carried: n, captured: self.region.captured, body: dce(&body), rule: Rule::OfItsKind }),
+            &self.given,
+        );
         (0..turns * n).map(|k| graph.region_value(stored, n + k)).collect()
     }
 }
@@ -327,7 +331,7 @@ fn solved(body: &mut Graph, equation: &Equation, b: &[NodeId]) -> Vec<NodeId> {
 /// A region of one turn without a table.
 fn once(body: Graph, captured: usize) -> Region {
     let kind = Kind::ForEach { turns: 1, row: 0, results: body.outputs.len() };
-    Region { kind, carried: 0, captured, body, equation: None }
+    Region { kind, carried: 0, captured, body, rule: Rule::OfItsKind }
 }
 
 /// The mask that the carried values no longer change, as in `articulated_core::region`.

@@ -8,7 +8,7 @@
 
 use super::region_derivatives::Occurrence;
 use super::{copy, rebuild};
-use crate::graph::{Graph, Node, NodeId, Op};
+use crate::graph::{Graph, Node, NodeId, Op, Rule};
 
 /// ∂y/∂x·dx for the outputs y. `direction` makes the node of dx for an input x, an argument with an
 /// index; `None`: the input is held.
@@ -54,6 +54,9 @@ fn of_node(graph: &mut Graph, of: NodeId, node: Node, known: &[Option<NodeId>]) 
         Op::List => Some(of),
         Op::Region => {
             let region = Occurrence::new(graph, of);
+            if matches!(region.region.rule, Rule::Held) {
+                return None;
+            }
             let slopes: Vec<Option<NodeId>> = region.given.iter().map(|id| known[id.index()]).collect();
             Some(region.tangent(graph, &slopes))
         }

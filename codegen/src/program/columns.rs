@@ -7,7 +7,7 @@ use articulated_core::model::Model;
 
 use crate::capabilities::Capabilities;
 use crate::function_spec::FunctionSpec;
-use crate::graph::{CAPTURED, Graph, Kind, NodeId, Op, ROW, Region};
+use crate::graph::{CAPTURED, Graph, Kind, NodeId, Op, ROW, Region, Rule};
 use crate::ledger::Entry;
 use crate::pass;
 use crate::trace::applies;
@@ -90,7 +90,7 @@ impl MultiRhsSolve {
             }));
         }
         let kind = Kind::ForEach { turns: 3 * n, row: n, results: n };
-        let region = Region { kind, carried: 0, captured: entries.len(), body: pass::run_all_unchecked(body), equation: None };
+        let region = Region { kind, carried: 0, captured: entries.len(), body: pass::run_all_unchecked(body), rule: Rule::OfItsKind };
         let solved = graph.region(Arc::new(region), &given);
         let value = |at: usize| (at / n / n * n + at % n) * n + at / n % n;
         graph.outputs = (0..3 * n * n).map(|at| graph.region_value(solved, value(at))).collect();

@@ -146,6 +146,14 @@ impl<S: Scalar> Scalar for Dual<S> {
         Self { value: S::select(mask, a.value, b.value), slope: S::select(mask, a.slope, b.slope) }
     }
 
+    fn hold(x: &mut [Self]) {
+        for x in x {
+            let mut value = [x.value];
+            S::hold(&mut value);
+            *x = Self::constant(value[0]);
+        }
+    }
+
     // The values first, then the slopes at the fixed point.
     fn repeat(most: usize, state: &mut [Self], mut body: impl FnMut(&mut [Self]) -> S::Mask) -> S::Mask {
         let mut values: Vec<S> = state.iter().map(|x| x.value).collect();

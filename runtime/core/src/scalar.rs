@@ -105,6 +105,11 @@ pub trait Scalar:
         region::for_each_turn(turns, table, state, results, body);
     }
 
+    /// Makes constants of values: they stay, and derivatives are zero.
+    fn hold(x: &mut [Self]) {
+        let _ = x;
+    }
+
     /// Computes x by `value`, and declares that it solves r(x, p) = 0 with a symmetric ∂r/∂x.
     ///
     /// `residual(x, r)` has r at x, `solve(b)` replaces b by (∂r/∂x)⁻¹ b. Only a symbol calls these

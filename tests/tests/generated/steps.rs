@@ -219,11 +219,14 @@ fn compiled_steps_are_the_library() {
     }
 }
 
-/// λᵀ J d from both sides, and J d by dual numbers.
+/// λᵀ J d from both sides, and J d by dual numbers; A and B of x₁ = f(x, u) are the Jacobian.
 #[test]
 fn derivatives_of_a_step_are_those_of_dual_numbers() {
     for name in ALL {
-        let functions = [format!("pull = vjp({name}, q v tau h)"), format!("push = jvp({name}, q v tau h)")];
+        // Matrices of four stages are long, and made of the same rules.
+        let kinds = ["pull = vjp", "push = jvp", "matrices = jacobian"];
+        let kinds = if name.contains("rk4") { &kinds[..2] } else { &kinds };
+        let functions: Vec<String> = kinds.iter().map(|kind| format!("{kind}({name}, q v tau h)")).collect();
         let functions: Vec<&str> = functions.iter().map(String::as_str).collect();
         let generated = generate(&request(&functions, Options::default())).unwrap();
         let model = &generated.model;
@@ -243,22 +246,41 @@ fn derivatives_of_a_step_are_those_of_dual_numbers() {
             let slices: Vec<&[Dual<f64>]> = moved.iter().map(Vec::as_slice).collect();
             let mut out = vec![Dual::constant(0.0); nq + nv];
             step(name).unwrap().call(&exact, &mut Workspace::new(&exact), &slices, &mut out).unwrap();
-            let expected: Vec<f64> = out.iter().map(|x| x.slope).collect();
+            // In the tangent space where the step ends.
+            let ends: Vec<Dual<f64>> = out[..nq].iter().map(|x| Dual::constant(x.value)).collect();
+            let mut way = vec![Dual::constant(0.0); nv];
+            difference(&exact, &mut Workspace::new(&exact), &ends, &out[..nq], &mut way);
+            let expected: Vec<f64> = way.iter().chain(&out[nq..]).map(|x| x.slope).collect();
             let push =
                 generated.graphs[1].evaluate(|argument, k| if argument < 4 { given[argument][k] } else { direction[argument - 4][k] });
             let scale = expected.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
             for (a, b) in push.iter().zip(&expected) {
                 assert!((a - b).abs() < 1e-9 * scale, "{name}: {a} {b}");
             }
-            let weights = random.vector(nq + nv, -1.0, 1.0);
+            let weights = random.vector(2 * nv, -1.0, 1.0);
             let pull = generated.graphs[0].evaluate(|argument, k| match argument {
                 0..4 => given[argument][k],
                 4 => weights[k],
-                _ => weights[nq + k],
+                _ => weights[nv + k],
             });
             let left: f64 = pull.iter().zip(direction.iter().flatten()).map(|(a, b)| a * b).sum();
             let right: f64 = expected.iter().zip(&weights).map(|(a, b)| a * b).sum();
             assert!((left - right).abs() < 1e-9 * scale * nv as f64, "{name}: {left} {right}");
+            // Blocks of ∂q₁ and ∂v₁ by q, v, τ and h.
+            let Some(matrices) = generated.graphs.get(2) else { continue };
+            let matrices = matrices.evaluate(|argument, k| given[argument][k]);
+            let mut rest = matrices.as_slice();
+            let mut product = vec![0.0; 2 * nv];
+            for half in product.chunks_mut(nv) {
+                for d in &direction {
+                    let (block, others) = rest.split_at(nv * d.len());
+                    rest = others;
+                    half.iter_mut()
+                        .zip(block.chunks(d.len()))
+                        .for_each(|(x, row)| *x += row.iter().zip(d).map(|(a, b)| a * b).sum::<f64>());
+                }
+            }
+            assert!(rest.is_empty() && product.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-9 * scale), "{name}");
         }
     }
 }

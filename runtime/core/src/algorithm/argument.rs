@@ -74,6 +74,8 @@ pub struct Port {
     pub dims: &'static [Dim],
     /// Its units, for documentation.
     pub unit: &'static str,
+    /// Whether its numbers are coordinates of the robot, with unit quaternions.
+    is_configuration: bool,
     /// Its place among the inputs of the table's algorithms.
     place: Option<Place>,
 }
@@ -81,7 +83,24 @@ pub struct Port {
 impl Port {
     /// An input of a user's function.
     pub const fn new(name: &'static str, dims: &'static [Dim], unit: &'static str) -> Self {
-        Self { name, dims, unit, place: None }
+        Self { name, dims, unit, is_configuration: false, place: None }
+    }
+
+    /// The same for a configuration: coordinates of the robot, with unit quaternions. Derivatives
+    /// of a result are in the tangent space.
+    pub const fn configuration(name: &'static str, unit: &'static str) -> Self {
+        Self { name, dims: &[Dim::Nq], unit, is_configuration: true, place: None }
+    }
+
+    /// Its dimensions in the tangent space: of a configuration one number for each degree of
+    /// freedom.
+    pub fn tangent_dims(&self) -> &'static [Dim] {
+        if self.is_configuration { &[Dim::Nv] } else { self.dims }
+    }
+
+    /// Whether its numbers are coordinates of the robot, with unit quaternions.
+    pub fn is_configuration(&self) -> bool {
+        self.is_configuration
     }
 
     /// How many numbers.
@@ -135,7 +154,7 @@ impl Argument {
 
     /// Whether its numbers are coordinates of the robot, with unit quaternions.
     pub fn is_configuration(self) -> bool {
-        self == Self::Q || self == Self::Target
+        self == Self::Q || self == Self::Target || self.0.is_configuration
     }
 
     /// The same in the tangent space: where it is a configuration, one number for each degree of
@@ -181,7 +200,7 @@ macro_rules! arguments {
         #[allow(non_upper_case_globals)]
         impl Argument {
             $($(#[$doc])* pub const $variant: Self =
-                Self(&Port { name: stringify!($name), dims: &[$(Dim::$dim $(($n))?),*], unit: $unit, place: Some(Place::$variant) });)*
+                Self(&Port { name: stringify!($name), dims: &[$(Dim::$dim $(($n))?),*], unit: $unit, is_configuration: false, place: Some(Place::$variant) });)*
         }
 
         /// The place of each argument of the table among the inputs of an algorithm.

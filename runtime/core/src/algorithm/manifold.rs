@@ -77,6 +77,35 @@ pub fn small_step<S: Scalar>(model: &Model<S>, q: &[S], step: &[S], out: &mut [S
     }
 }
 
+/// target ⊖ q for a target so near that the third power of the step does not count: the polynomial
+/// that has the value, the first and the second derivatives of [`difference`] at target = q.
+///
+/// ```text
+/// ω = 2 vec(quaternion* ⊗ target),   v = d − ½ ω × d with d = Rᵀ (p_target − p)
+/// ```
+///
+/// q, target: `[nq]` rad|m|quaternion; out: `[nv]` rad|m|twist times time.
+///
+/// # Panics
+/// As [`integrate`].
+pub fn small_difference<S: Scalar>(model: &Model<S>, q: &[S], target: &[S], out: &mut [S]) {
+    let two = S::from_f64(2.0);
+    let turn = |from: &Quaternion<S>, to: &Quaternion<S>| three(&from.conjugate().product(to).to_array()) * two;
+    for joint in &model.joints {
+        let (q, target, out) = (&q[range(joint.q)], &target[range(joint.q)], &mut out[range(joint.v)]);
+        match Space::of(joint.kind) {
+            Space::Placements => {
+                let ((from, rotation), (to, other)) = (placement(q), placement(target));
+                let (omega, way) = (turn(&rotation, &other), rotate_back(&rotation.to_rotation(), to - from));
+                put(out, &omega);
+                put(&mut out[3..], &(way - omega.cross(&way) * S::from_f64(0.5)));
+            }
+            Space::Rotations => put(out, &turn(&quaternion(q), &quaternion(target))),
+            Space::Numbers => plain(out, q, target, |q, target| target - q),
+        }
+    }
+}
+
 /// Divides each quaternion of a configuration by its length: q/|q|. Derivatives in coordinates are
 /// those of f(q/|q|). Other coordinates stay as they are.
 ///

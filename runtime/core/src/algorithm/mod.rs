@@ -48,7 +48,7 @@ pub use frames::{
     twists_world, twists_world_aligned,
 };
 pub use kinematics::placements;
-pub use manifold::{coordinate_box, difference, divide_by_length, integrate, neutral, random_configuration, small_step};
+pub use manifold::{coordinate_box, difference, divide_by_length, integrate, neutral, random_configuration, small_difference, small_step};
 pub use manifold_derivatives::{difference_derivatives, integrate_derivatives};
 pub use momentum::{
     center_of_mass, center_of_mass_acceleration, center_of_mass_jacobian, center_of_mass_velocity, centroidal_momentum,

@@ -25,10 +25,8 @@ pub const H: Argument = Argument::new(&Port::new("h", &[], "s"));
 
 const TAKES: &[Argument] = &[Argument::Q, Argument::V, Argument::Tau, H];
 
-const GIVES: &[Port] = &[
-    Port::new("q_next", &[Dim::Nq], "rad|m|unit quaternion, after the step"),
-    Port::new("v_next", &[Dim::Nv], "rad/s|m/s, after the step"),
-];
+const GIVES: &[Port] =
+    &[Port::configuration("q_next", "rad|m|unit quaternion, after the step"), Port::new("v_next", &[Dim::Nv], "rad/s|m/s, after the step")];
 
 /// Forward dynamics with wrenches: one of its ways.
 type Accelerate<S> = fn(&Model<S>, &mut Workspace<S>, &[S], &[S], &[S], &[S], &mut [S]);
