@@ -30,6 +30,7 @@ step urdf python3 tests/shipped/shipped.py
 step mjcf python3 tests/mjcf/oracle.py
 step mjcf-generated python3 tests/mjcf/oracle.py --generated
 step mjcf-motion python3 tests/mjcf/simulate.py
+step mjcf-steps python3 tests/mjcf/steps.py
 step sdf python3 tests/sdf/oracle.py
 step xacro python3 tests/xacro/oracle.py
 step mutants python3 tests/mutants/mutants.py

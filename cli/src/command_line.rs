@@ -10,6 +10,7 @@ use crate::effects::EffectsArguments;
 use crate::failure::STATUSES;
 use crate::measure::Measurement;
 use crate::new::NewArguments;
+use crate::rollout::RolloutArguments;
 use crate::simulate::arguments::SimulateArguments;
 
 /// Robot dynamics, spelled out: checks a robot file (URDF, xacro, MJCF or SDF), generates its
@@ -96,6 +97,14 @@ pub(crate) enum Command {
         "articulated simulate chain --against target/peers/peers.json",
     ]))]
     Simulate(SimulateArguments),
+    /// Steps many states many times by the library, and prints their time, a hash, and with
+    /// --format json where they end
+    #[command(after_help = examples(&[
+        "articulated rollout quadruped --steps 1000 --states 64",
+        "articulated rollout arm.toml --steps 500 --states states.json --method rk4 --format json",
+        "articulated rollout model.xml --steps 10000 --hash",
+    ]))]
+    Rollout(RolloutArguments),
     /// Says which effects of a scene are on and off, what of the robot's file is not used, and what
     /// each effect costs
     #[command(after_help = examples(&[

@@ -21,6 +21,7 @@ mod new;
 mod output;
 mod robot;
 mod robot_scene;
+mod rollout;
 mod shape;
 mod simulate;
 
@@ -147,6 +148,7 @@ fn dispatch(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Measure(a) => measure::run(a, format),
         Command::Functions(a) => functions::run(a, format).map(|()| OK),
         Command::Simulate(a) => simulate::run(a, format),
+        Command::Rollout(a) => rollout::run(a, format),
         Command::New(a) => new::run(a, format).map(|()| OK),
         Command::Effects(a) => effects::run(a, format).map(|()| OK),
     }

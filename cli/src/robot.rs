@@ -77,7 +77,7 @@ impl Robot {
 
     /// The robot of a scene: a file, or a bundled one. Arguments replace the values of the scene;
     /// edits are made after the scene's.
-    fn of_scene(name: &Path, arguments: &RobotArguments) -> Result<Self, Failure> {
+    pub(crate) fn of_scene(name: &Path, arguments: &RobotArguments) -> Result<Self, Failure> {
         let (prepared, _) = named_scene::open(name)?;
         let bundled = matches!(prepared.scene.robot, articulated_scene::Robot::Bundled(_));
         let mut request = prepared.request;

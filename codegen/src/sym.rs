@@ -397,7 +397,7 @@ impl Scalar for Sym {
             b.to_vec()
         });
         let kind = Kind::ForEach { turns: 1, row: 0, results: n };
-        x.copy_from_slice(&opened(kind, found, Rule::Equation(Equation { residual, solve }), &[], &captured, &[]));
+        x.copy_from_slice(&opened(kind, found, Rule::Equation(Box::new(Equation { residual, solve })), &[], &captured, &[]));
     }
 }
 

@@ -26,7 +26,8 @@ import tempfile
 import time
 from pathlib import Path
 
-from oracle import BALL, COMMAND, HERE, PLACE, REPOSITORY, build_command, environment, models
+from oracle import BALL, HERE, PLACE, REPOSITORY, build_command, environment, models
+from programs import COMMAND
 
 SAME = 1e-6
 

@@ -13,10 +13,12 @@ fn every_function_has_its_cost_or_the_reason_why_not() {
     let words = ["functions", "double_pendulum", file.name()];
     let json = run(&[&words[..], &["--format", "json"]].concat()).json();
     let functions = json["functions"].as_array().unwrap();
-    assert_eq!(functions.len(), articulated_core::algorithm::functions::<f64>().len());
+    let steps = articulated_core::step::steps::<f64>().len();
+    assert_eq!(functions.len(), articulated_core::algorithm::functions::<f64>().len() + steps);
     assert_eq!(json["robots"][1]["frames"], serde_json::json!(["b"]));
     let of = |name: &str| functions.iter().find(|f| f["function"] == name).unwrap();
     assert_eq!(of("jacobians_body")["gives"], "[frames][6][nv]");
+    assert_eq!((&of("step_rk4")["gives"], &of("step_rk4")["group"]), (&"q_next [nq], v_next [nv]".into(), &"steps".into()));
     assert!(of("forward_dynamics")["costs"][0]["cost"]["instructions"].as_u64().unwrap() > 10);
     assert_eq!(of("forward_dynamics")["costs"][1]["undefined"], "no inertia of its own for joint turn");
     let few = "fewer than six degrees of freedom carry each tip";

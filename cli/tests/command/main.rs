@@ -15,6 +15,7 @@ mod generate;
 mod inputs;
 mod mistakes;
 mod new;
+mod rollout;
 mod scaling;
 mod scenes;
 mod simulate;

@@ -70,7 +70,7 @@ pub enum Rule {
     /// As its kind says.
     OfItsKind,
     /// The results of its one turn solve an equation.
-    Equation(Equation),
+    Equation(Box<Equation>),
     /// Its results are constants.
     Held,
 }

@@ -58,6 +58,16 @@ pub(super) fn of_origins<S: Scalar>(model: &Model<S>, v: &[S], a: &mut [S]) {
     }
 }
 
+/// u̇ of turns by u at the rates v, whose velocities of origins are in axes of the parent:
+/// J_r(u)⁻¹ ω of joints that turn freely, v of everything else.
+pub(super) fn turn_rates<S: Scalar>(model: &Model<S>, u: &[S], v: &[S], out: &mut [S]) {
+    out.copy_from_slice(v);
+    for joint in model.joints.iter().filter(|joint| !matches!(Space::of(joint.kind), Space::Numbers)) {
+        let at = joint.v.0;
+        put(&mut out[at..], &(right_jacobian_inverse(three(&u[at..])) * three(&v[at..])));
+    }
+}
+
 /// u̇ of q ⊕ u at the rates v: J_r(u)⁻¹ v of joints that turn freely, v of others. Munthe-Kaas, BIT
 /// 38, 1998.
 pub(super) fn chart_rates<S: Scalar>(model: &Model<S>, u: &[S], v: &[S], out: &mut [S]) {

@@ -9,6 +9,7 @@
 mod euler;
 mod free;
 mod rk4;
+mod rollout;
 
 use core::marker::PhantomData;
 
@@ -19,6 +20,8 @@ use crate::algorithm::{
     forward_dynamics_with_wrenches, nothing, untied,
 };
 use crate::model::Model;
+
+pub use rollout::rollout;
 
 /// The length of a step, s.
 pub const H: Argument = Argument::new(&Port::new("h", &[], "s"));
@@ -116,10 +119,10 @@ steps! {
         [forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches],
         "the classical method of four stages in step vectors of the manifold; error of order 4",
         "Hairer, Nørsett & Wanner 1993, Table II.1.2; Munthe-Kaas, BIT 38, 1998";
-    step_rk4_mujoco: rk4::of_summed_rates,
+    step_rk4_mujoco: rk4::in_axes_of_the_parent,
         [forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches],
-        "the classical method of four stages, where turns are moved once by the mean of the rates: MuJoCo's RK4, of order 2 for free turns",
-        "MuJoCo documentation, Numerical integration";
+        "as step_rk4, with velocities of floating bases in axes of their parent: RK4 of MuJoCo 4; error of order 4",
+        "MuJoCo documentation, Numerical integration; Munthe-Kaas, BIT 38, 1998";
 }
 
 /// All steps, as functions beside those of the table.
@@ -130,4 +133,13 @@ pub fn steps<S: Scalar>() -> &'static [Function<S>] {
 /// The step called `name`.
 pub fn step<S: Scalar>(name: &str) -> Option<&'static Function<S>> {
     steps().iter().find(|row| row.name == name)
+}
+
+/// The step that moves as an integrator of MuJoCo does, by its name in files.
+pub fn step_of_mujoco(integrator: &str) -> Option<&'static str> {
+    match integrator {
+        "Euler" | "implicitfast" => Some("step_implicit_damping"),
+        "RK4" => Some("step_rk4_mujoco"),
+        _ => None,
+    }
 }

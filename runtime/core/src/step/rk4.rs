@@ -38,8 +38,9 @@ pub(super) fn on_the_manifold<S: Scalar>(start: &Start<'_, S>, ws: &mut Workspac
     v_next.iter_mut().zip(v0).zip(mean(&accelerations, h)).for_each(|((next, v0), change)| *next = *v0 + change);
 }
 
-/// With velocities of origins in axes of the parent, and one motion by the mean of the rates.
-pub(super) fn of_summed_rates<S: Scalar>(start: &Start<'_, S>, ws: &mut Workspace<S>, q_next: &mut [S], v_next: &mut [S]) {
+/// The same with velocities of origins in axes of the parent, and step vectors of turns alone: as
+/// MuJoCo 4 moves.
+pub(super) fn in_axes_of_the_parent<S: Scalar>(start: &Start<'_, S>, ws: &mut Workspace<S>, q_next: &mut [S], v_next: &mut [S]) {
     let Start { model, q: q0, v: v0, h, .. } = *start;
     let nv = model.nv;
     let w0 = free::to_parent(model, q0, v0);
@@ -56,8 +57,10 @@ pub(super) fn of_summed_rates<S: Scalar>(start: &Start<'_, S>, ws: &mut Workspac
     for (k, part) in STAGES.into_iter().enumerate() {
         let step = h * S::from_f64(part);
         free::moved(model, q0, &rates[k], step, &mut q);
-        rates[k + 1] = w0.iter().zip(&accelerations[k]).map(|(w, a)| *w + step * *a).collect();
-        accelerations[k + 1] = acceleration(ws, &q, &free::to_body(model, &q, &rates[k + 1]));
+        let w: Vec<S> = w0.iter().zip(&accelerations[k]).map(|(w, a)| *w + step * *a).collect();
+        let u: Vec<S> = rates[k].iter().map(|rate| step * *rate).collect();
+        free::turn_rates(model, &u, &w, &mut rates[k + 1]);
+        accelerations[k + 1] = acceleration(ws, &q, &free::to_body(model, &q, &w));
     }
     free::moved(model, q0, &mean(&rates, S::one()), h, q_next);
     let w: Vec<S> = w0.iter().zip(mean(&accelerations, h)).map(|(w, change)| *w + change).collect();
