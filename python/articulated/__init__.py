@@ -12,6 +12,7 @@ from ._compiled import CompiledRobot
 from ._derivative import Derivative
 from ._errors import RobotError, RobotWarning
 from ._robot import Function, Joint, Robot, bundled, bundled_names, functions, load, loads
+from ._rollout import Rollout, RolloutGradient
 from ._scene import Motion, Scene, bundled_scene_names
 
 __all__ = [
@@ -23,6 +24,8 @@ __all__ = [
     "Robot",
     "RobotError",
     "RobotWarning",
+    "Rollout",
+    "RolloutGradient",
     "Scene",
     "bundled",
     "bundled_names",
@@ -32,5 +35,5 @@ __all__ = [
     "loads",
 ]
 __version__ = "0.1.0"
-for _class in (RobotError, RobotWarning, Robot, CompiledRobot, Derivative, Joint, Function, Scene, Motion):
+for _class in (RobotError, RobotWarning, Robot, CompiledRobot, Derivative, Joint, Function, Rollout, RolloutGradient, Scene, Motion):
     _class.__module__ = __name__

@@ -6,7 +6,7 @@ from typing import NamedTuple, Optional
 
 import numpy as np
 
-from . import _native, _wheel
+from . import _native, _rollout, _wheel
 from ._compiled import CompiledRobot
 from ._derivative import Derivative
 from ._errors import RobotWarning, as_numbers
@@ -351,6 +351,45 @@ class Robot(_native.Robot):
             ValueError: The text is no such request, or names no function.
         """
         return Derivative(self, request)
+
+    def rollout(self, q, v, tau, h, *, method="semi_implicit_euler", every=1, threads=None):
+        """Steps states, with the torques of each step.
+
+        >>> robot = articulated.bundled("panda_like")                          # doctest: +SKIP
+        >>> ends = robot.rollout(q, v, torques, 0.001, threads=0)              # doctest: +SKIP
+        >>> ends.q[..., -1, :]                                                 # doctest: +SKIP
+
+        Args:
+            q: Configurations, [..., nq].
+            v: Velocities, [..., nv].
+            tau: Torques, [..., steps, nv], N·m or N, held during each step. Dimensions of a batch broadcast.
+            h: The length of a step, s.
+            method: semi_implicit_euler, implicit_damping (MuJoCo's Euler), rk4, or rk4_mujoco.
+            every: Every so many steps are recorded.
+            threads: None or 1 for one thread, 0 for all, or a number.
+
+        Returns:
+            Rollout: q, [..., steps // every, nq], and v, [..., steps // every, nv], after the steps.
+
+        Raises:
+            ValueError: Another method, shapes that do not fit, or numbers that are not finite.
+        """
+        return _rollout.rollout(self, q, v, tau, h, method, every, threads)
+
+    def rollout_gradient(self, q, v, tau, h, *, weights_q=None, weights_v=None, method="semi_implicit_euler", threads=None):
+        """The gradient of a weighted sum of all states of a rollout, from the last step to the first.
+
+        It keeps all states, (nq + nv) numbers a step, and needs no compiler: steps are differentiated exactly.
+
+        Args:
+            q, v, tau, h, method, threads: As for ``rollout``.
+            weights_q: ∂cost/∂q after each step in the tangent space, [..., steps, nv]; None for zeros.
+            weights_v: ∂cost/∂v after each step, [..., steps, nv]; None for zeros.
+
+        Returns:
+            RolloutGradient: by the start q (in the tangent space) and v, [..., nv], and by tau, [..., steps, nv].
+        """
+        return _rollout.gradient(self, q, v, tau, h, weights_q, weights_v, method, threads)
 
     def wheel(self, folder, functions=_wheel.FUNCTIONS, *, name=None, version="0.1.0", flags=(), batch=False):
         """Writes a wheel of this robot: a package of its functions that needs NumPy alone, neither

@@ -202,7 +202,7 @@ pub(crate) fn threads(given: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
 type Pools = HashMap<(u32, usize), Arc<ThreadPool>>;
 
 /// The pool of this number of threads; `None` for one.
-fn pool(threads: usize) -> PyResult<Option<Arc<ThreadPool>>> {
+pub(crate) fn pool(threads: usize) -> PyResult<Option<Arc<ThreadPool>>> {
     static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
     if threads == 1 {
         return Ok(None);

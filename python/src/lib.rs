@@ -11,6 +11,7 @@ mod derived;
 mod errors;
 mod method;
 mod robot;
+mod rollout;
 mod scene;
 mod signature;
 

@@ -13,7 +13,7 @@ use articulated::spatial::Reference;
 use articulated::{Base, Model};
 use articulated_codegen::{Appended, COptions, Real, Request, Target, generate};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
-use numpy::{PyArray1, PyArrayMethods};
+use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
@@ -23,6 +23,7 @@ use crate::batch::{self, Call, Compute, Generic, Kernel, Workspaces};
 use crate::derived::Derived;
 use crate::errors;
 use crate::method::Keywords;
+use crate::rollout;
 use crate::signature::{Signature, signatures};
 
 /// A robot's model. `articulated.load` makes one.
@@ -389,6 +390,23 @@ impl Robot {
     /// The derivative of this request, such as `g = vjp(inverse_dynamics)`, traced for the robot.
     fn _derived(&self, py: Python<'_>, text: String) -> PyResult<Derived> {
         Derived::of(py, self.request.clone(), text)
+    }
+
+    /// The states after every so many steps: q, v and torques of all steps, a row for each state.
+    #[pyo3(signature = (method, q, v, tau, h, every, threads=None))]
+    #[expect(clippy::too_many_arguments, reason = "those of the method in Python")]
+    fn _rollout<'py>(
+        &self,
+        py: Python<'py>,
+        method: &str,
+        q: PyReadonlyArray2<'py, f64>,
+        v: PyReadonlyArray2<'py, f64>,
+        tau: PyReadonlyArray3<'py, f64>,
+        h: f64,
+        every: usize,
+        threads: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<(Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>)> {
+        rollout::run(py, &self.model, method, (&q, &v, &tau), h, every, batch::threads(threads.as_ref())?)
     }
 
     /// Row `index` of the table at these arguments, one state or many.

@@ -1,11 +1,14 @@
 //! Numbers with one derivative.
 
+#[cfg(feature = "alloc")]
 use alloc::vec::Vec;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use num_traits::{One, Zero};
 
-use crate::{Scalar, region};
+use crate::Scalar;
+#[cfg(feature = "alloc")]
+use crate::region;
 
 /// x + ε x', with ε² = 0: results computed with it have their exact derivatives (Clifford, *Proc.
 /// London Math. Soc.* 4, 1871). Nested, it has the second derivative too.
@@ -155,6 +158,7 @@ impl<S: Scalar> Scalar for Dual<S> {
     }
 
     // The values first, then the slopes at the fixed point.
+    #[cfg(feature = "alloc")]
     fn repeat(most: usize, state: &mut [Self], mut body: impl FnMut(&mut [Self]) -> S::Mask) -> S::Mask {
         let mut values: Vec<S> = state.iter().map(|x| x.value).collect();
         let converged = S::repeat(most, &mut values, |values| {

@@ -57,6 +57,7 @@ extern crate alloc;
 
 pub mod dual;
 pub mod eigen;
+#[cfg(feature = "alloc")]
 pub mod region;
 pub mod running;
 pub mod scalar;

@@ -245,6 +245,7 @@ impl<const BITS: u32, const SINES: u32> Scalar for Running<BITS, SINES> {
     }
 
     /// Where it is uncertain whether a turn is the last, the errors of the state are unbounded.
+    #[cfg(feature = "alloc")]
     fn repeat(most: usize, state: &mut [Self], mut body: impl FnMut(&mut [Self]) -> Outcome) -> Outcome {
         let mut certain = true;
         let holds = (0..most).any(|_| {

@@ -3,6 +3,7 @@
 use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign};
 use num_traits::{One, Zero};
 
+#[cfg(feature = "alloc")]
 use crate::region;
 
 /// A real number, or a representation of one: `f32`, `f64`, a symbol, a big float, a dual number.
@@ -81,11 +82,13 @@ pub trait Scalar:
     /// }
     /// assert!((root(2.0_f64) - 2_f64.sqrt()).abs() < 1e-15);
     /// ```
+    #[cfg(feature = "alloc")]
     fn repeat(most: usize, state: &mut [Self], body: impl FnMut(&mut [Self]) -> Self::Mask) -> Self::Mask {
         region::repeat_all(most, state, body)
     }
 
     /// Runs `body` on `state` only where the mask holds.
+    #[cfg(feature = "alloc")]
     fn when(mask: Self::Mask, state: &mut [Self], body: impl FnOnce(&mut [Self])) {
         region::when_all(mask, state, body);
     }
@@ -95,6 +98,7 @@ pub trait Scalar:
     ///
     /// # Panics
     /// If the length of `table` or of `results` is not a multiple of `turns`.
+    #[cfg(feature = "alloc")]
     fn for_each(
         turns: usize,
         table: &[Self],
@@ -185,11 +189,13 @@ macro_rules! impl_float {
                 if mask { a } else { b }
             }
 
+            #[cfg(feature = "alloc")]
             #[inline(always)]
             fn repeat(most: usize, state: &mut [Self], body: impl FnMut(&mut [Self]) -> bool) -> bool {
                 region::repeat_known(most, state, body)
             }
 
+            #[cfg(feature = "alloc")]
             #[inline(always)]
             fn when(mask: bool, state: &mut [Self], body: impl FnOnce(&mut [Self])) {
                 if mask {

@@ -1,0 +1,88 @@
+"""Rollouts: closed forms, steps by hand, and gradients by differences."""
+
+import numpy as np
+import pytest
+
+import articulated
+
+PENDULUM = """<robot name="cart"><link name="base"/><link name="cart"><inertial><mass value="2"/>
+<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+<joint name="rail" type="prismatic"><parent link="base"/><child link="cart"/><axis xyz="1 0 0"/>
+<limit lower="-9" upper="9" effort="9" velocity="9"/></joint></robot>"""
+
+
+def test_a_pushed_cart():
+    cart = articulated.loads(PENDULUM)
+    ends = cart.rollout([0.5], [1.0], np.full((100, 1), 4.0), 0.01, method="rk4")
+    t = 0.01 * np.arange(1, 101)[:, None]
+    assert np.allclose(ends.q, 0.5 + t + t**2, atol=1e-12) and np.allclose(ends.v, 1 + 2 * t, atol=1e-12)
+    few = cart.rollout([0.5], [1.0], np.full((100, 1), 4.0), 0.01, method="rk4", every=30)
+    assert few.q.shape == (3, 1) and np.array_equal(few.q, ends.q[29::30])
+
+
+@pytest.fixture(scope="module", params=["panda_like", "quadruped"])
+def robot(request):
+    return articulated.bundled(request.param)
+
+
+def start(robot, count, steps):
+    random = np.random.default_rng(5)
+    q = robot.random_configuration(1, count)
+    return q, random.uniform(-1, 1, (count, robot.nv)), random.uniform(-1, 1, (count, steps, robot.nv))
+
+
+def test_steps_in_threads_are_steps_by_hand(robot):
+    q, v, tau = start(robot, 6, 5)
+    one = robot.rollout(q, v, tau, 1e-3)
+    assert all(np.array_equal(a, b) for a, b in zip(one, robot.rollout(q, v, tau, 1e-3, threads=0)))
+    assert all(np.array_equal(a[2], b) for a, b in zip(one, robot.rollout(q[2], v[2], tau[2], 1e-3)))
+    # A first step by hand, of joints that are plain numbers.
+    plain = slice(robot.nv - 3, robot.nv)
+    a = robot.forward_dynamics(q, v, tau[:, 0])
+    expected = v[:, plain] + 1e-3 * a[:, plain]
+    assert np.allclose(one.v[:, 0, plain], expected, atol=1e-13)
+    assert np.allclose(one.q[:, 0, -3:], q[:, -3:] + 1e-3 * expected, atol=1e-13)
+    # The same torques for all, and the same state for all torques.
+    assert robot.rollout(q, v, tau[0], 1e-3).q.shape == (6, 5, robot.nq)
+    assert robot.rollout(q[0], v[0], tau, 1e-3).v.shape == (6, 5, robot.nv)
+
+
+@pytest.mark.parametrize("method", ["semi_implicit_euler", "implicit_damping", "rk4"])
+def test_gradients_are_differences(robot, method):
+    q, v, tau = start(robot, 2, 4)
+    random = np.random.default_rng(6)
+    weights = random.uniform(-1, 1, (2, 4, robot.nv))
+    places = random.uniform(-1, 1, (2, 4, robot.nv))
+    ends = robot.rollout(q, v, tau, 1e-2, method=method)
+
+    def cost(q, v, tau):
+        found = robot.rollout(q, v, tau, 1e-2, method=method)
+        return (weights * found.v).sum() + (places * robot.difference(ends.q, found.q)).sum()
+
+    gradient = robot.rollout_gradient(q, v, tau, 1e-2, weights_q=places, weights_v=weights, method=method)
+    step = 1e-6
+    along = [random.uniform(-1, 1, x.shape) for x in gradient]
+
+    def moved(by):
+        return robot.integrate(q, by * along[0]), v + by * along[1], tau + by * along[2]
+
+    expected = (cost(*moved(step)) - cost(*moved(-step))) / (2 * step)
+    found = sum((one * other).sum() for one, other in zip(gradient, along))
+    assert abs(found - expected) < 1e-6 * max(1, abs(expected)), (found, expected)
+
+
+def test_what_is_wrong_is_told(robot):
+    q, v, tau = start(robot, 2, 3)
+    for arguments, options, text in [
+        ((q, v, tau, 1e-3), {"method": "rk5"}, "method: found \"rk5\", expected one of semi_implicit_euler"),
+        ((q, v, tau, 0.0), {}, "h: found 0.0, expected a positive"),
+        ((q, v, tau, 1e-3), {"every": 0}, "every: found 0"),
+        ((q[:, 1:], v, tau, 1e-3), {}, "q: found shape"),
+        ((q, v, tau[..., 1:], 1e-3), {}, "tau: found shape"),
+        ((q, v, np.zeros((3, 3, robot.nv)), 1e-3), {}, "dimensions of a batch that do not fit"),
+        ((q, v * np.nan, tau, 1e-3), {}, "v: found nan"),
+    ]:
+        with pytest.raises(ValueError, match=text.replace("[", r"\[")):
+            robot.rollout(*arguments, **options)
+    with pytest.raises(ValueError, match="weights_q: found shape"):
+        robot.rollout_gradient(q, v, tau, 1e-3, weights_q=np.zeros(2))
