@@ -279,6 +279,29 @@ class Robot(_Functions):
     def call(self, name: str, *arguments: ArrayLike, threads: Optional[int] = None, out: Optional[_Array] = None) -> Any: ...
     def compile(self, functions: Iterable[str], *, flags: Iterable[str] = ..., batch: bool = False) -> CompiledRobot: ...
     def derivative(self, request: str) -> Derivative: ...
+    def rollout(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        tau: ArrayLike,
+        h: float,
+        *,
+        method: str = "semi_implicit_euler",
+        every: int = 1,
+        threads: Optional[int] = None,
+    ) -> Rollout: ...
+    def rollout_gradient(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        tau: ArrayLike,
+        h: float,
+        *,
+        weights_q: Optional[ArrayLike] = None,
+        weights_v: Optional[ArrayLike] = None,
+        method: str = "semi_implicit_euler",
+        threads: Optional[int] = None,
+    ) -> RolloutGradient: ...
     def wheel(
         self,
         folder: Union[str, PathLike[str]],
@@ -305,6 +328,15 @@ class Derivative:
     gives: tuple[tuple[str, tuple[int, ...], str], ...]
 
     def __call__(self, *arguments: ArrayLike, threads: Optional[int] = None) -> Any: ...
+
+class Rollout(NamedTuple):
+    q: NDArray[np.float64]
+    v: NDArray[np.float64]
+
+class RolloutGradient(NamedTuple):
+    q: NDArray[np.float64]
+    v: NDArray[np.float64]
+    tau: NDArray[np.float64]
 
 class CompiledRobot(_Functions):
     robot: Robot
