@@ -61,6 +61,15 @@ fn the_hand_reaches_each_place_alone_and_in_vectors() {
 }
 
 #[test]
+fn steps_agree_in_vectors_and_their_gradient_with_differences() {
+    let text = printed(env!("CARGO_BIN_EXE_rollouts"));
+    assert!(number(&text.replace(" rad", ""), "largest difference") < 1e-9, "{text}");
+    let line = text.lines().find(|line| line.contains("along a direction")).unwrap();
+    let found: Vec<f64> = line.split([' ', ',']).filter_map(|word| word.parse().ok()).collect();
+    assert!(found.len() == 2 && (found[0] - found[1]).abs() < 1e-5 * found[1].abs(), "{text}");
+}
+
+#[test]
 fn products_with_jacobians_agree_from_both_sides() {
     let text = printed(env!("CARGO_BIN_EXE_gradients"));
     assert!(number(&text, "arm: ") < 1e-12 && number(&text, "legs: ") < 1e-12, "{text}");
