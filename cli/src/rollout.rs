@@ -28,8 +28,8 @@ pub(crate) struct RolloutArguments {
     /// How many steps
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     steps: u64,
-    /// A file of states with q, v and tau, in JSON or CSV, or a number of random states [default: the
-    /// robot at rest, or the file's state]
+    /// A file of states with q, v and tau, in JSON or CSV, or a number of random states [default:
+    /// one state of zeros]
     #[arg(long, value_name = "FILE|K")]
     states: Option<PathBuf>,
     /// The method, a function of the group `steps` [default: that of the file's integrator, or

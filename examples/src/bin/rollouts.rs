@@ -68,7 +68,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let clock = Instant::now();
     for _ in 0..STEPS {
         arm::batch_f64::step(&q, &v, &torques, &mut q_next, &mut v_next)?;
-        (std::mem::swap(&mut q, &mut q_next), std::mem::swap(&mut v, &mut v_next));
+        std::mem::swap(&mut q, &mut q_next);
+        std::mem::swap(&mut v, &mut v_next);
     }
     println!("all states in vectors:     {:5.1} ns a step", per_step(clock));
     let far = alone.iter().flatten().zip(q.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -80,7 +81,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let held = vec![arm::gravity_torque(&start); STEPS];
     let cost = |torques: &[Vector]| slope(&motion(start, torques), torques, &target);
     let clock = Instant::now();
-    let (_, by_tau) = (0..ROUNDS).map(|_| cost(&held)).last().unwrap_or_default();
+    let mut by_tau = Vec::new();
+    (0..ROUNDS).for_each(|_| by_tau = cost(&held).1);
     let gradient = clock.elapsed().as_secs_f64() / f64::from(ROUNDS);
     let clock = Instant::now();
     (0..ROUNDS).for_each(|_| drop(black_box(motion(black_box(start), &held))));

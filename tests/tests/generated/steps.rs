@@ -92,7 +92,7 @@ fn errors_fall_with_the_order_of_the_method() {
     }
 }
 
-/// A wheel of inertia I on a fixed axle with damping d: v₁ (I + h d) = I v₀ + h τ, whatever the step.
+/// A wheel of inertia I on an axle with damping d: v₁ (I + h d) = I v₀ + h τ, whatever the step.
 #[test]
 fn damping_is_implicit() {
     let urdf = "<robot name='wheel'><link name='base'/><link name='rim'><inertial><mass value='1'/>\

@@ -10,8 +10,8 @@
 //!   `lane::<K>(V) -> Real`;
 //! * `add`, `sub`, `mul`, `div`, `neg`, `sqrt`; `fmadd` = ab + c, `fmsub` = ab − c, `fnmadd` = c −
 //!   ab, `fnmsub` = −ab − c with one rounding, or two where the set has no such instruction;
-//! * `positive(x) -> M`, x > 0; `select(m, a, b)`, a where m; `any(m) -> bool`, whether m holds in a
-//!   lane; `reduce_add(x)`, the sum of the lanes in every lane (f64 of 2 and 4);
+//! * `positive(x) -> M`, x > 0; `select(m, a, b)`, a where m; `any(m) -> bool`, whether m holds in
+//!   a lane; `reduce_add(x)`, the sum of the lanes in every lane (f64 of 2 and 4);
 //! * `sin_cos(x) -> (V, V)`, x in rad, any, and `atan2(y, x)`, lane by lane by the standard
 //!   library.
 //!

@@ -1,7 +1,8 @@
 //! The classical Runge–Kutta method of four stages:
 //!
 //! ```text
-//! k₁ = f(x), k₂ = f(x + ½h k₁), k₃ = f(x + ½h k₂), k₄ = f(x + h k₃),   x₁ = x + h/6 (k₁ + 2k₂ + 2k₃ + k₄)
+//! k₁ = f(x), k₂ = f(x + ½h k₁), k₃ = f(x + ½h k₂), k₄ = f(x + h k₃)
+//! x₁ = x + h/6 (k₁ + 2k₂ + 2k₃ + k₄)
 //! ```
 
 use alloc::vec;
