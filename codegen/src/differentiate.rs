@@ -6,7 +6,7 @@
 //! configuration has derivatives in the tangent space where it ends.
 
 use articulated_core::Scalar;
-use articulated_core::algorithm::{Argument, FunctionId, Shape, divide_by_length, small_difference, small_step};
+use articulated_core::algorithm::{Argument, Shape, divide_by_length, small_difference, small_step};
 use articulated_core::model::Model;
 use num_traits::Zero;
 
@@ -14,9 +14,6 @@ use crate::function_spec::{Derivative, FunctionSpec, FunctionTerm, Output, Trans
 use crate::graph::{Graph, NodeId};
 use crate::pass::{self, adjoint, dce, splice, tangent};
 use crate::sym::Sym;
-
-/// The arguments of the matrices of derivatives of inverse and forward dynamics.
-const BLOCKS: [&[Argument]; 3] = [&[Argument::Q], &[Argument::V], &[Argument::A, Argument::Tau]];
 
 /// A requested derivative, with the inputs by which the function is differentiated.
 pub(crate) struct Steps<'a> {
@@ -217,27 +214,21 @@ impl<'a> Steps<'a> {
         if pass::cost(&reverse) < pass::cost(&forward) { reverse } else { forward }
     }
 
-    /// The function of the table that has this jacobian, as `[3][nv][nv]` for q, v and a or τ.
-    pub(crate) fn own_algorithm(&self, part: &FunctionTerm) -> Option<FunctionTerm> {
-        let takes_wrenches = part.function.takes.contains(&Argument::Wrenches);
-        let id = match (part.function.general, takes_wrenches) {
-            (FunctionId::inverse_dynamics_with_wrenches, false) => FunctionId::inverse_dynamics_derivatives,
-            (FunctionId::inverse_dynamics_with_wrenches, true) => FunctionId::inverse_dynamics_derivatives_with_wrenches,
-            (FunctionId::forward_dynamics_with_wrenches, false) => FunctionId::forward_dynamics_derivatives,
-            (FunctionId::forward_dynamics_with_wrenches, true) => FunctionId::forward_dynamics_derivatives_with_wrenches,
-            _ => return None,
-        };
-        let has_all = self.transform.wrt.iter().all(|a| BLOCKS.iter().any(|block| block.contains(a)));
-        let fits = self.transform.kind == Derivative::Jacobian && !self.transform.in_coordinates && has_all;
-        fits.then(|| FunctionTerm { function: id.row(), ..part.clone() })
+    /// The function of the table that has this jacobian, with the number of the block for each
+    /// requested argument.
+    pub(crate) fn own_algorithm(&self, part: &FunctionTerm) -> Option<(FunctionTerm, Vec<usize>)> {
+        let fits = self.transform.kind == Derivative::Jacobian && !self.transform.in_coordinates;
+        let (function, blocks) = part.function.jacobian().filter(|_| fits)?;
+        let place = |argument: &Argument| blocks.iter().position(|block| block.contains(argument));
+        let blocks = self.transform.wrt.iter().map(place).collect::<Option<_>>()?;
+        Some((FunctionTerm { function, ..part.clone() }, blocks))
     }
 
-    /// The blocks of its result for the requested arguments.
-    pub(crate) fn blocks(&self, mut graph: Graph) -> Graph {
+    /// These blocks of its result.
+    pub(crate) fn blocks(&self, mut graph: Graph, blocks: &[usize]) -> Graph {
         let size = self.shape.nv * self.shape.nv;
-        let block = |argument: &Argument| BLOCKS.iter().position(|block| block.contains(argument)).unwrap_or_default();
         let outputs = std::mem::take(&mut graph.outputs);
-        graph.outputs = self.transform.wrt.iter().flat_map(|a| outputs[block(a) * size..][..size].to_vec()).collect();
+        graph.outputs = blocks.iter().flat_map(|block| outputs[block * size..][..size].to_vec()).collect();
         graph
     }
 

@@ -135,7 +135,7 @@ fn traced(
     let graph = graph_of(&spec.parts, Some(&steps));
     let derivative = steps.derivative(&graph).requested_as(&graph);
     match steps.own_algorithm(&spec.parts[0]) {
-        Some(term) => cheaper(derivative, steps.blocks(graph_of(&[term], None))),
+        Some((term, blocks)) => cheaper(derivative, steps.blocks(graph_of(&[term], None), &blocks)),
         None => derivative,
     }
 }

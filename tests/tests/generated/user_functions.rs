@@ -213,6 +213,29 @@ fn ports_have_names_that_every_language_has_room_for() {
     assert_eq!(told(|users| users.push(Effort { offset: 1.0 })), "");
 }
 
+/// A trait's function without results, as a user may write one, and a good one of the same name.
+struct Empty;
+
+impl UserFunction for Empty {
+    const NAME: &'static str = "effort";
+    const SUMMARY: &'static str = "nothing";
+    const INPUTS: &'static [articulated_core::algorithm::Argument] = &[];
+    const OUTPUTS: &'static [articulated_core::algorithm::Port] = &[];
+
+    fn run<S: Scalar>(&self, _: &Model<S>, _: &mut Workspace<S>, _: &articulated_core::algorithm::Inputs<'_, S>, _: &mut [S]) {}
+}
+
+#[test]
+fn a_function_replaces_an_earlier_one_of_its_name() {
+    let mut request = request(&["effort"]);
+    request.options.users.push(Empty);
+    let told = generate(&request).map(|_| String::new()).unwrap_or_else(|e| e.to_string());
+    assert!(told.contains("`effort`"), "{told}");
+    request.options.users.push(Effort { offset: 0.25 });
+    assert!(generate(&request).is_ok());
+    assert_eq!(request.options.users.iter().filter(|function| function.name == "effort").count(), 1);
+}
+
 #[test]
 fn requests_may_name_it_and_others_may_not_be_called_like_it() {
     let mut users = UserFunctions::default();

@@ -252,6 +252,21 @@ impl<S: Scalar> Function<S> {
         if self.outputs.is_empty() { size(self.gives, shape) } else { self.outputs.iter().map(|port| port.len(shape)).sum() }
     }
 
+    /// The function of the table that is the Jacobian of this one, if there is one: an array
+    /// `[blocks][nv][nv]`, and the arguments of each block.
+    pub fn jacobian(&self) -> Option<(&'static Self, &'static [&'static [Argument]])> {
+        const BLOCKS: &[&[Argument]] = &[&[Argument::Q], &[Argument::V], &[Argument::A, Argument::Tau]];
+        use FunctionId as F;
+        let id = match (self.general, self.takes.contains(&Argument::Wrenches)) {
+            (F::inverse_dynamics_with_wrenches, false) => F::inverse_dynamics_derivatives,
+            (F::inverse_dynamics_with_wrenches, true) => F::inverse_dynamics_derivatives_with_wrenches,
+            (F::forward_dynamics_with_wrenches, false) => F::forward_dynamics_derivatives,
+            (F::forward_dynamics_with_wrenches, true) => F::forward_dynamics_derivatives_with_wrenches,
+            _ => return None,
+        };
+        Some((id.row(), BLOCKS))
+    }
+
     /// Evaluates the function; `arguments` in the order of `takes`, `out` as `gives` says, row by
     /// row.
     pub fn call(&self, model: &Model<S>, ws: &mut Workspace<S>, arguments: &[&[S]], out: &mut [S]) -> Result<(), FunctionError> {
