@@ -14,7 +14,7 @@ use crate::lir::pass::outline::outline;
 use crate::lir::pass::pair_stores::pair_stores;
 use crate::lir::pass::rows::WIDTH;
 use crate::lir::pass::spill::{self, spill};
-use crate::lir::{Array, Bodies, Body, Stmt, Ty};
+use crate::lir::{Array, Bodies, Body, Region, Stmt, Turns, Ty};
 use crate::program::{MultiRhsSolve, Program};
 use crate::{Arithmetic, Precision};
 
@@ -157,6 +157,15 @@ impl<'a> Function<'a> {
     /// Whether the values are vectors.
     pub(crate) fn in_lanes(&self) -> bool {
         matches!(self.body.ty, Ty::Vector(_))
+    }
+
+    /// " at most" where a loop may end early, or statements run only where a mask holds; else
+    /// empty.
+    pub(crate) fn at_most(&self) -> &'static str {
+        let is_bound = |region: &Region| matches!(region.turns, Turns::Until { .. } | Turns::Where(_));
+        let all = self.body.statements();
+        let has_bound = all.into_iter().any(|statement| matches!(statement, Stmt::Region(region) if is_bound(region)));
+        if has_bound { " at most" } else { "" }
     }
 
     /// Its bodies alone.

@@ -5,7 +5,7 @@
 use articulated_codegen::lir::interpret::interpret;
 use articulated_codegen::{COptions, Options, Real, Request, RustOptions, Target, generate};
 use articulated_core::Scalar;
-use articulated_core::algorithm::{UserFunction, Workspace, gravity_torque, inverse_dynamics};
+use articulated_core::algorithm::{UserFunction, Workspace, forward_dynamics, gravity_torque, inverse_dynamics, mass_matrix_inverse};
 use articulated_core::description::Base;
 use articulated_core::model::Model;
 use articulated_core::running::Running;
@@ -154,6 +154,8 @@ fn graphs_and_statements_compute_what_numbers_do() {
     let mut random = Random::new(1);
     for (k, function) in ALL.into_iter().enumerate() {
         generated.graphs[k].verify().unwrap();
+        let (before, _) = generated.source.split_once(&format!("pub fn {function}(")).unwrap();
+        assert!(before.rsplit("///").next().unwrap_or_default().contains(" at most (multiply-adds"), "{function}");
         assert!(generated.graphs[k].has_regions());
         for state in states(20) {
             let given = given(function, &state, &mut random);
@@ -301,6 +303,51 @@ fn bounds_hold_where_an_end_is_certain() {
             let off = (Big::from_f64(found) - exact).abs().to_f64();
             assert!(off <= *error && *error < 1e-13, "{off:e} {error:e}");
         }
+    }
+}
+
+user_function! {
+    /// A long function with a loop in its middle, which reads and is read by what is around it.
+    struct Long;
+    fn long<S>(robot, work, q: [Nq] "rad", v: [Nv] "rad/s", tau: [Nv] "N·m") -> (long: [Nv] "1") {
+        let n = robot.nv();
+        let (mut inverse, mut a) = (vec![S::zero(); n * n], vec![S::zero(); n]);
+        mass_matrix_inverse(robot, work, q, &mut inverse);
+        let mut x = [S::one(), S::zero()];
+        let square = S::one() + inverse[0] * inverse[0] + inverse[n * n - 1] * inverse[n * n - 1];
+        let _ = S::repeat(40, &mut x, |x| {
+            let before = x[0];
+            x[0] = S::from_f64(0.5) * (before + square / before);
+            x[1] = x[0] * inverse[1];
+            (small::<S>() * x[0] - (x[0] - before).abs()).positive()
+        });
+        forward_dynamics(robot, work, q, v, tau, &mut a);
+        for k in 0..n {
+            long[k] = a[k] * x[0] + x[1] + inverse[k];
+        }
+    }
+}
+
+/// Pieces of a long function keep what a region reads and what it makes.
+#[test]
+fn a_region_is_in_one_piece_of_a_long_function() {
+    let urdf = articulated_models::robot("humanoid").expect("a bundled robot").urdf;
+    let mut request = Request::new("humanoid.urdf", urdf);
+    request.options.robot.base = Base::Floating;
+    request.options.users.push(Long);
+    request.options.functions = vec!["long".into()];
+    request.options.batch = vec![Real::F64];
+    let generated = generate(&request).unwrap();
+    let case = Case::new("humanoid", read(urdf), Base::Floating);
+    let state = case.state(&mut Random::new(3));
+    let arguments = [&state.q[..], &state.v, &state.tau];
+    let mut expected = vec![0.0; generated.model.nv()];
+    Long.call(&generated.model, &mut Workspace::new(&generated.model), &arguments, &mut expected).unwrap();
+    let input = |argument: usize, k: usize| arguments[argument][k];
+    assert_close(&generated.graphs[0].evaluate(input), &expected, 1e-9, "graph");
+    assert!(generated.bodies[0].single.pieces.len() > 1, "it is cut");
+    for (which, body) in generated.bodies[0].all() {
+        assert_close(&interpret(body, input), &expected, 1e-9, which);
     }
 }
 

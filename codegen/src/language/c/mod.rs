@@ -269,7 +269,8 @@ impl Source<'_> {
             let _ = writeln!(out, " * @param {name} {}: {}", self.lengths(&output.dims), output.unit);
         }
         let c = function.entry.emitted();
-        let _ = writeln!(out, " * Operations: {}; sines and cosines: {}.\n */", c.instructions(), c.trigonometric());
+        let most = function.at_most();
+        let _ = writeln!(out, " * Operations: {}{most}; sines and cosines: {}{most}.\n */", c.instructions(), c.trigonometric());
     }
 
     /// The names of the results.

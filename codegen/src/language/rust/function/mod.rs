@@ -278,10 +278,11 @@ fn document(out: &mut String, signature: &Signature, context: Context) {
     let c = entry.emitted();
     let _ = writeln!(
         out,
-        "/// {by}{} + {} in {} (multiply-adds counted once), {}{}.",
+        "/// {by}{} + {} in {}{} (multiply-adds counted once), {}{}.",
         counted(c.multiplications(), ["multiplication", "multiplications"]),
         counted(c.additions(), ["addition", "additions"]),
         counted(c.instructions(), ["instruction", "instructions"]),
+        signature.function.at_most(),
         counted(c.trigonometric(), ["sine or cosine", "sines and cosines"]),
         form(signature.function)
     );
