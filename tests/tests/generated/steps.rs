@@ -4,12 +4,13 @@
 use articulated::simulate::{IntegratorId, Settings, Simulation};
 use articulated_codegen::lir::interpret::interpret;
 use articulated_codegen::{COptions, Options, Real, Request, Target, generate};
-use articulated_core::algorithm::{Argument, Workspace, difference, function, integrate};
+use articulated_core::algorithm::{Argument, UserFunction, Workspace, difference, function, integrate};
 use articulated_core::description::{Base, Origin};
 use articulated_core::dual::Dual;
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
 use articulated_core::step::{step, steps};
+use articulated_core::user_function;
 use articulated_tests::c_program;
 use articulated_tests::case::{Case, State, cast, read};
 use articulated_tests::random::Random;
@@ -283,6 +284,71 @@ fn derivatives_of_a_step_are_those_of_dual_numbers() {
             assert!(rest.is_empty() && product.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-9 * scale), "{name}");
         }
     }
+}
+
+user_function! {
+    /// The states after each of twelve steps of 2 ms, and ½|v|² at the end: a loop over one step.
+    struct Roll;
+    fn roll<S>(robot, work, q: [Nq] "rad", v: [Nv] "rad/s", torques: [Of(12), Nv] "N·m")
+        -> (path: [Of(12), Of(6)] "q and v", cost: [] "rad²/s²") {
+        let n = robot.nv();
+        let mut state = [q, v].concat();
+        let step = step::<S>("step_semi_implicit_euler").expect("a row");
+        S::for_each(12, torques, &mut state, path, |tau, state, now| {
+            let (q, v) = state.split_at(n);
+            step.call(robot, work, &[q, v, tau, &[S::from_f64(2e-3)]], now).expect("vectors made to measure");
+            state.copy_from_slice(now);
+        });
+        cost[0] = state[n..].iter().fold(S::zero(), |sum, v| sum + S::from_f64(0.5) * *v * *v);
+    }
+}
+
+/// The body of the loop is traced once; its gradient goes back through stored states.
+#[test]
+fn a_rollout_is_a_loop_over_a_step() {
+    let mut request = Request::new("arm.urdf", include_str!("../../robots/arm.urdf"));
+    request.options.users.push(Roll);
+    request.options.functions = ["roll", "step_semi_implicit_euler", "pull = vjp(roll)", "push = jvp(roll)"].map(Into::into).to_vec();
+    let generated = generate(&request).unwrap();
+    let model = &generated.model;
+    let nv = model.nv();
+    assert_eq!(2 * nv, 6);
+    let text = |name: &str| generated.source.split_once(&format!("pub fn {name}(")).unwrap().1.split("pub fn ").next().unwrap().len();
+    assert!(text("roll") < 3 * text("step_semi_implicit_euler"), "{} {}", text("roll"), text("step_semi_implicit_euler"));
+    let mut random = Random::new(5);
+    let State { q, v, .. } = state(model, &mut random);
+    let given = [q, v, random.vector(12 * nv, -1.0, 1.0)];
+    let input = |argument: usize, k: usize| given[argument][k];
+    let (mut at, mut expected) = ((given[0].clone(), given[1].clone()), Vec::new());
+    for tau in given[2].chunks(nv) {
+        at = stepped("step_semi_implicit_euler", model, [&at.0, &at.1, tau], 2e-3);
+        expected.extend(at.0.iter().chain(&at.1));
+    }
+    expected.push(0.5 * at.1.iter().map(|v| v * v).sum::<f64>());
+    let close = |found: &[f64]| found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-12 * b.abs().max(1.0));
+    assert!(close(&generated.graphs[0].evaluate(input)));
+    assert!(generated.bodies[0].all().all(|(_, body)| close(&interpret(body, input))));
+    // Dual numbers run through all turns.
+    let exact = model.cast::<Dual<f64>>();
+    let direction = given.each_ref().map(|x| random.vector(x.len(), -1.0, 1.0));
+    let moved: Vec<Vec<Dual<f64>>> =
+        given.iter().zip(&direction).map(|(x, d)| x.iter().zip(d).map(|(x, d)| Dual::new(*x, *d)).collect()).collect();
+    let slices: Vec<&[Dual<f64>]> = moved.iter().map(Vec::as_slice).collect();
+    let mut out = vec![Dual::constant(0.0); expected.len()];
+    Roll.call(&exact, &mut Workspace::new(&exact), &slices, &mut out).unwrap();
+    let slopes: Vec<f64> = out.iter().map(|x| x.slope).collect();
+    let scale = slopes.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
+    let push = generated.graphs[3].evaluate(|argument, k| if argument < 3 { given[argument][k] } else { direction[argument - 3][k] });
+    assert!(push.iter().zip(&slopes).all(|(a, b)| (a - b).abs() < 1e-10 * scale), "{push:?} {slopes:?}");
+    let weights = random.vector(expected.len(), -1.0, 1.0);
+    let pull = generated.graphs[2].evaluate(|argument, k| match argument {
+        0..3 => given[argument][k],
+        3 => weights[k],
+        _ => weights[weights.len() - 1],
+    });
+    let left: f64 = pull.iter().zip(direction.iter().flatten()).map(|(a, b)| a * b).sum();
+    let right: f64 = slopes.iter().zip(&weights).map(|(a, b)| a * b).sum();
+    assert!((left - right).abs() < 1e-10 * scale * 10.0, "{left} {right}");
 }
 
 #[test]
