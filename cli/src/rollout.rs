@@ -81,6 +81,9 @@ pub(crate) fn run(arguments: &RolloutArguments, format: Format) -> Result<u8, Fa
     let model = robot.model(&built)?;
     let world = &built.reading.world;
     let method = method(arguments, world.integrator.as_deref())?;
+    if let Some(row) = step::step::<f64>(method) {
+        articulated_codegen::defined(&robot.file, &model, &articulated_codegen::massless(&model), row)?;
+    }
     let h = arguments.time_step.or(world.step).unwrap_or(STEP);
     let starts = starts(arguments, &model)?;
     let begin = Instant::now();

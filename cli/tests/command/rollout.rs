@@ -42,6 +42,11 @@ fn what_is_wrong_is_told() {
     assert!(status == 1 && text.contains("states[0]: v: found nothing, expected 1 number"), "{status} {text}");
     let (status, text) = told(&["--states", "no_such_file.json"]);
     assert!(status == 1 && text.contains("no_such_file.json"), "{status} {text}");
+    // A joint that moves no mass has no acceleration.
+    let idle = "<robot name='idle'><link name='a'/><link name='b'/>\
+        <joint name='turn' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint></robot>";
+    let answer = run(&["rollout", File::new("idle.urdf", idle.as_bytes()).name(), "--steps", "1"]);
+    assert!(answer.status == 1 && answer.err.contains("turn"), "{} {}", answer.status, answer.err);
     // A step that is too long for a stiff joint.
     let scene = "robot = \"simple_pendulum\"\n[effects]\ndamping = 1e4\n";
     let scene = File::new("stiff.toml", scene.as_bytes());
