@@ -31,7 +31,11 @@ pub(crate) fn gradients(
     wrt: &[(usize, usize)],
     mut weight: impl FnMut(&mut Graph, usize) -> NodeId,
 ) -> Vec<NodeId> {
-    let place = |node: &Node| wrt.iter().position(|x| node.op == Op::Input && (node.args[0] as usize, node.args[1] as usize) == *x);
+    let places: HashMap<(usize, usize), usize> = wrt.iter().copied().zip(0..).collect();
+    let place = |node: &Node| {
+        let input = (node.args[0] as usize, node.args[1] as usize);
+        if node.op == Op::Input { places.get(&input).copied() } else { None }
+    };
     let mut active: Vec<bool> = Vec::with_capacity(count);
     for node in &graph.nodes()[..count] {
         active.push(place(node).is_some() || node.op != Op::Positive && node.operands().any(|operand| active[operand.index()]));
