@@ -189,6 +189,12 @@ impl Graph {
         self.nodes().iter().any(|node| node.op == Op::Region)
     }
 
+    /// Whether a node is a region with a table.
+    pub(crate) fn has_turns(&self) -> bool {
+        let regions = self.nodes().iter().filter(|node| node.op == Op::Region);
+        regions.map(|node| self.region_of(node)).any(|region| matches!(region.kind, Kind::ForEach { .. }))
+    }
+
     /// The region that a node is.
     pub(crate) fn region_of(&self, node: &Node) -> &Arc<Region> {
         &self.regions[node.args[1] as usize]

@@ -257,10 +257,17 @@ impl Plan<'_> {
         match results {
             2.. if graph.lanes().width == WIDTH && raw_memory && nodes < CUT_FROM && self.columns.is_none() => Ending::Rows,
             _ if results >= WRITE_FROM.0 && nodes >= WRITE_FROM.1 || self.columns.is_some() => Ending::Filled,
+            2.. if graph.has_turns() => Ending::Filled,
             0 | 1 => Ending::Value,
             _ if !raw_memory || self.is_outlined => Ending::Value,
             _ => Ending::Written,
         }
+    }
+
+    /// How long each argument is, for numbers that go in and come out as they are computed with.
+    fn lengths(&self) -> Vec<usize> {
+        let is_same = matches!(self.can.level.arithmetic, Arithmetic::Double | Arithmetic::Single) && !self.can.level.of_two();
+        if is_same { self.spec.arguments().iter().map(|argument| argument.len(self.shape)).collect() } else { Vec::new() }
     }
 
     fn ty(&self) -> Ty {
@@ -292,8 +299,7 @@ impl Plan<'_> {
         let (graph, ty) = (self.graph, self.ty());
         let mut results = results(self.spec, self.shape);
         let is_matrix = matches!(results.as_slice(), [one] if one.lengths.len() > 1);
-        let barrier =
-            is_matrix && ending == Ending::Filled && alias_barrier::pays(graph) || is_matrix && outlined && alias_barrier::pays(graph);
+        let barrier = is_matrix && (ending == Ending::Filled || outlined) && alias_barrier::pays(graph) && !graph.has_turns();
         // A compiler takes long to check the second index of a matrix.
         if is_matrix && outlined || barrier {
             results = flat(&results);
@@ -302,7 +308,10 @@ impl Plan<'_> {
         // Not stored here: numbers that loops compute, and zeros of a result that is initialised
         // with zeros.
         let is_partial = self.columns.is_some() || outlined && ending != Ending::Filled;
-        let lowering = Lowering { graph, ty, sines: self.sines(), results: &results, first: 0 };
+        // Regions read whole arguments and store whole results where inputs are read as needed.
+        let lengths = self.lengths();
+        let arguments: &[usize] = if ending == Ending::Filled { &lengths } else { &[] };
+        let lowering = Lowering { graph, ty, sines: self.sines(), results: &results, first: 0, arguments };
         let stores = || lowering.stores_as_made(|at| ending == Ending::Filled && is_read(at), barrier);
         let mut lanes = graph.lanes().clone();
         let (mut pieces, kept) = match ending {
@@ -341,7 +350,8 @@ impl Plan<'_> {
         let nodes = graph.nodes().len();
         let length = if nodes < CUT_STATES_FROM { usize::MAX } else { LENGTH };
         let sines = SinCosGrouping { together: 1, are_powers_of_two: true, from: 0 };
-        let statements = Lowering { graph, ty: Ty::States, sines, results: &results, first: 0 }.stores_as_made(|_| true, false);
+        let statements = Lowering { graph, ty: Ty::States, sines, results: &results, first: 0, arguments: &self.lengths() };
+        let statements = statements.stores_as_made(|_| true, false);
         let (pieces, kept) = outline(statements, length);
         let body = |pieces: Vec<Vec<Stmt>>, slots| {
             let (lanes, results) = (graph.lanes().clone(), results.clone());

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{Body, Carried, Expr, Number, Operand, Region, Slot, Stmt, Store, Temp, Turns};
+use super::{Body, Carried, Expr, Number, Operand, Region, Slot, Stmt, Store, Table, Temp, Turns};
 use crate::graph::{MOST, Op, Value, operation};
 
 /// The numbers of the result, and NaN where a partial body stores none; `input(argument, index)`
@@ -97,13 +97,21 @@ impl<F: Fn(usize, usize) -> f64> Machine<'_, F> {
                     self.turn(region);
                 }
             }
-            Turns::Each { table, row, results, turns, read, .. } => {
+            Turns::Each { table, row, results, turns, read, stored, .. } => {
                 for turn in 0..*turns {
                     for (k, temp) in row.iter().enumerate() {
-                        self.values.insert(*temp, self.operand(table[turn * row.len() + k]));
+                        let place = turn * row.len() + k;
+                        let value = match table {
+                            Table::Values(values) => self.operand(values[place]),
+                            Table::Argument(argument) => [(self.input)(*argument as usize, place); MOST],
+                        };
+                        self.values.insert(*temp, value);
                     }
                     let found = self.turn(region);
                     debug_assert_eq!(found.len(), region.carried.len() + results.len());
+                    for (k, value) in found[region.carried.len()..].iter().enumerate().filter(|_| stored.is_some()) {
+                        self.out[stored.unwrap_or_default() + turn * results.len() + k] = value[0];
+                    }
                     for (_, k, temp) in read.iter().filter(|(at, ..)| *at == turn) {
                         self.values.insert(*temp, found[region.carried.len() + k]);
                     }

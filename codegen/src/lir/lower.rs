@@ -2,7 +2,7 @@
 
 mod regions;
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use crate::graph::{Graph, Lanes, Node, NodeId, Op};
 use crate::lir::order::{Step, order};
@@ -31,6 +31,9 @@ pub(crate) struct Lowering<'a> {
     pub(crate) results: &'a [Array],
     /// The number of the first value: those of bodies of regions follow those around them.
     pub(crate) first: usize,
+    /// How long each argument is, where results are stored as they are made: regions then read
+    /// whole arguments and store whole results. Empty elsewhere.
+    pub(crate) arguments: &'a [usize],
 }
 
 impl Lowering<'_> {
@@ -45,6 +48,12 @@ impl Lowering<'_> {
     /// as far as they are `read`. Of states all numbers are stored with their definitions.
     pub(crate) fn stores_as_made(&self, is_read: impl Fn(usize) -> bool, barrier: bool) -> Vec<Stmt> {
         let definitions = self.definitions();
+        let mut by_regions: HashSet<usize> = HashSet::new();
+        for statement in definitions.iter().flatten() {
+            if let Stmt::Region(region) = statement {
+                by_regions.extend(region.stores());
+            }
+        }
         let mut defined: HashMap<Temp, usize> = HashMap::new();
         for (unit, statements) in definitions.iter().enumerate() {
             statements.iter().filter(|s| !is_light(s)).for_each(|s| s.defines(|temp| _ = defined.insert(temp, unit)));
@@ -53,7 +62,7 @@ impl Lowering<'_> {
         let mut behind: Vec<Vec<(Temp, Stmt)>> = vec![Vec::new(); definitions.len()];
         for (at, output) in self.graph.outputs.iter().enumerate() {
             let number = self.number(*output);
-            if number.is_zero() && self.ty != Ty::States {
+            if number.is_zero() && self.ty != Ty::States || by_regions.contains(&at) {
                 continue;
             }
             let store = Stmt::Store(Store::One(at, number));

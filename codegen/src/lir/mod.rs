@@ -227,6 +227,15 @@ pub struct Carried {
     pub next: Operand,
 }
 
+/// The rows of a region.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Table {
+    /// Values.
+    Values(Vec<Operand>),
+    /// The numbers of a whole argument.
+    Argument(u32),
+}
+
 /// How often a region runs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Turns {
@@ -246,7 +255,7 @@ pub enum Turns {
         /// The number of the table and of its results: part of their names.
         name: u32,
         /// The rows, one after the other.
-        table: Vec<Operand>,
+        table: Table,
         /// The values of a row in a turn.
         row: Vec<Temp>,
         /// The results of a turn, operands of the body.
@@ -255,6 +264,9 @@ pub enum Turns {
         turns: usize,
         /// The results that are read after the region: turn, number of the result, value.
         read: Vec<(usize, usize, Temp)>,
+        /// The first place of the function's result to which all results of all turns go, one after
+        /// the other.
+        stored: Option<usize>,
     },
 }
 
@@ -443,6 +455,7 @@ impl Stmt {
             Self::Store(Store::Two(at, _)) => vec![*at, at + 1],
             Self::Store(Store::Fill(at, count, _)) => (*at..at + count).collect(),
             Self::Store(Store::Whole(at, _)) => (*at..at + 4).collect(),
+            Self::Region(region) => region.stores().collect(),
             Self::Store(Store::Rows(rows, columns)) => rows.starts().iter().flat_map(|at| *at..at + columns.len()).collect(),
             _ => Vec::new(),
         }
@@ -455,7 +468,8 @@ impl Region {
         let more: &[Operand] = match &self.turns {
             Turns::Until { .. } => &[],
             Turns::Where(mask) => std::slice::from_ref(mask),
-            Turns::Each { table, .. } => table,
+            Turns::Each { table: Table::Values(values), .. } => values,
+            Turns::Each { .. } => &[],
         };
         self.carried.iter().map(|carried| &carried.start).chain(self.captured.iter().map(|(_, of)| of)).chain(more)
     }
@@ -464,7 +478,8 @@ impl Region {
         let more: &mut [Operand] = match &mut self.turns {
             Turns::Until { .. } => &mut [],
             Turns::Where(mask) => std::slice::from_mut(mask),
-            Turns::Each { table, .. } => table,
+            Turns::Each { table: Table::Values(values), .. } => values,
+            Turns::Each { .. } => &mut [],
         };
         self.carried.iter_mut().map(|carried| &mut carried.start).chain(self.captured.iter_mut().map(|(_, of)| of)).chain(more)
     }
@@ -473,6 +488,14 @@ impl Region {
     pub(crate) fn defines(&self) -> impl Iterator<Item = Temp> {
         let read = if let Turns::Each { read, .. } = &self.turns { read.as_slice() } else { &[] };
         self.after.iter().map(|(temp, _)| *temp).chain(read.iter().map(|(.., temp)| *temp))
+    }
+
+    /// The places of the function's result that it writes.
+    pub(crate) fn stores(&self) -> std::ops::Range<usize> {
+        match &self.turns {
+            Turns::Each { stored: Some(first), turns, results, .. } => *first..first + turns * results.len(),
+            _ => 0..0,
+        }
     }
 
     /// Whether it is read whether the mask of an iteration held.

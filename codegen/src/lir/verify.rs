@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::{Body, Expr, Operand, Region, Stmt, Temp, Turns};
+use super::{Body, Expr, Operand, Region, Stmt, Table, Temp, Turns};
 use crate::graph::Op;
 
 /// Checks that every operand is defined before its use and once, that comparisons return masks and
@@ -88,8 +88,10 @@ impl Known {
             Turns::Where(mask) if !self.is_mask(mask) => return Err("it runs where no mask holds".to_owned()),
             Turns::Each { row, table, turns, .. } => {
                 row.iter().copied().try_for_each(&mut define)?;
-                if table.len() != turns * row.len() {
-                    return Err(format!("a table of {} values for {turns} rows of {}", table.len(), row.len()));
+                if let Table::Values(values) = table
+                    && values.len() != turns * row.len()
+                {
+                    return Err(format!("a table of {} values for {turns} rows of {}", values.len(), row.len()));
                 }
             }
             _ => {}

@@ -98,7 +98,20 @@ user_function! {
     }
 }
 
-const ALL: [&str; 4] = ["roots", "rest", "fast", "path"];
+user_function! {
+    /// Turns that read a whole argument and whose results are the whole result.
+    struct Turns;
+    fn turns<S>(robot, work, q: [Nq] "rad", pushes: [Of(7), Of(2)] "rad") -> (turns: [Of(7), Of(3)] "rad") {
+        let mut state = [q[0], q[1]];
+        S::for_each(7, pushes, &mut state, turns, |push, state, now| {
+            let (sin, cos) = (state[0] + push[0]).sin_cos();
+            (state[0], state[1]) = (state[1] + sin * push[1], cos * q[2]);
+            now.copy_from_slice(&[state[0], state[1], sin]);
+        });
+    }
+}
+
+const ALL: [&str; 5] = ["roots", "rest", "fast", "path", "turns"];
 
 fn request(options: Options, functions: &[&str]) -> Request {
     let mut request = Request::new("arm.urdf", ARM);
@@ -107,6 +120,7 @@ fn request(options: Options, functions: &[&str]) -> Request {
     request.options.users.push(Rest);
     request.options.users.push(Fast);
     request.options.users.push(Path);
+    request.options.users.push(Turns);
     request.options.functions = functions.iter().map(|f| (*f).into()).collect();
     request
 }
@@ -118,6 +132,7 @@ fn given(function: &str, state: &State, random: &mut Random) -> Vec<Vec<f64>> {
         "roots" => vec![v.clone()],
         "rest" => vec![q.clone(), vec![random.within(200.0, 400.0)]],
         "fast" => vec![q.clone(), v.clone(), a.clone()],
+        "turns" => vec![q.clone(), random.vector(14, -1.0, 1.0)],
         _ => vec![q.clone(), random.vector(6, -1.0, 1.0)],
     }
 }
@@ -125,11 +140,17 @@ fn given(function: &str, state: &State, random: &mut Random) -> Vec<Vec<f64>> {
 fn called<S: Scalar>(function: &str, model: &Model<S>, given: &[Vec<S>]) -> Vec<S> {
     let slices: Vec<&[S]> = given.iter().map(Vec::as_slice).collect();
     let work = &mut Workspace::new(model);
-    let mut out = vec![S::zero(); if function == "path" { 8 } else { model.nv() }];
+    let count = match function {
+        "path" => 8,
+        "turns" => 21,
+        _ => model.nv(),
+    };
+    let mut out = vec![S::zero(); count];
     match function {
         "roots" => Roots.call(model, work, &slices, &mut out),
         "rest" => Rest.call(model, work, &slices, &mut out),
         "fast" => Fast.call(model, work, &slices, &mut out),
+        "turns" => Turns.call(model, work, &slices, &mut out),
         _ => Path.call(model, work, &slices, &mut out),
     }
     .unwrap();
@@ -155,7 +176,8 @@ fn graphs_and_statements_compute_what_numbers_do() {
     for (k, function) in ALL.into_iter().enumerate() {
         generated.graphs[k].verify().unwrap();
         let (before, _) = generated.source.split_once(&format!("pub fn {function}(")).unwrap();
-        assert!(before.rsplit("///").next().unwrap_or_default().contains(" at most (multiply-adds"), "{function}");
+        let is_bound = before.rsplit("///").next().unwrap_or_default().contains(" at most (multiply-adds");
+        assert_eq!(is_bound, function != "turns", "{function}");
         assert!(generated.graphs[k].has_regions());
         for state in states(20) {
             let given = given(function, &state, &mut random);
@@ -234,7 +256,7 @@ fn c_computes_what_numbers_do() {
 /// Differences of 96 digits: the derivative of where an iteration ends, however it gets there.
 #[test]
 fn derivatives_are_those_of_ninety_digits() {
-    let wrt = [("roots", "v"), ("rest", "q stiffness"), ("fast", "q v a"), ("path", "q controls")];
+    let wrt = [("roots", "v"), ("rest", "q stiffness"), ("fast", "q v a"), ("path", "q controls"), ("turns", "q pushes")];
     let of = |kind: &str| wrt.map(|(name, by)| format!("{kind}_{name} = {kind}({name}, {by})"));
     let functions = [of("jacobian"), of("vjp"), of("jvp"), of("hvp")].concat();
     let functions: Vec<&str> = functions.iter().map(String::as_str).collect();
@@ -276,13 +298,13 @@ fn derivatives_are_those_of_ninety_digits() {
             let of = |place: usize, more: &dyn Fn(usize, usize) -> f64| {
                 generated.graphs[place].evaluate(|argument, k| if argument < last { given[argument][k] } else { more(argument - last, k) })
             };
-            let pull = of(4 + which, &|_, k| weights[k]);
+            let pull = of(wrt.len() + which, &|_, k| weights[k]);
             let left: f64 = pull.iter().zip(direction.iter().flatten()).map(|(a, b)| a * b).sum();
             let right: f64 = along.iter().zip(&weights).map(|(a, b)| a * b).sum();
             assert!((left - right).abs() < 1e-11 * right.abs().max(1.0), "{function}: {left} {right}");
-            assert_close(&of(8 + which, &|argument, k| direction[argument][k]), &along, 1e-11, function);
+            assert_close(&of(2 * wrt.len() + which, &|argument, k| direction[argument][k]), &along, 1e-11, function);
             // λᵀ ∂²y/∂x² d from both sides, by a second difference: λᵀ y'' (d, d).
-            let hvp = of(12 + which, &|argument, k| if argument == 0 { weights[k] } else { direction[argument - 1][k] });
+            let hvp = of(3 * wrt.len() + which, &|argument, k| if argument == 0 { weights[k] } else { direction[argument - 1][k] });
             let found: f64 = hvp.iter().zip(direction.iter().flatten()).map(|(a, b)| a * b).sum();
             let (up, here, down) = (at(&direction, step), at(&direction, Big::from_f64(0.0)), at(&direction, -step));
             let second = |k: usize| ((up[k] - here[k] - here[k] + down[k]) / (step * step)).to_f64();

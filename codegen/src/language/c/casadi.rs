@@ -302,6 +302,7 @@ fn zeros(function: &Function) -> Vec<bool> {
     let body = function.scalar.as_ref().map_or(&function.body, |(body, _)| body);
     for statement in body.pieces.iter().flatten() {
         match statement {
+            Stmt::Region(region) => region.stores().for_each(|at| set(at, &Operand::Constant(1.0))),
             Stmt::Store(Store::Fill(at, n, x)) => (*at..at + n).for_each(|at| set(at, &Operand::Constant(*x))),
             Stmt::Store(Store::One(at, number)) | Stmt::Result(at, number) => set(*at, &number.of),
             Stmt::Store(Store::Two(at, [first, second])) => {

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::statements::{Printer, name};
-use crate::lir::{Carried, Operand, Region, Turns};
+use super::statements::{Lanes, Printer, name};
+use crate::lir::{Carried, Operand, Region, Table, Temp, Turns};
 
 impl Printer<'_> {
     pub(super) fn region(&self, out: &mut String, region: &Region) {
@@ -53,19 +53,10 @@ impl Printer<'_> {
                 let condition = if is_states { self.call("any", &mask) } else { mask.clone() };
                 let _ = writeln!(out, "    if ({condition}) {{");
             }
-            Turns::Each { name: number, table, row, results, turns, read } => {
+            Turns::Each { name: number, table, row, results, turns, read, stored } => {
                 let (turn, is_read) = (format!("x{number}_turn"), !read.is_empty());
                 if !row.is_empty() {
-                    let _ = writeln!(out, "    const {real} x{number}_rows[{turns}][{}] = {{", row.len());
-                    for values in table.chunks(row.len()) {
-                        let list: Vec<String> = values.iter().map(|value| self.vector(value)).collect();
-                        let _ = writeln!(out, "        {{{}}},", list.join(", "));
-                    }
-                    let _ = writeln!(out, "    }};");
-                    let read: Vec<String> = (row.iter().enumerate())
-                        .map(|(k, temp)| format!("    const {real} {} = x{number}_rows[{turn}][{k}];\n", name(*temp)))
-                        .collect();
-                    inside = read.concat() + &inside;
+                    inside = self.rows(out, (table, row), (*number, &turn), *turns) + &inside;
                 }
                 if is_read {
                     let _ = writeln!(out, "    {real} x{number}_results[{turns}][{}];", results.len());
@@ -73,6 +64,16 @@ impl Printer<'_> {
                 self.statements(&mut inside, &region.body);
                 for (k, value) in results.iter().enumerate().filter(|_| is_read) {
                     let _ = writeln!(inside, "    x{number}_results[{turn}][{k}] = {};", self.vector(value));
+                }
+                if let Some(first) = stored {
+                    let ((array, index), width) = ((self.places)(*first), results.len());
+                    for (k, value) in results.iter().enumerate() {
+                        let (at, value) = (format!("{} + {turn} * {width}", index + k), self.vector(value));
+                        let _ = match &self.numbers.lanes {
+                            Some(Lanes { prefix, stride }) => writeln!(inside, "    {prefix}_store({array} + ({at}) * {stride}, {value});"),
+                            None => writeln!(inside, "    {array}[{at}] = {value};"),
+                        };
+                    }
                 }
                 self.end_of_turn(&mut inside, region, |_, new| new.to_owned());
                 let _ = writeln!(out, "    for (int {turn} = 0; {turn} < {turns}; {turn}++) {{");
@@ -90,6 +91,31 @@ impl Printer<'_> {
         for (temp, last) in &region.after {
             let _ = writeln!(out, "    const {real} {} = {};", name(*temp), name(*last));
         }
+    }
+
+    /// Declares the rows before the loop, and returns the statements that read one.
+    fn rows(&self, out: &mut String, (table, row): (&Table, &[Temp]), (number, turn): (u32, &str), turns: usize) -> String {
+        let (real, width) = (&self.numbers.computed, row.len());
+        let read = |(k, temp): (usize, &Temp)| {
+            let at = format!("{turn} * {width} + {k}");
+            let value = match (table, &self.numbers.lanes) {
+                (Table::Values(_), _) => format!("x{number}_rows[{turn}][{k}]"),
+                (Table::Argument(argument), Some(Lanes { prefix, stride })) => {
+                    format!("{prefix}_load({} + ({at}) * {stride})", self.arguments[*argument as usize].name)
+                }
+                (Table::Argument(argument), None) => format!("{}[{at}]", self.arguments[*argument as usize].name),
+            };
+            format!("    const {real} {} = {value};\n", name(*temp))
+        };
+        if let Table::Values(values) = table {
+            let _ = writeln!(out, "    const {real} x{number}_rows[{turns}][{width}] = {{");
+            for values in values.chunks(width) {
+                let list: Vec<String> = values.iter().map(|value| self.vector(value)).collect();
+                let _ = writeln!(out, "        {{{}}},", list.join(", "));
+            }
+            let _ = writeln!(out, "    }};");
+        }
+        row.iter().enumerate().map(read).collect()
     }
 
     /// All carried values change at once.

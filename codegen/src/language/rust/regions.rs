@@ -5,8 +5,9 @@
 
 use std::fmt::Write;
 
+use crate::language::rust::literal::bare;
 use crate::language::rust::statements::{Printer, name, ty};
-use crate::lir::{Carried, Operand, Region, Turns, Ty};
+use crate::lir::{Carried, Operand, Region, Table, Temp, Turns, Ty};
 
 impl Printer<'_> {
     /// A region. `define`: as for other statements.
@@ -59,34 +60,26 @@ impl Printer<'_> {
                     let _ = writeln!(out, "    if {mask} {{\n{}    }}", indented(&inside));
                 }
             }
-            Turns::Each { name: number, table, row, results, turns, read } => {
-                let is_read = !read.is_empty();
+            Turns::Each { name: number, table, row, results, turns, read, stored } => {
+                let (turn, is_read) = (format!("x{number}_turn"), !read.is_empty());
                 if !row.is_empty() {
-                    let _ = writeln!(out, "    let x{number}_rows = [");
-                    for values in table.chunks(row.len()) {
-                        let list: Vec<String> = values.iter().map(|value| self.operand(value)).collect();
-                        let _ = writeln!(out, "        [{}],", list.join(", "));
-                    }
-                    let _ = writeln!(out, "    ];");
-                    let names: Vec<String> = row.iter().map(|temp| name(*temp)).collect();
-                    inside = format!("    let [{}] = x{number}_rows[x{number}_turn];\n{inside}", names.join(", "));
+                    inside = self.rows(out, (table, row), (*number, &turn)) + &inside;
                 }
                 if is_read {
                     let (ty, zero) = ty(self.body.ty);
-                    let _ = writeln!(
-                        out,
-                        "    let mut x{number}_results: [[{ty}; {}]; {turns}] = [[{zero}; {}]; {turns}];",
-                        results.len(),
-                        results.len()
-                    );
+                    let count = results.len();
+                    let _ = writeln!(out, "    let mut x{number}_results: [[{ty}; {count}]; {turns}] = [[{zero}; {count}]; {turns}];");
                 }
                 self.statements(&mut inside, &region.body);
                 if is_read {
                     let list: Vec<String> = results.iter().map(|value| self.operand(value)).collect();
-                    let _ = writeln!(inside, "    x{number}_results[x{number}_turn] = [{}];", list.join(", "));
+                    let _ = writeln!(inside, "    x{number}_results[{turn}] = [{}];", list.join(", "));
+                }
+                if let Some(first) = stored {
+                    self.store_turn(&mut inside, *first, results, &turn);
                 }
                 self.end_of_turn(&mut inside, region, |_, new| new.to_owned());
-                let turn = if is_read || !row.is_empty() { format!("x{number}_turn") } else { "_".to_owned() };
+                let turn = if is_read || stored.is_some() || !row.is_empty() { &turn } else { "_" };
                 let _ = writeln!(out, "    for {turn} in 0..{turns} {{\n{}    }}", indented(&inside));
                 for (turn, k, temp) in read {
                     let _ = writeln!(out, "    {define}{} = x{number}_results[{turn}][{k}];", name(*temp));
@@ -95,6 +88,48 @@ impl Printer<'_> {
         }
         for (temp, last) in &region.after {
             let _ = writeln!(out, "    {define}{} = {};", name(*temp), name(*last));
+        }
+    }
+
+    /// Declares the rows before the loop, and returns the statements that read one.
+    fn rows(&self, out: &mut String, (table, row): (&Table, &[Temp]), (number, turn): (u32, &str)) -> String {
+        let names: Vec<String> = row.iter().map(|temp| name(*temp)).collect();
+        let argument = match table {
+            Table::Values(values) => {
+                let _ = writeln!(out, "    let x{number}_rows = [");
+                for values in values.chunks(row.len()) {
+                    let list: Vec<String> = values.iter().map(|value| self.operand(value)).collect();
+                    let _ = writeln!(out, "        [{}],", list.join(", "));
+                }
+                let _ = writeln!(out, "    ];");
+                return format!("    let [{}] = x{number}_rows[{turn}];\n", names.join(", "));
+            }
+            Table::Argument(argument) => &self.arguments[*argument as usize],
+        };
+        let width = row.len();
+        if self.body.ty == Ty::States {
+            let read = |(k, name): (usize, &String)| format!("    let {name} = at(&{}[{turn} * {width} + {k}], part);\n", argument.name);
+            return names.iter().enumerate().map(read).collect();
+        }
+        let slice = ".as_flattened()".repeat(argument.lengths.len().saturating_sub(1));
+        let _ = writeln!(out, "    let x{number}_rows = {}{slice}.as_chunks::<{width}>().0;", argument.name);
+        format!("    let [{}] = x{number}_rows[{turn}];\n", names.join(", "))
+    }
+
+    /// Stores the results of a turn behind those of the turns before it.
+    fn store_turn(&self, out: &mut String, first: usize, results: &[Operand], turn: &str) {
+        let (place, width) = ((self.places)(first), results.len());
+        let is_matrix = self.body.results.iter().any(|array| array.start == first && array.lengths.len() == 2);
+        for (k, value) in results.iter().enumerate() {
+            let value = self.operand(value);
+            let to = match place.index {
+                Some(0) if is_matrix => format!("{}[{turn}][{k}]", place.array.strip_suffix("[0]").unwrap_or(&place.array)),
+                index => format!("{}[{} + {turn} * {width}]", place.array, index.unwrap_or(0) + k),
+            };
+            let _ = match self.body.ty {
+                Ty::States => writeln!(out, "    put(&mut {to}, part, {value});"),
+                _ => writeln!(out, "    {to} = {};", bare(&value)),
+            };
         }
     }
 

@@ -1,8 +1,8 @@
 //! Regions of a graph as statements.
 
 use super::Lowering;
-use crate::graph::{CAPTURED, CARRIED, Graph, Kind, Op, ROW};
-use crate::lir::{Carried, Expr, Region, Stmt, Temp, Turns};
+use crate::graph::{CAPTURED, CARRIED, Graph, Kind, Node, NodeId, Op, ROW};
+use crate::lir::{Carried, Expr, Region, Stmt, Table, Temp, Turns};
 
 impl Lowering<'_> {
     /// The number of the first value of the body of a region.
@@ -20,7 +20,7 @@ impl Lowering<'_> {
         let (starts, rest) = given.split_at(region.carried);
         let (captured, rest) = rest.split_at(region.captured);
         let first = self.first_of_body(k);
-        let inner = Lowering { graph: &region.body, first, results: &[], ..*self };
+        let inner = Lowering { graph: &region.body, first, results: &[], arguments: &[], ..*self };
         // Values that the body does not read have names beyond all others of it.
         let mut next = first + values(&region.body);
         let mut input = |argument: usize, index: usize| {
@@ -43,11 +43,12 @@ impl Lowering<'_> {
             Kind::When => Turns::Where(self.operand(rest[0])),
             Kind::ForEach { turns, row, results } => Turns::Each {
                 name: first as u32,
-                table: rest.iter().map(|id| self.operand(*id)).collect(),
+                table: self.table(rest, row),
                 row: (0..row).map(|k| input(ROW, k)).collect(),
                 results: (0..results).map(|j| end(region.carried + j)).collect(),
                 turns,
                 read: Vec::new(),
+                stored: self.stored(k, region.carried, turns, results),
             },
         };
         let is_input = |statement: &Stmt| matches!(statement, Stmt::Let(_, Expr::Input { .. }));
@@ -61,6 +62,7 @@ impl Lowering<'_> {
             match (&mut made.turns, made.carried.get(number)) {
                 (_, Some(carried)) => made.after.push((temp, carried.temp)),
                 (Turns::Until { held, .. }, None) => made.after.push((temp, *held)),
+                (Turns::Each { stored: Some(_), .. }, None) => {}
                 (Turns::Each { read, results, .. }, None) => {
                     let place = number - region.carried;
                     read.push((place / results.len(), place % results.len(), temp));
@@ -69,6 +71,43 @@ impl Lowering<'_> {
             }
         }
         made
+    }
+}
+
+impl Lowering<'_> {
+    /// The rows of a table: those of a whole argument, or values.
+    fn table(&self, values: &[NodeId], row: usize) -> Table {
+        let input = |k: usize| Some(self.graph.node(values[k])).filter(|node| node.op == Op::Input).map(|node| node.args);
+        let argument = values.first().and_then(|_| input(0)).map_or(0, |args| args[0]);
+        let is_whole = row > 0
+            && self.arguments.get(argument as usize) == Some(&values.len())
+            && (0..values.len()).all(|k| input(k) == Some([argument, k as u32, 0]));
+        if is_whole { Table::Argument(argument) } else { Table::Values(values.iter().map(|id| self.operand(*id)).collect()) }
+    }
+
+    /// The first place of an array of the result that has all results of region `k`, one after the
+    /// other, which nothing else reads.
+    fn stored(&self, k: usize, carried: usize, turns: usize, results: usize) -> Option<usize> {
+        let count = turns * results;
+        if self.arguments.is_empty() || count == 0 {
+            return None;
+        }
+        let value = |id: NodeId| Some(self.graph.node(id)).filter(|node| node.op == Op::RegionValue && node.args[0] as usize == k);
+        let is_result = |at: usize, j: usize| value(self.graph.outputs[at + j]).is_some_and(|node| node.args[1] as usize == carried + j);
+        let array = self.results.iter().find(|array| {
+            let rows = array.lengths.len() < 2 || array.lengths == [turns, results];
+            rows && array.numbers() == count && (0..count).all(|j| is_result(array.start, j))
+        })?;
+        let own = array.start..array.start + count;
+        let is_used =
+            self.graph.nodes().iter().flat_map(Node::operands).any(|id| value(id).is_some_and(|node| node.args[1] as usize >= carried));
+        let again = self
+            .graph
+            .outputs
+            .iter()
+            .enumerate()
+            .any(|(at, id)| !own.contains(&at) && value(*id).is_some_and(|node| node.args[1] as usize >= carried));
+        (!is_used && !again).then_some(array.start)
     }
 }
 

@@ -7,7 +7,14 @@ use crate::lir::{Body, verify};
 fn lowering<'a>(graph: &'a Graph, results: &'a [Array]) -> Lowering<'a> {
     let width = graph.lanes().width;
     let ty = if width == 1 { Ty::F64 } else { Ty::Vector(width) };
-    Lowering { graph, ty, sines: SinCosGrouping { together: 8 / width, are_powers_of_two: width > 1, from: 0 }, results, first: 0 }
+    Lowering {
+        graph,
+        ty,
+        sines: SinCosGrouping { together: 8 / width, are_powers_of_two: width > 1, from: 0 },
+        results,
+        first: 0,
+        arguments: &[],
+    }
 }
 
 /// One array for all numbers.
@@ -110,7 +117,7 @@ fn sines_go_together_as_a_target_has_functions_for() {
             })
             .collect();
         let results = results(&graph);
-        let statements = Lowering { graph: &graph, ty: Ty::F64, sines, results: &results, first: 0 }.results_at_end();
+        let statements = Lowering { graph: &graph, ty: Ty::F64, sines, results: &results, first: 0, arguments: &[] }.results_at_end();
         statements.iter().filter_map(|s| if let Stmt::SinCos { angles, .. } = s { Some(angles.len()) } else { None }).collect()
     };
     let four = SinCosGrouping { together: 4, are_powers_of_two: false, from: 3 };

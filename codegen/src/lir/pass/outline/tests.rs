@@ -28,7 +28,7 @@ fn cut(graph: &Graph, length: usize) -> Body {
     let ty = if graph.lanes().width == 1 { Ty::F64 } else { Ty::Vector(graph.lanes().width) };
     let results = vec![Array { start: 0, lengths: vec![graph.outputs.len()] }];
     let sines = SinCosGrouping { together: 4, are_powers_of_two: false, from: 3 };
-    let statements = Lowering { graph, ty, sines, results: &results, first: 0 }.stores_as_made(|_| true, false);
+    let statements = Lowering { graph, ty, sines, results: &results, first: 0, arguments: &[] }.stores_as_made(|_| true, false);
     let (pieces, kept) = outline(statements, length);
     Body { ty, lanes: graph.lanes().clone(), results, pieces, kept, slots: None, barrier: false, is_partial: false }
 }
