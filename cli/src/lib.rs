@@ -11,6 +11,7 @@ mod effects;
 mod eval;
 mod excerpt;
 pub mod failure;
+mod file_motion;
 mod functions;
 mod generate;
 #[cfg_attr(not(feature = "measure"), path = "unmeasured.rs")]

@@ -4,22 +4,21 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use articulated_core::algorithm::{Argument, Workspace, neutral};
+use articulated_core::algorithm::{Argument, Function, Workspace};
 use articulated_core::model::Model;
-use articulated_core::step::{self, rollout, step_of_mujoco, steps};
+use articulated_core::step::{self, ACT, CTRL, beside_the_table, rollout, step_of_mujoco};
+use articulated_formats::world::{Stepping, World};
 use clap::Args;
 use serde::Serialize;
 
 use crate::arguments::{Format, RobotArguments};
 use crate::console;
 use crate::failure::{Failure, OK};
+use crate::file_motion::{STEP, Start, step_of_file};
 use crate::robot::{Robot, read_bytes};
 use crate::states::{self, State};
 use crate::table::counted;
 use crate::{named_scene, parallel};
-
-/// The step of a file without one, s.
-const STEP: f64 = 1e-3;
 
 #[derive(Args, Debug)]
 pub(crate) struct RolloutArguments {
@@ -28,12 +27,15 @@ pub(crate) struct RolloutArguments {
     /// How many steps
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     steps: u64,
-    /// A file of states with q, v and tau, in JSON or CSV, or a number of random states [default:
-    /// one state of zeros]
+    /// A file of states with q, v, and tau or act and ctrl, in JSON or CSV, or a number of random
+    /// states [default: one state, of the file's keyframe `home` or its initial state]
     #[arg(long, value_name = "FILE|K")]
     states: Option<PathBuf>,
-    /// The method, a function of the group `steps` [default: that of the file's integrator, or
-    /// semi_implicit_euler]
+    /// Start with this keyframe of the file, and its controls
+    #[arg(long, value_name = "NAME", conflicts_with = "states")]
+    keyframe: Option<String>,
+    /// The method, a function of the groups `steps` and `actuators`, or an integrator of MuJoCo
+    /// [default: the file's, with its actuators, or step_semi_implicit_euler]
     #[arg(long, value_name = "NAME")]
     method: Option<String>,
     /// The length of a step, s [default: the file's, or 0.001]
@@ -62,6 +64,9 @@ struct Report {
     seconds: f64,
     /// FNV-1a of the last states.
     hash: String,
+    /// Names of the actuators, in the order of ctrl: of a method with actuators.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    actuators: Vec<String>,
     warnings: Vec<String>,
     states: Vec<End>,
 }
@@ -71,6 +76,8 @@ struct Report {
 struct End {
     q: Vec<f64>,
     v: Vec<f64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    act: Vec<f64>,
 }
 
 pub(crate) fn run(arguments: &RolloutArguments, format: Format) -> Result<u8, Failure> {
@@ -80,17 +87,28 @@ pub(crate) fn run(arguments: &RolloutArguments, format: Format) -> Result<u8, Fa
     let built = robot.read()?;
     let model = robot.model(&built)?;
     let world = &built.reading.world;
-    let method = method(arguments, world.integrator.as_deref())?;
-    if let Some(row) = step::step::<f64>(method) {
-        articulated_codegen::defined(&robot.file, &model, &articulated_codegen::massless(&model), row)?;
+    // A file of states with torques is stepped with torques.
+    let (starts, source) = starts(arguments, &robot.file, world, &model)?;
+    let has_torques =
+        arguments.states.as_ref().is_some_and(|given| given.exists()) && starts.iter().any(|s| s.get(Argument::Tau).is_some());
+    let method = method(arguments, world.stepping.as_ref(), !model.actuators().is_empty() && !has_torques)?;
+    articulated_codegen::defined(&robot.file, &model, &articulated_codegen::massless(&model), method)?;
+    if method.takes.contains(&CTRL) {
+        let locked = articulated_codegen::locked_actuators(&robot.file, world, &model);
+        articulated_core::diagnostic::summary(locked.iter()).iter().for_each(|line| console::warn(line));
+        let torques = |(k, _): (usize, &State)| format!("states[{k}]: found tau, expected ctrl: {} has no torques", method.name);
+        let wrong: Vec<String> = starts.iter().enumerate().filter(|_| has_torques).map(torques).collect();
+        if !wrong.is_empty() {
+            return Err(Failure::input(states::listed(wrong)));
+        }
     }
-    let h = arguments.time_step.or(world.step).unwrap_or(STEP);
-    let starts = starts(arguments, &model)?;
+    source.iter().for_each(|source| console::note(&format!("starts with {source}")));
+    let h = arguments.time_step.or(world.stepping.as_ref().map(|stepping| stepping.step)).or(world.step).unwrap_or(STEP);
     let begin = Instant::now();
     let ends = parallel::map(&starts, |state| stepped(&model, method, state, h, arguments.steps));
     let seconds = begin.elapsed().as_secs_f64();
     let mut warnings = Vec::new();
-    let lost = ends.iter().filter(|end| end.q.iter().chain(&end.v).any(|x| !x.is_finite())).count();
+    let lost = ends.iter().filter(|end| end.numbers().any(|x| !x.is_finite())).count();
     if lost > 0 {
         let states = if lost == 1 { "1 state is".to_owned() } else { format!("{lost} states are") };
         warnings.push(format!("{states} not finite at the end: the step of {h} s is too long, or the motion has no bound"));
@@ -98,12 +116,17 @@ pub(crate) fn run(arguments: &RolloutArguments, format: Format) -> Result<u8, Fa
     warnings.iter().for_each(|line| console::warn(line));
     let report = Report {
         robot: model.name().to_owned(),
-        method,
+        method: method.name,
         time_step: h,
         steps: arguments.steps,
         threads: parallel::threads().min(starts.len()),
         seconds,
         hash: format!("{:016x}", hash(&ends)),
+        actuators: if method.takes.contains(&CTRL) {
+            model.actuators().laws.iter().map(|law| law.name.clone()).collect()
+        } else {
+            Vec::new()
+        },
         warnings,
         states: ends,
     };
@@ -111,33 +134,40 @@ pub(crate) fn run(arguments: &RolloutArguments, format: Format) -> Result<u8, Fa
     Ok(OK)
 }
 
-/// The name of the method.
-fn method(arguments: &RolloutArguments, of_file: Option<&str>) -> Result<&'static str, Failure> {
+impl End {
+    fn numbers(&self) -> impl Iterator<Item = &f64> {
+        self.q.iter().chain(&self.v).chain(&self.act)
+    }
+}
+
+/// The method.
+fn method(arguments: &RolloutArguments, of_file: Option<&Stepping>, is_actuated: bool) -> Result<&'static Function<f64>, Failure> {
+    let of = |[plain, actuated]: [&'static str; 2]| if is_actuated { actuated } else { plain };
+    let is_step = |row: &&Function<f64>| row.takes.contains(&step::H);
     let Some(name) = &arguments.method else {
-        let known = of_file.and_then(step_of_mujoco).unwrap_or("step_semi_implicit_euler");
-        if let (Some(file), None) = (of_file, of_file.and_then(step_of_mujoco)) {
-            console::note(&format!("the file's integrator is {file}: steps are those of {known}"));
-        }
-        return Ok(known);
+        let name = of(step_of_file(of_file));
+        return step::step(name).ok_or_else(|| Failure::usage(format!("--method: found no step {name}")));
     };
-    let row = steps::<f64>().iter().find(|row| row.name == name || row.name.strip_prefix("step_") == Some(name));
-    row.map(|row| row.name).or_else(|| step_of_mujoco(name)).ok_or_else(|| {
-        let all: Vec<&str> = steps::<f64>().iter().map(|row| row.name).collect();
-        Failure::usage(format!("--method: found {name:?}, expected one of {}", all.join(", ")))
+    let prefix = if is_actuated { "actuated_step_" } else { "step_" };
+    let row = beside_the_table::<f64>().filter(is_step).find(|row| row.name == name || row.name.strip_prefix(prefix) == Some(name));
+    row.or_else(|| step::step(of(step_of_mujoco(name)?))).ok_or_else(|| {
+        let all: Vec<&str> = beside_the_table::<f64>().filter(is_step).map(|row| row.name).collect();
+        Failure::usage(format!("--method: found {name:?}, expected one of {}, Euler, implicitfast, RK4", all.join(", ")))
     })
 }
 
-/// The states at the start.
-fn starts(arguments: &RolloutArguments, model: &Model<f64>) -> Result<Vec<State>, Failure> {
+/// The states at the start, and where they are from if that is the robot's file.
+fn starts(arguments: &RolloutArguments, file: &str, world: &World, model: &Model<f64>) -> Result<(Vec<State>, Option<String>), Failure> {
     let Some(given) = &arguments.states else {
-        let (mut state, mut q) = (State::default(), vec![0.0; model.nq()]);
-        neutral(model, &mut q);
-        state.set(Argument::Q, q);
-        state.set(Argument::V, vec![0.0; model.nv()]);
-        return Ok(vec![state]);
+        let Start { state: start, ctrl, source } = Start::of_file(file, world, model, arguments.keyframe.as_deref())?;
+        let mut state = State::default();
+        for (argument, numbers) in [(Argument::Q, start.q), (Argument::V, start.v), (ACT, start.act), (CTRL, ctrl)] {
+            state.set(argument, numbers);
+        }
+        return Ok((vec![state], (world.stepping.is_some()).then_some(source)));
     };
     if let Some(count) = given.to_str().and_then(|text| text.parse::<usize>().ok()).filter(|_| !given.exists()) {
-        return Ok(states::random(model, count, arguments.seed));
+        return Ok((states::random(model, count, arguments.seed), None));
     }
     let file = given.display();
     let wrong = |lines: Vec<String>| Failure::input(lines.into_iter().map(|line| format!("{file}: {line}")));
@@ -149,25 +179,26 @@ fn starts(arguments: &RolloutArguments, model: &Model<f64>) -> Result<Vec<State>
         Some(format!("states[{k}]: {}: found nothing, expected {}", missing.name(), counted(missing.len(model.shape()), "number")))
     };
     let missing: Vec<String> = found.states.iter().enumerate().filter_map(lacks).collect();
-    if missing.is_empty() { Ok(found.states) } else { Err(wrong(states::listed(missing))) }
+    if missing.is_empty() { Ok((found.states, None)) } else { Err(wrong(states::listed(missing))) }
 }
 
-/// A state after all steps; its torques are held.
-fn stepped(model: &Model<f64>, method: &str, state: &State, h: f64, count: u64) -> End {
-    let vector = |argument: Argument, length: usize| state.get(argument).map_or_else(|| vec![0.0; length], <[f64]>::to_vec);
-    let (mut q, mut v) = (vector(Argument::Q, model.nq()), vector(Argument::V, model.nv()));
-    let tau = vector(Argument::Tau, model.nv());
-    if let Some(row) = step::step(method) {
-        let torques = (0..count).map(|_| tau.as_slice());
-        let done = rollout(row, (model, &mut Workspace::new(model)), (&mut q, &mut v), h, torques, |_, _, _| {});
-        debug_assert!(done.is_ok(), "vectors are made to measure");
-    }
-    End { q, v }
+/// A state after all steps; its torques or controls are held.
+fn stepped(model: &Model<f64>, method: &Function<f64>, state: &State, h: f64, count: u64) -> End {
+    let shape = model.shape();
+    let vector = |argument: Argument| state.get(argument).map_or_else(|| vec![0.0; argument.len(shape)], <[f64]>::to_vec);
+    let is_actuated = method.takes.contains(&CTRL);
+    let act = if is_actuated { vector(ACT) } else { Vec::new() };
+    let mut end = step::State { q: vector(Argument::Q), v: vector(Argument::V), act };
+    let held = vector(if is_actuated { CTRL } else { Argument::Tau });
+    let inputs = (0..count).map(|_| held.as_slice());
+    let done = rollout(method, (model, &mut Workspace::new(model)), &mut end, h, inputs, |_, _| {});
+    debug_assert!(done.is_ok(), "vectors are made to measure");
+    End { q: end.q, v: end.v, act: end.act }
 }
 
 /// FNV-1a of the bits of all numbers.
 fn hash(ends: &[End]) -> u64 {
-    let bytes = ends.iter().flat_map(|end| end.q.iter().chain(&end.v)).flat_map(|x| x.to_le_bytes());
+    let bytes = ends.iter().flat_map(End::numbers).flat_map(|x| x.to_le_bytes());
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 

@@ -4,13 +4,16 @@ use std::collections::BTreeMap;
 
 pub use articulated_core::algorithm::Group;
 use articulated_core::diagnostic::Spanned;
-use articulated_core::step::steps;
+use articulated_core::step::{of_actuators, steps};
 
 /// The word for all functions that the motion of a scene calls.
 pub const MOTION: &str = "motion";
 
 /// The word for all steps of time.
 pub const STEPS: &str = "steps";
+
+/// The word for the torques of actuators and steps with them.
+pub const ACTUATORS: &str = "actuators";
 
 /// The word for all functions of the table.
 pub const ALL: &str = "all";
@@ -20,6 +23,7 @@ pub fn functions_of(name: &str) -> Option<Vec<String>> {
     match Group::named(name) {
         Some(group) => Some(group.functions().map(str::to_owned).collect()),
         None if name == STEPS => Some(steps::<f64>().iter().map(|f| f.name.to_owned()).collect()),
+        None if name == ACTUATORS => Some(of_actuators::<f64>().iter().map(|f| f.name.to_owned()).collect()),
         None => (name == ALL).then(all),
     }
 }

@@ -85,7 +85,7 @@ pub use function_spec::{Constant, Derivative, FunctionSpec, FunctionTerm, Output
 pub use language::{COptions, File, RustOptions, Target, identifier, is_keyword};
 pub use ledger::Ledger;
 pub use parameters::Parameter;
-pub use plan::{MOST_FREEDOMS, check_names, check_words, defined, massless, undefined};
+pub use plan::{MOST_FREEDOMS, check_names, check_words, defined, locked_actuators, massless, undefined};
 pub use request::{Options, Request};
 pub use size::MAX_CODE_SIZE;
 pub use sym::Sym;
@@ -223,9 +223,10 @@ pub fn function(name: &str) -> Result<&'static Function<Sym>, Diagnostic> {
             return Diagnostic::refusal("", Place::DOCUMENT, Code::FunctionSpec, sentence);
         }
         // In a sum of functions, a group is not allowed.
-        let groups = Group::ALL.map(Group::name).into_iter().chain([function_groups::STEPS, function_groups::ALL]);
+        let groups =
+            Group::ALL.map(Group::name).into_iter().chain([function_groups::STEPS, function_groups::ACTUATORS, function_groups::ALL]);
         let groups = groups.filter(|_| function_groups::functions_of(name).is_none());
-        let known: Vec<&str> = functions::<Sym>().iter().chain(step::steps()).map(|f| f.name).chain(groups).collect();
+        let known: Vec<&str> = functions::<Sym>().iter().chain(step::beside_the_table()).map(|f| f.name).chain(groups).collect();
         let nearest = resolve_synonym(name, known.iter().copied());
         let rest = nearest.map_or_else(
             || format!("there are: {}; a function of your own is given to a build script, by Build::function", known.join(", ")),

@@ -4,9 +4,11 @@
 use std::collections::BTreeMap;
 
 use articulated_core::Scalar;
-use articulated_core::algorithm::{Function, Needs, functions};
-use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Spanned};
+use articulated_core::algorithm::{Function, Group, Needs, functions};
+use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Spanned, quote};
 use articulated_core::model::Model;
+use articulated_formats::OnLockedJoint;
+use articulated_formats::world::World;
 use articulated_scene::BuiltRobot;
 
 use crate::function_spec::{FunctionSpec, wrong_entry};
@@ -54,6 +56,10 @@ pub(crate) fn plan(request: &Request, members: &BTreeMap<String, String>, log: &
     let mut without = Vec::new();
     let entries = fitting(request, &model, &massless, entries, (members, &mut without), log);
     robot.reading.warnings.extend(without);
+    if entries.iter().any(|(_, function)| function.parts.iter().any(|part| part.function.group == Group::Actuators)) {
+        let warnings = locked_actuators(&request.file, &robot.reading.world, &robot.model);
+        robot.reading.warnings.extend(warnings);
+    }
     let names: Vec<String> = entries.iter().map(|(_, function)| function.name.clone()).collect();
     let derived = |(k, function): Entry| options.target.with_derivatives(function, &names).into_iter().map(move |f| (k, f));
     let entries: Vec<Entry> = entries.into_iter().flat_map(derived).collect();
@@ -61,6 +67,16 @@ pub(crate) fn plan(request: &Request, members: &BTreeMap<String, String>, log: &
     options.target.check_names(&model, request, log);
     let functions = entries.into_iter().map(|(_, function)| function).collect();
     log.is_ok().then_some(Plan { robot, model, parameters, functions })
+}
+
+/// Warnings of actuators on joints that the robot no longer has.
+pub fn locked_actuators(file: &str, world: &World, model: &Model<f64>) -> Vec<Diagnostic> {
+    let warning = |OnLockedJoint { actuator, joint }: OnLockedJoint| {
+        let found = format!("the actuator {} on joint {}, which is locked", quote(&actuator), quote(&joint));
+        let expected = "a joint that moves: it has no force there";
+        Diagnostic::error(file, (Default::default(), "actuator"), Code::LostDynamics, found, expected).into_warning()
+    };
+    world.actuators_of(model).1.into_iter().map(warning).collect()
 }
 
 /// What is wrong with the names of a user's function and of its ports.
@@ -203,6 +219,10 @@ pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], f
     if function.needs == Needs::Mass && model.moving_mass() == 0.0 {
         return lacks(Code::NoMass, "no moving link with mass".into(), "a link with mass that moves");
     }
+    if function.group == Group::Actuators && model.actuators().is_empty() {
+        let expected = "a file with actuators or tendons (MJCF), or functions with torques as an argument";
+        return lacks(Code::NoActuators, "no actuator".into(), expected);
+    }
     if function.inverts_mass_matrix() && !massless.is_empty() {
         let found = format!("no inertia of its own for joint {}", massless.join(", joint "));
         let expected = format!(
@@ -234,7 +254,9 @@ pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], f
 /// What a robot lacks for a function, if that is the only error.
 #[must_use]
 pub fn undefined(findings: &Diagnostics) -> Option<&str> {
-    let lacks = |d: &Diagnostic| matches!(d.code, Code::SingularMassMatrix | Code::NoMass | Code::BoundFrames | Code::TooMuchCode);
+    let lacks = |d: &Diagnostic| {
+        matches!(d.code, Code::SingularMassMatrix | Code::NoMass | Code::NoActuators | Code::BoundFrames | Code::TooMuchCode)
+    };
     findings.errors.first().filter(|_| findings.errors.iter().all(lacks)).map(|first| first.found.as_str())
 }
 

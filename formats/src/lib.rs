@@ -43,6 +43,7 @@
 //! * A reader reports all findings to one [`Diagnostics`] and continues as far as it can.
 //! * Only [`Sources`] open files. [`read`] opens none.
 
+mod actuation;
 mod contact_points;
 mod cycles;
 mod files;
@@ -66,6 +67,7 @@ use articulated_core::description::Description;
 #[cfg(doc)]
 use articulated_core::diagnostic::Diagnostics;
 
+pub use actuation::OnLockedJoint;
 pub use files::{AtMost, Disk, Environment, Included, MOST_BYTES, NoFiles, Sources, nearest_file, open_file, read_at_most, read_file};
 pub use format::{FORMATS, Format, Formats, Input};
 pub use leave_out::{LeaveOut, NoKind};

@@ -6,8 +6,10 @@
 
 use std::collections::BTreeMap;
 
+use articulated_core::actuator::Activation;
 use articulated_core::description::{Coupling, Description};
 use articulated_core::diagnostic::At;
+use articulated_core::step::step_of_mujoco;
 
 /// A robot and its world, as read by a format.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,6 +35,8 @@ pub struct World {
     pub step: Option<f64>,
     /// Integrator of a simulation, by the file's name.
     pub integrator: Option<String>,
+    /// How the file's simulator steps the motion, with its defaults (MJCF).
+    pub stepping: Option<Stepping>,
     /// The initial state of the file, if it differs from that of joints at rest.
     pub home: Option<Keyframe>,
     /// States, in the order of the file.
@@ -54,6 +58,28 @@ pub struct World {
     pub loops: Vec<Loop>,
 }
 
+/// How the simulator of a file steps its motion.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Stepping {
+    /// The integrator by the file's name, or the default.
+    pub integrator: String,
+    /// The time step, s, or the default.
+    pub step: f64,
+    /// Whether its Euler is explicit in the damping of joints.
+    pub is_explicit_in_damping: bool,
+}
+
+impl Stepping {
+    /// The functions that step in the same way: with torques, and with actuators. `None`: there is
+    /// none.
+    pub fn functions(&self) -> Option<[&'static str; 2]> {
+        if self.integrator == "Euler" && self.is_explicit_in_damping {
+            return Some(["step_semi_implicit_euler", "actuated_step_semi_implicit_euler"]);
+        }
+        step_of_mujoco(&self.integrator)
+    }
+}
+
 /// A state of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Keyframe {
@@ -65,6 +91,8 @@ pub struct Keyframe {
     pub v: Vec<(String, Vec<f64>)>,
     /// Controls, one for each of [`World::actuators`]. Empty: all 0.
     pub control: Vec<f64>,
+    /// Activations, one for each of [`World::actuators`]: 0 of those without. Empty: all 0.
+    pub activation: Vec<f64>,
     /// Place in the file.
     pub place: At,
 }
@@ -73,9 +101,11 @@ pub struct Keyframe {
 ///
 /// ```text
 /// length l = Σ gear · q        (of a ball joint: gear · log q, the rotation vector)
-/// force  f = clamp(gain(l, l̇) · clamp(u) + bias(l, l̇)),   gain(l, l̇) = g₀ + g₁ l + g₂ l̇
+/// force  f = clamp(gain(l, l̇) · w + bias(l, l̇)),   gain(l, l̇) = g₀ + g₁ l + g₂ l̇
 /// τ += gear · f
 /// ```
+///
+/// w is clamp(u), or the activation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Actuator {
     /// Its name, or `actuator_N` by its number from 0.
@@ -90,6 +120,8 @@ pub struct Actuator {
     pub control_range: Option<[f64; 2]>,
     /// Bounds of the force f.
     pub force_range: Option<[f64; 2]>,
+    /// The activation between control and force, if it has one.
+    pub activation: Option<Activation>,
     /// Place in the file.
     pub place: At,
 }

@@ -102,6 +102,24 @@ fn shortcuts_are_affine_laws() {
 }
 
 #[test]
+fn activations_of_first_order_are_read() {
+    use articulated_core::actuator::{Activation, Filter};
+    let state = |filter, range, is_early| Some(Activation { filter, range, is_early });
+    let found = actuator("<intvelocity joint=\"h\" kp=\"5\" kv=\"2\" actrange=\"-1 1\"/>");
+    assert_eq!((found.gain, found.bias), ([5.0, 0.0, 0.0], [0.0, -5.0, -2.0]));
+    assert_eq!(found.activation, state(Filter::Integrator, Some([-1.0, 1.0]), false));
+    let found = actuator("<position joint=\"h\" kp=\"5\" timeconst=\"0.1\"/>");
+    assert_eq!((found.gain, found.activation), ([5.0, 0.0, 0.0], state(Filter::Exact(0.1), None, false)));
+    let found = actuator("<cylinder joint=\"h\" diameter=\"2\" timeconst=\"0.2\" bias=\"1 2 3\"/>");
+    assert_eq!((found.gain, found.bias), ([2.0 * FRAC_PI_2, 0.0, 0.0], [1.0, 2.0, 3.0]));
+    assert_eq!(found.activation, state(Filter::Euler(0.2), None, false));
+    let found =
+        actuator("<general joint=\"h\" dyntype=\"filter\" dynprm=\"0.3\" actearly=\"true\" actrange=\"0 1\" actlimited=\"false\"/>");
+    assert_eq!(found.activation, state(Filter::Euler(0.3), None, true));
+    assert_eq!(actuator("<motor joint=\"h\"/>").activation, None);
+}
+
+#[test]
 fn the_law_comes_from_a_default_of_the_same_kind_or_of_general() {
     let servo = "<position joint=\"h\"/>";
     assert_eq!(law("<position kp=\"5\" kv=\"2\"/>", servo), ([5.0, 0.0, 0.0], [0.0, -5.0, -2.0]));
@@ -116,7 +134,7 @@ fn the_law_comes_from_a_default_of_the_same_kind_or_of_general() {
     assert_eq!(law(nested, "<velocity joint=\"h\" class=\"c\"/>"), ([3.0, 0.0, 0.0], [0.0, 0.0, -3.0]));
     // Numbers of an unsupported kind are not used.
     let text =
-        with("<default><cylinder area=\"5\"/><general biastype=\"none\"/></default>", "<actuator><velocity joint=\"h\"/></actuator>");
+        with("<default><adhesion gain=\"5\"/><general biastype=\"none\"/></default>", "<actuator><velocity joint=\"h\"/></actuator>");
     assert_eq!(accepted(&text).world.actuators, []);
     // Gear and bounds apply to any kind.
     let text = with("<default><motor gear=\"4\" ctrlrange=\"-1 1\"/></default>", "<actuator><velocity joint=\"h\"/></actuator>");
@@ -270,14 +288,12 @@ fn what_is_no_coupling_is_a_loop() {
 fn what_gives_no_force_is_a_warning_with_its_line() {
     let actuators = [
         "<muscle joint=\"h\"/>",
-        "<intvelocity joint=\"h\"/>",
-        "<cylinder joint=\"h\"/>",
         "<adhesion body=\"c\"/>",
         "<dcmotor joint=\"h\" motorconst=\"1\" resistance=\"1\"/>",
         "<orientation joint=\"b\"/>",
         "<pid joint=\"h\"/>",
-        "<general joint=\"h\" dyntype=\"filter\"/>",
-        "<position joint=\"h\" timeconst=\"0.1\"/>",
+        "<general joint=\"h\" dyntype=\"user\"/>",
+        "<general joint=\"h\" dyntype=\"filter\" actdim=\"2\"/>",
         "<general joint=\"h\" gaintype=\"user\"/>",
         "<general joint=\"h\" biastype=\"muscle\"/>",
         "<motor jointinparent=\"b\"/>",

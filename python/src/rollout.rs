@@ -2,7 +2,7 @@
 
 use articulated::Model;
 use articulated_core::algorithm::Workspace;
-use articulated_core::step::{rollout, step, steps};
+use articulated_core::step::{State, rollout, step, steps};
 use numpy::{PyArray3, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -41,16 +41,17 @@ pub(crate) fn run<'py>(
     let records = count / every;
     let (mut out_q, mut out_v) = (vec![0.0; states * records * nq], vec![0.0; states * records * nv]);
     let one = |(state, (out_q, out_v)): (usize, (&mut [f64], &mut [f64]))| {
-        let (mut q, mut v) = (given_q[state * nq..][..nq].to_vec(), given_v[state * nv..][..nv].to_vec());
         let torques = (0..count).map(|k| &given_tau[(state * count + k) * nv..][..nv]);
-        let see = |k: usize, q: &[f64], v: &[f64]| {
+        let (q, v) = (given_q[state * nq..][..nq].to_vec(), given_v[state * nv..][..nv].to_vec());
+        let mut state = State { q, v, act: Vec::new() };
+        let see = |k: usize, State { q, v, .. }: &State| {
             if (k + 1) % every == 0 {
                 let at = (k + 1) / every - 1;
                 out_q[at * nq..][..nq].copy_from_slice(q);
                 out_v[at * nv..][..nv].copy_from_slice(v);
             }
         };
-        rollout(row, (model, &mut Workspace::new(model)), (&mut q, &mut v), h, torques, see)
+        rollout(row, (model, &mut Workspace::new(model)), &mut state, h, torques, see)
     };
     let pool = batch::pool(threads)?;
     let done = py.detach(|| {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use articulated_core::description::{Base, Description};
 use articulated_core::diagnostic::Diagnostics;
 use articulated_core::model::{Model, ModelError};
-use articulated_formats::{Disk, MOST_BYTES, Options, nearest_file, read_file, read_with};
+use articulated_formats::{Disk, MOST_BYTES, Options, Reading, nearest_file, read_file, read_with};
 
 /// Why a file is not a robot.
 #[derive(Debug)]
@@ -36,7 +36,7 @@ impl fmt::Display for LoadError {
 
 impl std::error::Error for LoadError {}
 
-/// The generic model of the robot's file at `path`, with standard gravity.
+/// The generic model of the robot's file at `path`, with standard gravity and the file's actuators.
 ///
 /// Every mistake of the file is an error. This function does not return warnings (an inertia that
 /// no body has, and so on): [`formats::read`](crate::formats::read) does, and has options.
@@ -54,16 +54,19 @@ impl std::error::Error for LoadError {}
 /// # Ok(()) }
 /// ```
 pub fn load(path: impl AsRef<Path>, base: Base) -> Result<Model<f64>, LoadError> {
-    model(&describe(path)?, base)
+    model(&read(path.as_ref())?, base)
 }
 
 /// As [`load`], of a file in memory; `file` is its name in messages.
 pub fn load_bytes(file: &str, bytes: &[u8], base: Base) -> Result<Model<f64>, LoadError> {
-    model(&describe_bytes(file, bytes)?, base)
+    model(&read_bytes(file, bytes)?, base)
 }
 
-fn model(description: &Description, base: Base) -> Result<Model<f64>, LoadError> {
-    ModelError::of_base(description, base).and_then(|()| Model::new(description, base)).map_err(LoadError::Model)
+fn model(reading: &Reading, base: Base) -> Result<Model<f64>, LoadError> {
+    let description = &reading.description;
+    let model = ModelError::of_base(description, base).and_then(|()| Model::new(description, base)).map_err(LoadError::Model)?;
+    let (actuators, _) = reading.world.actuators_of(&model);
+    Ok(model.with_actuators(actuators))
 }
 
 /// The content of the robot's file at `path`, to be edited and made a model of:
@@ -82,9 +85,12 @@ fn model(description: &Description, base: Base) -> Result<Model<f64>, LoadError>
 ///
 /// Warnings are not returned, as for [`load`].
 pub fn describe(path: impl AsRef<Path>) -> Result<Description, LoadError> {
-    let path = path.as_ref();
+    Ok(read(path.as_ref())?.description)
+}
+
+fn read(path: &Path) -> Result<Reading, LoadError> {
     let bytes = read_file(path, MOST_BYTES).map_err(|error| LoadError::Io { file: path.to_owned(), error: with_nearest(path, error) })?;
-    describe_bytes(&path.display().to_string(), &bytes)
+    read_bytes(&path.display().to_string(), &bytes)
 }
 
 /// The error with the intended file name, if there is one.
@@ -97,8 +103,12 @@ fn with_nearest(path: &Path, error: std::io::Error) -> std::io::Error {
 
 /// As [`describe`], of a file in memory; `file` is its name in messages.
 pub fn describe_bytes(file: &str, bytes: &[u8]) -> Result<Description, LoadError> {
+    Ok(read_bytes(file, bytes)?.description)
+}
+
+fn read_bytes(file: &str, bytes: &[u8]) -> Result<Reading, LoadError> {
     let options = Options { file: file.into(), ..Options::default() };
-    Ok(read_with(&Disk, bytes, &options).map_err(LoadError::Diagnostics)?.description)
+    read_with(&Disk, bytes, &options).map_err(LoadError::Diagnostics)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! `[control]`: the controller of the joints.
 
-use articulated_core::control::{Actuators, Aim, Controller, Signal};
+use articulated_core::actuator::Actuators;
+use articulated_core::control::{Aim, Controller, Signal};
 use articulated_core::diagnostic::{At, Code, Diagnostics};
 use articulated_core::effect::Range;
 use articulated_core::model::{FLOATING_BASE, Model};
@@ -408,7 +409,10 @@ impl Scene {
                     Target::Moving(source) => Aim::Moving(source.series(&Slots::of_joints(model, Side::Q), read, log)),
                 },
             },
-            Drive::Actuators(controls) => Controller::Actuators(self.actuators(robot, controls, read, log)),
+            Drive::Actuators(controls) => {
+                let (actuators, controls) = self.actuators(robot, controls, read, log);
+                Controller::Actuators { actuators, controls }
+            }
         }
     }
 }
@@ -448,7 +452,13 @@ impl Scene {
     }
 
     /// The actuators of the robot's file, with the scene's controls.
-    fn actuators(&self, robot: RobotInWorld<'_>, controls: &Controls, read: Option<&mut Reader<'_>>, log: &mut Diagnostics) -> Actuators {
+    fn actuators(
+        &self,
+        robot: RobotInWorld<'_>,
+        controls: &Controls,
+        read: Option<&mut Reader<'_>>,
+        log: &mut Diagnostics,
+    ) -> (Actuators, Signal) {
         let place = (self.control.place, "control.kind");
         if robot.world.actuators.is_empty() && robot.world.passive.is_empty() {
             log.error(place, Code::Robot, "actuators, of which the robot's file has none", "another kind of control");
@@ -469,7 +479,7 @@ impl Scene {
                 Signal::Still(still)
             }
         };
-        robot.actuators(signal, place, log)
+        (robot.actuators(place, log), signal)
     }
 
     /// `[nv]`. One gain applies to all degrees of freedom of a joint; torques are required one by

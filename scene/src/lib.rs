@@ -55,7 +55,8 @@ mod table;
 mod tree;
 mod world;
 
-pub use articulated_core::control::{ActuatorLaw, Actuators, Aim, Controller, Series, Signal, Transmission};
+pub use articulated_core::actuator::{ActuatorLaw, Actuators, Transmission};
+pub use articulated_core::control::{Aim, Controller, Series, Signal};
 pub use articulated_core::settings::{Output, Settings, Stiffness};
 pub use calls::Calls;
 pub use control::{Control, Drive, PerJoint, Target};

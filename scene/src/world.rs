@@ -4,11 +4,12 @@ use std::borrow::Cow;
 use std::collections::HashSet;
 use std::sync::LazyLock;
 
-use articulated_core::control::{ActuatorLaw, Actuators, Follower, Signal, Transmission};
+use articulated_core::actuator::Actuators;
 use articulated_core::diagnostic::{At, Code, Diagnostics, quote};
 use articulated_core::model::Model;
 use articulated_core::suggest::nearest;
-use articulated_formats::world::{Actuator, Keyframe, World};
+use articulated_formats::OnLockedJoint;
+use articulated_formats::world::{Keyframe, World};
 
 use crate::initial::{Coordinates, counted};
 use crate::scene::Scene;
@@ -100,6 +101,8 @@ impl<'a> RobotInWorld<'a> {
         for keyframe in &mut world.keyframes {
             let own = keyframe.control.iter().zip(&self.world.actuators);
             keyframe.control = own.filter(|(_, actuator)| is_kept(&actuator.name)).map(|(control, _)| *control).collect();
+            let own = keyframe.activation.iter().zip(&self.world.actuators);
+            keyframe.activation = own.filter(|(_, actuator)| is_kept(&actuator.name)).map(|(w, _)| *w).collect();
         }
         world.actuators.retain(|actuator| is_kept(&actuator.name));
         world.passive.retain(|actuator| is_kept(&actuator.name));
@@ -134,69 +137,17 @@ impl<'a> RobotInWorld<'a> {
     }
 
     /// The actuators of the file on this robot. An actuator on a locked joint is an error.
-    pub(crate) fn actuators(self, controls: Signal, place: (At, &str), log: &mut Diagnostics) -> Actuators {
-        let mut followers = Vec::new();
-        let mut laws = |all: &[Actuator], mut followers: Option<&mut Vec<(String, Follower)>>| {
-            let law = |(k, actuator)| self.law(actuator, followers.as_deref_mut().map(|all| (k, all)), place, log);
-            all.iter().enumerate().map(law).collect()
-        };
-        let (laws, passive) = (laws(&self.world.actuators, Some(&mut followers)), laws(&self.world.passive, None));
-        let range = |name: &str| self.world.joint_forces.iter().find(|(joint, _)| joint == name).map(|(_, range)| *range);
-        let followers = followers.into_iter().map(|(name, follower)| Follower { range: range(&name), ..follower }).collect();
-        let degree = |(name, range): &(String, [f64; 2])| {
-            let joint = self.model.joints().iter().find(|joint| joint.name == *name && joint.v.1 == 1)?;
-            Some((joint.v.0, *range))
-        };
-        Actuators { laws, controls, bounds: self.world.joint_forces.iter().filter_map(degree).collect(), followers, passive }
-    }
-
-    /// The law of an actuator with the robot's own coordinates. A joint that follows others is
-    /// q = Σ multiplier · leader's + offset: its part of the length is one of theirs, and a
-    /// constant. `followers`: the number of the law, and where to put its torques on such joints.
-    fn law(
-        self,
-        actuator: &Actuator,
-        mut followers: Option<(usize, &mut Vec<(String, Follower)>)>,
-        place: (At, &str),
-        log: &mut Diagnostics,
-    ) -> ActuatorLaw {
-        let (mut drives, mut constant) = (Vec::new(), 0.0);
-        for (joint, gear) in &actuator.drives {
-            if let Some(one) = self.model.joints().iter().find(|one| one.name == *joint && one.v.1 == gear.len()) {
-                drives.push(Transmission { q: one.q.0, v: one.v.0, gear: gear.clone(), has_no_torque: false });
-                continue;
-            }
-            // One that follows several is a sequence of bodies with its name.
-            let parts = self.model.bodies().iter().filter(|body| body.name == *joint);
-            let (before, mut leaders) = (drives.len(), Vec::new());
-            for (body, follow) in parts.filter_map(|body| Some((body, body.coordinates.mimic?))) {
-                constant += gear[0] * follow.offset;
-                let (at, gear) = (&body.coordinates, vec![gear[0] * follow.multiplier]);
-                drives.push(Transmission { q: at.q, v: at.v, gear, has_no_torque: followers.is_some() });
-                leaders.push((at.v, follow.multiplier));
-            }
-            if let Some((law, all)) = followers.as_mut().filter(|_| !leaders.is_empty()) {
-                let known = all.iter().position(|(name, _)| name == joint);
-                let index = known.unwrap_or_else(|| {
-                    all.push((joint.clone(), Follower { leaders, ..Follower::default() }));
-                    all.len() - 1
-                });
-                all[index].1.laws.push((*law, gear[0]));
-            }
-            if drives.len() == before {
-                let found = format!("the actuator {} on joint {}, which is locked", quote(&actuator.name), quote(joint));
-                let expected = format!("joints that move, or `without = [{}]`, which leaves it out", quote(&actuator.name));
-                log.error(place, Code::Robot, found, expected);
-            }
+    pub(crate) fn actuators(self, place: (At, &str), log: &mut Diagnostics) -> Actuators {
+        let (mut actuators, locked) = self.world.actuators_of(self.model);
+        for OnLockedJoint { actuator, joint } in locked {
+            let found = format!("the actuator {} on joint {}, which is locked", quote(&actuator), quote(&joint));
+            let expected = format!("joints that move, or `without = [{}]`, which leaves it out", quote(&actuator));
+            log.error(place, Code::Robot, found, expected);
         }
-        let from = |[at_rest, of_length, of_rate]: [f64; 3]| [at_rest + of_length * constant, of_length, of_rate];
-        ActuatorLaw {
-            name: actuator.name.clone(),
-            drives,
-            gain: from(actuator.gain),
-            bias: from(actuator.bias),
-            control_range: actuator.control_range,
-            force_range: actuator.force_range,
+        // A motion has no activations: see `warnings`.
+        for law in actuators.laws.iter_mut().filter(|law| law.activation.is_some()) {
+            (law.gain, law.bias, law.activation) = ([0.0; 3], [0.0; 3], None);
         }
+        actuators
     }
 }

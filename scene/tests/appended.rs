@@ -75,10 +75,10 @@ fn torques(text: &str) -> Vec<f64> {
     let scene = Scene::read("s.toml", &text).unwrap();
     let (q, v) = scene.start(world).unwrap_or_else(|e| panic!("{e}"));
     let controller = scene.controller(world, &mut |_| Err("no files".into())).unwrap_or_else(|e| panic!("{e}"));
-    let Controller::Actuators(actuators) = controller else { panic!("{text}") };
-    let Signal::Still(u) = &actuators.controls else { panic!("{text}") };
+    let Controller::Actuators { actuators, controls } = controller else { panic!("{text}") };
+    let Signal::Still(u) = &controls else { panic!("{text}") };
     let mut tau = vec![0.0; robot.model.nv()];
-    actuators.add_torques(u, &q, &v, &mut tau);
+    actuators.add_torques(&actuators.inputs(&[], u, None), &q, &v, &mut tau);
     tau
 }
 

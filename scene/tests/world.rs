@@ -67,10 +67,10 @@ fn a_motion_starts_where_the_file_says_and_the_scene_changes_it() {
 fn actuators_of_the_file_drive_their_joints() {
     let (world, q, v) = (world(), [0.1, 0.5], [0.0, 0.0]);
     let torques = |text: &str| {
-        let Ok(Controller::Actuators(actuators)) = controlled(text, &world) else { panic!("{text}") };
-        let Signal::Still(u) = &actuators.controls else { panic!("{text}") };
+        let Ok(Controller::Actuators { actuators, controls }) = controlled(text, &world) else { panic!("{text}") };
+        let Signal::Still(u) = &controls else { panic!("{text}") };
         let mut tau = [0.0; 2];
-        actuators.add_torques(u, &q, &v, &mut tau);
+        actuators.add_torques(&actuators.inputs(&[], u, None), &q, &v, &mut tau);
         tau
     };
     // The string pulls with −3 · 0.5.
@@ -84,8 +84,8 @@ fn actuators_of_the_file_drive_their_joints() {
 #[test]
 fn controls_over_time_have_the_names_of_actuators() {
     let text = "control = { kind = \"actuators\", columns = [\"both\"], rows = [[0, 1], [2, 3]] }";
-    let Ok(Controller::Actuators(actuators)) = controlled(text, &world()) else { panic!("actuators") };
-    let Signal::Moving(series) = actuators.controls else { panic!("a table") };
+    let Ok(Controller::Actuators { controls, .. }) = controlled(text, &world()) else { panic!("actuators") };
+    let Signal::Moving(series) = controls else { panic!("a table") };
     let mut u = [9.0; 2];
     series.at(0.5, &mut u);
     assert_eq!(u, [0.0, 1.5]);
@@ -142,10 +142,12 @@ fn actuators_of_a_locked_joint_are_left_out_by_name() {
     let torque = |control: &str| {
         let (robot, text) = built(control).unwrap_or_else(|e| panic!("{e}"));
         let world = RobotInWorld { model: &robot.model, world: &robot.reading.world };
-        let Ok(Controller::Actuators(actuators)) = text.controller(world, &mut |_| Err("no files".into())) else { panic!("{control}") };
-        let Signal::Still(u) = &actuators.controls else { panic!("{control}") };
+        let Ok(Controller::Actuators { actuators, controls }) = text.controller(world, &mut |_| Err("no files".into())) else {
+            panic!("{control}")
+        };
+        let Signal::Still(u) = &controls else { panic!("{control}") };
         let mut tau = [0.0];
-        actuators.add_torques(u, &[0.1], &[0.0], &mut tau);
+        actuators.add_torques(&actuators.inputs(&[], u, None), &[0.1], &[0.0], &mut tau);
         tau[0]
     };
     let close = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-15, "{found} {expected}");
@@ -224,8 +226,8 @@ fn equations_of_the_file_are_couplings_where_the_scene_says_so() {
     let of = |robot: &articulated_scene::BuiltRobot, q: &[f64], v: &[f64]| {
         let text = scene("control = { kind = \"actuators\", ctrl = [2] }");
         let controller = text.controller(RobotInWorld { model: &robot.model, world: &world }, &mut |_| Err(String::new())).unwrap();
-        let (Controller::Actuators(actuators), mut tau) = (controller, vec![0.0; v.len()]) else { panic!("actuators") };
-        actuators.add_torques(&[2.0], q, v, &mut tau);
+        let (Controller::Actuators { actuators, .. }, mut tau) = (controller, vec![0.0; v.len()]) else { panic!("actuators") };
+        actuators.add_torques(&actuators.inputs(&[], &[2.0], None), q, v, &mut tau);
         tau
     };
     let (q, v) = (-2.0 * 0.3 + 10.0_f64.to_radians(), -2.0 * 0.7);
@@ -240,8 +242,8 @@ fn equations_of_the_file_are_couplings_where_the_scene_says_so() {
     let of = |robot: &articulated_scene::BuiltRobot, world: &World| {
         let text = scene("control = { kind = \"actuators\", ctrl = [2] }");
         let controller = text.controller(RobotInWorld { model: &robot.model, world }, &mut |_| Err(String::new())).unwrap();
-        let (Controller::Actuators(actuators), mut tau) = (controller, vec![0.0]) else { panic!("actuators") };
-        actuators.add_torques(&[2.0], &[0.3], &[0.7], &mut tau);
+        let (Controller::Actuators { actuators, .. }, mut tau) = (controller, vec![0.0]) else { panic!("actuators") };
+        actuators.add_torques(&actuators.inputs(&[], &[2.0], None), &[0.3], &[0.7], &mut tau);
         tau[0]
     };
     let [plain, clamped] = [&world, &bounded].map(|world| of(&coupled, world));
@@ -267,8 +269,8 @@ fn an_actuator_on_a_joint_that_follows_several_drives_each() {
         let world = World { actuators: vec![servo.clone()], joint_forces, ..World::default() };
         let text = scene("control = { kind = \"actuators\", ctrl = [1] }");
         let controller = text.controller(RobotInWorld { model: &robot.model, world: &world }, &mut |_| Err(String::new())).unwrap();
-        let (Controller::Actuators(actuators), mut tau) = (controller, vec![0.0; 2]) else { panic!("actuators") };
-        actuators.add_torques(&[1.0], &[0.3, -0.4], &[0.0; 2], &mut tau);
+        let (Controller::Actuators { actuators, .. }, mut tau) = (controller, vec![0.0; 2]) else { panic!("actuators") };
+        actuators.add_torques(&actuators.inputs(&[], &[1.0], None), &[0.3, -0.4], &[0.0; 2], &mut tau);
         tau
     };
     let expected: f64 = 3.0 * 2.0 * (1.0 - 3.0 * (0.5 * 0.3 + 0.7 * 0.4 + 0.2));

@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
-"""Compares steps of `articulated rollout` with MuJoCo's mj_step, in random states with random forces.
+"""Compares steps of `articulated rollout` with MuJoCo's mj_step, in random states with random controls or forces.
 
     python3 tests/mjcf/steps.py                   the dozen files of oracle.py, from the pinned packages
     python3 tests/mjcf/steps.py --file F.xml      one file
 
-Contacts, limits, dry friction, equality constraints and actuators are off in MuJoCo; forces are applied to the joints. Euler
-and implicitfast are compared with step_implicit_damping, RK4 with step_rk4_mujoco. implicitfast is compared where no body is
-free, since MuJoCo solves the rotation of free bodies by themselves.
+Contacts, limits, dry friction and equality constraints are off in MuJoCo, and so are actuators that are not read ("off": how
+many). A file with other actuators has random controls and activations, any other file random forces on its joints. implicitfast
+is compared where no body is free, since MuJoCo solves the rotation of free bodies by themselves.
 
 * "one step": the largest difference after one step from 20 states, over 1 and the largest rate.
 * "steps": after 1000 steps from 5 states, the difference over the largest of four MuJoCo rollouts whose starts differ by one
-  unit in the last place of each number. Left out where MuJoCo's own state grows beyond any bound.
+  unit in the last place of each number, or over one rounding of each step if that is more. Left out where MuJoCo's own
+  state grows beyond any bound.
 
 Exit status: 0 if one step differs by at most 1e-12, and 1000 steps by at most 10 times the latter (100 times with a free
 body, whose velocity is turned into axes of the body in each step), else 1.
@@ -18,6 +19,7 @@ body, whose velocity is turned into axes of the body in each step), else 1.
 
 import argparse
 import json
+import math
 import os
 import subprocess
 import sys
@@ -30,9 +32,13 @@ from simulate import order
 
 ONE_STEP = 1e-12
 MANY = 10.0
+# A group of actuators that the comparison turns off.
+OFF = 30
 # Of free bodies, whose velocity here is in axes of the body: a step turns it into axes of the world and back, with a rounding.
 MANY_OF_FREE = 100.0
 STEPS = 1000
+# Of one step, in f64: a rollout rounds in each step, also where the steps of one ulp at the start vanish.
+ROUNDING = 2.0**-53
 
 
 def main():
@@ -44,7 +50,7 @@ def main():
         build_command()
         words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in sys.argv]
         sys.exit(subprocess.run([str(python), *words], cwd=PLACE, env={**os.environ, "MJCF_ORACLE": "1"}).returncode)
-    print(f"{'model':40}{'nv':>4}  {'integrator':14}{'one step':>10}{'steps':>10}")
+    print(f"{'model':40}{'nv':>4}{'nu':>4}{'na':>4}{'off':>4}  {'integrator':14}{'one step':>10}{'steps':>10}")
     good = True
     for path in [Path(arguments.file)] if arguments.file else models():
         for integrator in ("Euler", "implicitfast", "RK4"):
@@ -56,18 +62,20 @@ def main():
                 break
             if row is None:
                 continue
-            freedoms, one, many, most = row
+            counts, one, many, most = row
             good &= one <= ONE_STEP and (many is None or many <= most)
             text = "left out" if many is None else f"{many:.2f}"
-            print(f"{path.name:40}{freedoms:4}  {integrator:14}{one:10.1e}{text:>10}", flush=True)
+            print(f"{path.name:40}{''.join(f'{count:4}' for count in counts)}  {integrator:14}{one:10.1e}{text:>10}", flush=True)
     sys.exit(not good)
 
 
 def measure(path, integrator):
-    """nv, difference of one step, and of many over that of two rollouts of MuJoCo."""
+    """nv, nu, na and actuators that are off; difference of one step, and of many over that of two rollouts of MuJoCo."""
     import mujoco
     import numpy as np
 
+    # Motions without a bound are left out below.
+    mujoco.set_mju_user_warning(lambda _: None)
     try:
         model = mujoco.MjModel.from_xml_path(str(path))
     except ValueError as error:
@@ -77,7 +85,16 @@ def measure(path, integrator):
     disable = mujoco.mjtDisableBit
     model.opt.disableflags |= disable.mjDSBL_CONTACT | disable.mjDSBL_LIMIT | disable.mjDSBL_FRICTIONLOSS | disable.mjDSBL_EQUALITY
     # Without a reset where a motion has no bound.
-    model.opt.disableflags |= disable.mjDSBL_ACTUATION | disable.mjDSBL_AUTORESET
+    model.opt.disableflags |= disable.mjDSBL_AUTORESET
+    own = actuators(path)
+    names = [model.actuator(k).name or f"actuator_{k}" for k in range(model.nactuator)]
+    used = [k for k, name in enumerate(names) if name in own]
+    for k in set(range(model.nactuator)) - set(used):
+        model.actuator_group[k] = OFF
+    model.opt.disableactuator |= 1 << OFF
+    # The place of the control and of the activation of each actuator that is read, in the order of the command.
+    controls = [model.actuator_ctrladr[names.index(name)] for name in own]
+    states = [model.actuator_actadr[names.index(name)] for name in own if model.actuator_actnum[names.index(name)] > 0]
     model.opt.integrator = getattr(mujoco.mjtIntegrator, {"Euler": "mjINT_EULER", "implicitfast": "mjINT_IMPLICITFAST", "RK4": "mjINT_RK4"}[integrator])
     data, random = mujoco.MjData(model), np.random.default_rng(7)
     starts = []
@@ -88,48 +105,68 @@ def measure(path, integrator):
         for kind, _, at, _ in parts(model):
             # A held force on the origin of a free body is in world axes there, and in body axes here.
             force[at : at + 3] *= kind != 0
-        starts.append((q, random.uniform(-1, 1, model.nv), force))
+        ctrl, act = np.zeros(model.nu), np.zeros(model.na)
+        if own:
+            force *= 0
+            ctrl[controls] = random.uniform(-1, 1, len(controls))
+            act[states] = random.uniform(-1, 1, len(states))
+        starts.append((q, random.uniform(-1, 1, model.nv), force, act, ctrl))
 
     def ended(start, steps):
         mujoco.mj_resetData(model, data)
-        data.qpos[:], data.qvel[:], data.qfrc_applied[:] = start
+        data.qpos[:], data.qvel[:], data.qfrc_applied[:], data.act[:], data.ctrl[:] = start
         for _ in range(steps):
             mujoco.mj_step(model, data)
-        return np.array(data.qpos), np.array(data.qvel)
+        return np.array(data.qpos), np.array(data.qvel), np.array(data.act)
 
     def apart(one, other):
         way = np.zeros(model.nv)
         mujoco.mj_differentiatePos(model, way, 1.0, one[0], other[0])
         scale = 1 + np.abs(other[1]).max(initial=0.0)
-        return float(np.abs(np.concatenate([way, one[1] - other[1]])).max(initial=0.0)) / scale
+        activations = (one[2] - other[2])[states] / (1 + np.abs(other[2]).max(initial=0.0))
+        return float(np.abs(np.concatenate([way, one[1] - other[1], activations])).max(initial=0.0)) / scale
 
     # Without eulerdamp, Euler is explicit in damping.
     is_explicit = integrator == "Euler" and model.opt.disableflags & disable.mjDSBL_EULERDAMP
     method = "semi_implicit_euler" if is_explicit else integrator
-    single = max(apart(one, ended(start, 1)) for one, start in zip(rolled(path, model, starts, method, 1), starts))
+    single = max(apart(one, ended(start, 1)) for one, start in zip(rolled(path, model, (states, controls), starts, method, 1), starts))
     few = starts[:5]
     ratios = []
-    for one, start in zip(rolled(path, model, few, method, STEPS), few):
+    for one, start in zip(rolled(path, model, (states, controls), few, method, STEPS), few):
         reference = ended(start, STEPS)
         if not np.isfinite(reference[1]).all() or np.abs(reference[1]).max(initial=0.0) > 1e6:
             continue
         ulp = [[np.nextafter(x, random.choice([-1, 1], len(x)) * np.inf) for x in start[:2]] for _ in range(4)]
-        beside = max(apart(ended((q, v, start[2]), STEPS), reference) for q, v in ulp)
+        beside = max(apart(ended((q, v, *start[2:]), STEPS), reference) for q, v in ulp)
         if np.isfinite(beside):
-            ratios.append(apart(one, reference) / max(beside, 1e-14))
+            ratios.append(apart(one, reference) / max(beside, STEPS * ROUNDING))
     is_free = (model.jnt_type == mujoco.mjtJoint.mjJNT_FREE).any()
-    return model.nv, single, max(ratios) if ratios else None, MANY_OF_FREE if is_free else MANY
+    counts = model.nv, len(own), len(states), model.nactuator - len(own)
+    return counts, single, max(ratios) if ratios else None, MANY_OF_FREE if is_free else MANY
 
 
-def rolled(path, model, starts, method, steps):
+def actuators(path):
+    """The names of the actuators that are read, in the order of the command."""
+    command = [str(COMMAND), "rollout", str(path), "--steps", "1", "--format", "json"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode:
+        raise RuntimeError(done.stderr)
+    return json.loads(done.stdout).get("actuators", [])
+
+
+def rolled(path, model, places_of, starts, method, steps):
     """The ends of the command's rollouts, in MuJoCo's order and axes."""
     import numpy as np
 
-    places = order(model)
+    places, (activations, controls) = order(model), places_of
     states = []
-    for q, v, tau in starts:
-        rates, torques = to_own(model, q, v), to_own(model, q, tau)
-        states.append({"q": [float(q[place]) for place in places], "v": rates, "tau": torques})
+    for q, v, tau, act, ctrl in starts:
+        state = {"q": [float(q[place]) for place in places], "v": to_own(model, q, v)}
+        if controls:
+            state |= {"act": [float(act[place]) for place in activations], "ctrl": [float(ctrl[place]) for place in controls]}
+        else:
+            state["tau"] = to_own(model, q, tau)
+        states.append(state)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "states.json"
         file.write_text(json.dumps({"states": states}))
@@ -139,9 +176,11 @@ def rolled(path, model, starts, method, steps):
         raise RuntimeError(done.stderr)
     ends = []
     for end in json.loads(done.stdout)["states"]:
-        q = np.zeros(model.nq)
-        q[places] = end["q"]
-        ends.append((q, from_own(model, q, end["v"])))
+        # A number without a bound is null.
+        q, v, act = ([math.nan if x is None else x for x in end.get(name, [])] for name in ("q", "v", "act"))
+        own, states = np.zeros(model.nq), np.zeros(model.na)
+        own[places], states[activations] = q, act
+        ends.append((own, from_own(model, own, v), states))
     return ends
 
 

@@ -20,6 +20,11 @@ impl Names {
             Dim::Frames => Some(model.frames().iter().map(|f| (f.name.clone(), 1)).collect()),
             // A moving link has the name of its joint.
             Dim::Links => Some(model.links().map(|i| (model.bodies()[i].name.clone(), 1)).collect()),
+            Dim::Controls => Some(model.actuators().laws.iter().map(|law| (law.name.clone(), 1)).collect()),
+            Dim::Activations => {
+                let own = model.actuators().laws.iter().filter(|law| law.activation.is_some());
+                Some(own.map(|law| (law.name.clone(), 1)).collect())
+            }
             Dim::Of(_) => None,
         };
         Self { parts, length: dim.len(model.shape()) }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use articulated_codegen::function_groups;
 use articulated_core::algorithm::{Function, function};
-use articulated_core::step::steps;
+use articulated_core::step::beside_the_table;
 
 use crate::arguments::{Format, FunctionsArguments, RobotArguments};
 use crate::console::{self, Progress};
@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &FunctionsArguments, format: Format) -> Result<(), 
         report.robots.push(row);
     }
     let table = function_groups::all();
-    let rows: Vec<&'static Function<f64>> = table.iter().filter_map(|name| function::<f64>(name)).chain(steps()).collect();
+    let rows: Vec<&'static Function<f64>> = table.iter().filter_map(|name| function::<f64>(name)).chain(beside_the_table()).collect();
     let pairs: Vec<(&Function<f64>, &Subject)> = rows.iter().flat_map(|f| subjects.iter().map(move |s| (*f, s))).collect();
     let progress = Progress::new(pairs.len());
     let cells = parallel::map(&pairs, |(f, s)| {

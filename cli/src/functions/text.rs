@@ -32,7 +32,7 @@ pub(super) fn text(report: &Report) -> String {
 }
 
 fn by_group(report: &Report, table: &mut Table, mut cells: impl FnMut(&FunctionRow) -> Vec<String>) {
-    for group in Group::ALL.into_iter().chain([Group::Steps]) {
+    for group in Group::ALL.into_iter().chain([Group::Steps, Group::Actuators]) {
         table.heading(group.name());
         for f in report.functions.iter().filter(|f| f.group == group) {
             table.row(std::iter::once(format!("  {}", f.function)).chain(cells(f)));
@@ -70,7 +70,7 @@ pub(super) fn markdown(report: &Report) -> String {
         let _ = writeln!(out, "| `{}` | `{}` {}{asked} |", argument.name(), shape::dims(argument.dims()), cell(argument.unit()));
     }
     let mut footnotes = Footnotes::default();
-    for group in Group::ALL.into_iter().chain([Group::Steps]) {
+    for group in Group::ALL.into_iter().chain([Group::Steps, Group::Actuators]) {
         let names: String = report.robots.iter().map(|r| format!(" {} |", r.robot)).collect();
         let lines = "--:|".repeat(report.robots.len());
         let _ = writeln!(out, "\n## {}\n\n| function | gives | what it is | algorithm |{names}\n|---|---|---|---|{lines}", group.title());

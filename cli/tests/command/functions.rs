@@ -13,8 +13,8 @@ fn every_function_has_its_cost_or_the_reason_why_not() {
     let words = ["functions", "double_pendulum", file.name()];
     let json = run(&[&words[..], &["--format", "json"]].concat()).json();
     let functions = json["functions"].as_array().unwrap();
-    let steps = articulated_core::step::steps::<f64>().len();
-    assert_eq!(functions.len(), articulated_core::algorithm::functions::<f64>().len() + steps);
+    let beside = articulated_core::step::beside_the_table::<f64>().count();
+    assert_eq!(functions.len(), articulated_core::algorithm::functions::<f64>().len() + beside);
     assert_eq!(json["robots"][1]["frames"], serde_json::json!(["b"]));
     let of = |name: &str| functions.iter().find(|f| f["function"] == name).unwrap();
     assert_eq!(of("jacobians_body")["gives"], "[frames][6][nv]");

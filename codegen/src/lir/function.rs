@@ -87,6 +87,14 @@ pub(crate) struct Function<'a> {
     pub(crate) states: Option<States>,
 }
 
+impl Function<'_> {
+    /// Whether it takes or returns something for each actuator.
+    pub(crate) fn is_of_actuators(&self) -> bool {
+        let of_actuators = |dims: &[Dim]| dims.iter().any(|dim| matches!(dim, Dim::Controls | Dim::Activations));
+        self.arguments.iter().any(|a| of_actuators(&a.dims)) || self.outputs.iter().any(|output| of_actuators(&output.dims))
+    }
+}
+
 /// The function of many states.
 pub(crate) struct States {
     pub(crate) body: Body,

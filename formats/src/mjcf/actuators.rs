@@ -7,6 +7,7 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use articulated_core::actuator::{Activation, Filter};
 use articulated_core::description::Description;
 use articulated_core::diagnostic::{Code, Diagnostics, Subject};
 
@@ -46,13 +47,18 @@ pub(crate) struct Control {
     pub(crate) part: usize,
     /// The index of the actuator, if it is read.
     pub(crate) actuator: Option<usize>,
+    /// How many activations the file has for it: those of an actuator are with its first control.
+    pub(crate) activations: usize,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Dynamics {
     None,
-    /// With a state, under its name in the file.
-    State(&'static str),
+    Integrator,
+    Filter,
+    FilterExact,
+    /// With another state, under its name in the file.
+    Other(&'static str),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,13 +77,13 @@ enum Bias {
 
 const DYNAMICS: [(&str, Dynamics); 8] = [
     ("none", Dynamics::None),
-    ("integrator", Dynamics::State("integrator")),
-    ("filter", Dynamics::State("filter")),
-    ("filterexact", Dynamics::State("filterexact")),
-    ("pid", Dynamics::State("pid")),
-    ("dcmotor", Dynamics::State("dcmotor")),
-    ("muscle", Dynamics::State("muscle")),
-    ("user", Dynamics::State("user")),
+    ("integrator", Dynamics::Integrator),
+    ("filter", Dynamics::Filter),
+    ("filterexact", Dynamics::FilterExact),
+    ("pid", Dynamics::Other("pid")),
+    ("dcmotor", Dynamics::Other("dcmotor")),
+    ("muscle", Dynamics::Other("muscle")),
+    ("user", Dynamics::Other("user")),
 ];
 const GAINS: [(&str, Gain); 7] = [
     ("fixed", Gain::Fixed),
@@ -117,6 +123,13 @@ struct General {
     bias: Bias,
     gains: [f64; 10],
     biases: [f64; 10],
+    /// Numbers of the dynamics; the first is a time constant, s.
+    times: [f64; 10],
+    /// Number of activations, if the file says it.
+    activations: i64,
+    activation_limited: Option<bool>,
+    activation_range: [f64; 2],
+    is_early: bool,
     gear: [f64; 6],
     control_limited: Option<bool>,
     force_limited: Option<bool>,
@@ -144,6 +157,11 @@ impl Default for General {
             bias: Bias::None,
             gains,
             biases: [0.0; 10],
+            times: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            activations: -1,
+            activation_limited: None,
+            activation_range: [0.0; 2],
+            is_early: false,
             gear: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
             control_limited: None,
             force_limited: None,
@@ -188,7 +206,11 @@ impl General {
         let values = Values::alone(element, &Subject::Document);
         self.gear = values.at_most("gear", self.gear, log);
         self.damping = values.at_most("damping", self.damping, log);
-        for (name, into) in [("ctrllimited", &mut self.control_limited), ("forcelimited", &mut self.force_limited)] {
+        for (name, into) in [
+            ("ctrllimited", &mut self.control_limited),
+            ("forcelimited", &mut self.force_limited),
+            ("actlimited", &mut self.activation_limited),
+        ] {
             if values.has(name) {
                 *into = values.yes_or_auto(name, log);
             }
@@ -197,6 +219,9 @@ impl General {
             *into = values.number(name, log).unwrap_or(*into);
         }
         self.group = values.integer("group", log).unwrap_or(self.group);
+        self.activations = values.integer("actdim", log).unwrap_or(self.activations);
+        self.is_early = values.yes("actearly", log).unwrap_or(self.is_early);
+        self.activation_range = values.exactly("actrange", log).unwrap_or(self.activation_range);
         self.force_range = values.exactly("forcerange", log).unwrap_or(self.force_range);
         self.control_range = values.exactly("ctrlrange", log).unwrap_or(self.control_range);
         let gain = self.gain;
@@ -225,6 +250,7 @@ impl General {
             self.bias = of_word(values, "biastype", &BIASES, self.bias, log);
             self.gains = values.at_most("gainprm", self.gains, log);
             self.biases = values.at_most("biasprm", self.biases, log);
+            self.times = values.at_most("dynprm", self.times, log);
             self.inherit_range = values.number("inheritrange", log).unwrap_or(self.inherit_range);
             return;
         }
@@ -240,13 +266,22 @@ impl General {
                 self.servo(&base, fixed, values, log);
                 self.foreign = foreign;
                 if kind == "intvelocity" {
-                    self.dynamics = Dynamics::State("integrator");
+                    self.dynamics = Dynamics::Integrator;
                 }
             }
             "velocity" => {
                 self.foreign = foreign;
                 let kv = values.number("kv", log).unwrap_or(fixed);
                 (self.gains[0], self.biases[2], self.bias) = (kv, -kv, Bias::Affine);
+            }
+            "cylinder" => {
+                let diameter = values.number("diameter", log).map(|diameter| core::f64::consts::FRAC_PI_4 * diameter * diameter);
+                let area = diameter.or_else(|| values.number("area", log)).unwrap_or(fixed);
+                let mut bias = [0.0; 3];
+                bias.copy_from_slice(&base.biases[..3]);
+                self.biases[..3].copy_from_slice(&values.at_most("bias", bias, log));
+                self.times[0] = values.number("timeconst", log).unwrap_or(base.times[0]);
+                (self.gains[0], self.bias, self.dynamics) = (area, Bias::Affine, Dynamics::Filter);
             }
             "damper" => {
                 let kv = values.number("kv", log).unwrap_or(if base.gain == Gain::Affine { -base.gains[2] } else { 0.0 });
@@ -303,12 +338,37 @@ impl General {
             self.control_range = [0.0; 2];
         }
         self.inherit_range = inherited.unwrap_or(if range.is_some() { 0.0 } else { base.inherit_range });
-        let filtered = Dynamics::State("filterexact");
         self.dynamics = match time {
-            Some(time) if time > 0.0 => filtered,
-            None if base.dynamics == filtered => filtered,
+            Some(time) if time > 0.0 => {
+                self.times[0] = time;
+                Dynamics::FilterExact
+            }
+            None if base.dynamics == Dynamics::FilterExact => Dynamics::FilterExact,
             _ => Dynamics::None,
         };
+    }
+
+    /// How many activations the file has for it.
+    fn activations(&self) -> usize {
+        match self.dynamics {
+            Dynamics::None => 0,
+            _ if self.activations > 0 => self.activations as usize,
+            Dynamics::Integrator if matches!(self.gain, Gain::Other("so3")) => 3,
+            _ => 1,
+        }
+    }
+
+    /// The activation, with bounds after a range that its target has.
+    fn activation(&self, range: Option<[f64; 2]>) -> Option<Activation> {
+        // MuJoCo's least time constant.
+        let time = self.times[0].max(1e-15);
+        let filter = match self.dynamics {
+            Dynamics::None | Dynamics::Other(_) => return None,
+            Dynamics::Integrator => Filter::Integrator,
+            Dynamics::Filter => Filter::Euler(time),
+            Dynamics::FilterExact => Filter::Exact(time),
+        };
+        Some(Activation { filter, range, is_early: self.is_early })
     }
 
     /// How many controls it has.
@@ -340,7 +400,10 @@ impl General {
             return Some("an actuator of a group that <option> turns off".to_owned());
         }
         match (self.dynamics, self.gain, self.bias) {
-            (Dynamics::State(word), ..) => Some(format!("an actuator with a state (dyntype {word})")),
+            (Dynamics::Other(word), ..) => Some(format!("an actuator with a state (dyntype {word})")),
+            (dynamics, ..) if dynamics != Dynamics::None && self.activations > 1 => {
+                Some(format!("an actuator with {} activations", self.activations))
+            }
             (_, Gain::Other(word), _) => Some(format!("an actuator with a gain that is not affine (gaintype {word})")),
             (.., Bias::Other(word)) => Some(format!("an actuator with a bias that is not affine (biastype {word})")),
             _ if self.delay > 0.0 => Some("an actuator with a delay".to_owned()),
@@ -355,14 +418,15 @@ impl General {
         (gain, if self.bias == Bias::None { [0.0; 3] } else { first(&self.biases) })
     }
 
-    /// The bounds of control and force of an actuator with a target of this range.
-    fn bounds(&self, element: &Element, settings: &Settings<'_>, target: Option<[f64; 2]>, log: &mut Diagnostics) -> [Option<[f64; 2]>; 2] {
-        let mut control = self.control_range;
+    /// The bounds of control, force and activation of an actuator with a target of this range.
+    fn bounds(&self, element: &Element, settings: &Settings<'_>, target: Option<[f64; 2]>, log: &mut Diagnostics) -> [Option<[f64; 2]>; 3] {
+        let (mut control, mut activation) = (self.control_range, self.activation_range);
         if self.is_servo() && self.inherit_range > 0.0 {
             match target {
                 Some([lower, upper]) if lower != upper => {
                     let (middle, radius) = ((lower + upper) / 2.0, (upper - lower) / 2.0 * self.inherit_range);
-                    control = [middle - radius, middle + radius];
+                    let inherited = if self.dynamics == Dynamics::Integrator { &mut activation } else { &mut control };
+                    *inherited = [middle - radius, middle + radius];
                 }
                 _ => {
                     let expected = "an actuator on a joint or a tendon that has a range";
@@ -373,6 +437,7 @@ impl General {
         let sides = [
             ("ctrllimited", "ctrlrange", self.control_limited, control),
             ("forcelimited", "forcerange", self.force_limited, self.force_range),
+            ("actlimited", "actrange", self.activation_limited, activation),
         ];
         sides.map(|(flag, field, limited, range)| {
             let is_limited = match limited {
@@ -452,7 +517,7 @@ pub(crate) fn actuators(
             }
             let read = match (obstacle, target) {
                 (None, Ok(target)) => {
-                    let [control_range, force_range] = general.bounds(element, &part.settings, target.range, log);
+                    let [control_range, force_range, activation_range] = general.bounds(element, &part.settings, target.range, log);
                     let (gain, bias) = general.law();
                     if target.is_ball && general.is_servo() {
                         let expected = "targets within half a turn of the length: this is as written, and MuJoCo takes the nearest of \
@@ -470,6 +535,7 @@ pub(crate) fn actuators(
                         bias,
                         control_range: control_range.filter(|_| !simulation.flags().no_clamp),
                         force_range,
+                        activation: general.activation(activation_range),
                         place: scope.place(element),
                     });
                     drives_of.push(target.drives);
@@ -481,7 +547,8 @@ pub(crate) fn actuators(
                     None
                 }
             };
-            controls.extend((0..general.controls()).map(|_| Control { part: index, actuator: read }));
+            let activations = |k: usize| if k == 0 { general.activations() } else { 0 };
+            controls.extend((0..general.controls()).map(|k| Control { part: index, actuator: read, activations: activations(k) }));
         }
     }
     let lost = damp(&ratios, (&armatures, &drives_of), scope, description, world, log);

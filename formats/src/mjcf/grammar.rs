@@ -107,9 +107,9 @@ const ROWS: &[Row] = &[
     Row {
         name: "flag",
         within: "option",
-        attributes: "gravity constraint equality frictionloss limit contact spring damper clampctrl actuation",
+        attributes: "gravity constraint equality frictionloss limit contact spring damper clampctrl actuation eulerdamp",
         unused_attributes: &[(
-            "warmstart filterparent refsafe sensor midphase eulerdamp autoreset nativeccd \
+            "warmstart filterparent refsafe sensor midphase autoreset nativeccd \
              island multiccd override energy fwdinv invdiscrete sleep diagexact ipc speculative",
             "what acts on the robot is given by the scene",
         )],
@@ -121,7 +121,7 @@ const ROWS: &[Row] = &[
         within: "mujoco default",
         attributes: "class",
         unused_attributes: &[],
-        tags: "default mesh joint geom site equality tendon general motor position velocity damper",
+        tags: "default mesh joint geom site equality tendon general motor position velocity intvelocity damper cylinder",
         unused_tags: &[
             ("material camera light texture", APPEARANCE),
             ("pair", CONTACT),
@@ -321,6 +321,22 @@ const ROWS: &[Row] = &[
         name: "position",
         within: "actuator default",
         attributes: of_actuators!("ctrllimited kp kv dampratio timeconst inheritrange"),
+        unused_attributes: &[("user", USER)],
+        tags: "",
+        unused_tags: &[],
+    },
+    Row {
+        name: "intvelocity",
+        within: "actuator default",
+        attributes: of_actuators!("ctrllimited actlimited actrange actearly kp kv dampratio timeconst inheritrange"),
+        unused_attributes: &[("user", USER)],
+        tags: "",
+        unused_tags: &[],
+    },
+    Row {
+        name: "cylinder",
+        within: "actuator default",
+        attributes: of_actuators!("ctrllimited actlimited actrange actearly timeconst area diameter bias"),
         unused_attributes: &[("user", USER)],
         tags: "",
         unused_tags: &[],

@@ -7,6 +7,10 @@ use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 use super::documents::Documents;
 use super::element::Element;
 use super::values::Values;
+use crate::world::Stepping;
+
+/// The time step of a file without one, s.
+const MUJOCO_STEP: f64 = 0.002;
 
 /// Parts of the simulation that a flag turns off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,10 +49,11 @@ pub(crate) struct Rules {
 
 /// The flags that are read, each with the effect if it is disabled; empty: that is reported
 /// elsewhere.
-const FLAGS: [(&str, &str); 10] = [
+const FLAGS: [(&str, &str); 11] = [
     ("gravity", ""),
     ("actuation", ""),
     ("clampctrl", ""),
+    ("eulerdamp", ""),
     ("equality", ""),
     ("constraint", "it turns limits, dry friction, contact and equations off, as in MuJoCo: those of this file do nothing"),
     ("frictionloss", "it turns dry friction off, as in MuJoCo: that of this file does nothing"),
@@ -130,6 +135,15 @@ impl<'a> Simulation<'a> {
     /// Gravity with its flag, m/s².
     pub(crate) fn gravity(&self) -> Option<[f64; 3]> {
         if self.is_off("gravity") { Some([0.0; 3]) } else { self.gravity }
+    }
+
+    /// How MuJoCo steps the motion.
+    pub(crate) fn stepping(&self) -> Stepping {
+        Stepping {
+            integrator: self.integrator.clone().unwrap_or_else(|| "Euler".to_owned()),
+            step: self.step.unwrap_or(MUJOCO_STEP),
+            is_explicit_in_damping: self.is_off("eulerdamp"),
+        }
     }
 
     /// For a document alone.

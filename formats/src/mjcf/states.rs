@@ -36,10 +36,10 @@ pub(crate) fn keyframes(scope: &mut Scope<'_>, controls: &[Control], has_unread_
             continue;
         }
         for element in part.settings.keyframes.iter().copied().filter(|element| element.is("key")) {
-            for name in ["act", "mpos", "mquat", "plastic"] {
+            for name in ["mpos", "mquat", "plastic"] {
                 let attribute = element.attribute(name).filter(|attribute| !attribute.value.trim().is_empty());
                 if let Some(attribute) = attribute.filter(|_| index == 0) {
-                    let why = "states of actuators, of moved bodies and of springs are not read";
+                    let why = "states of moved bodies and of springs are not read";
                     element.unused(&Subject::Document, Some(attribute), why, log);
                 }
             }
@@ -116,7 +116,24 @@ impl Key<'_> {
         if rates.is_none() {
             v.clear();
         }
-        Keyframe { q, v, control: self.control(controls, world, log), ..Keyframe::default() }
+        let activation = self.activation(controls, world, log);
+        Keyframe { q, v, control: self.control(controls, world, log), activation, ..Keyframe::default() }
+    }
+
+    /// The activations of the actuators that are read, 0 of those without; empty if all are zero.
+    fn activation(&self, controls: &[Control], world: &World, log: &mut Diagnostics) -> Vec<f64> {
+        let own: Vec<&Control> = controls.iter().filter(|control| self.parts.contains(&control.part)).collect();
+        let count = own.iter().map(|control| control.activations).sum();
+        let Some(numbers) = self.numbers("act", &vec![0.0; count], log) else { return Vec::new() };
+        let mut of_actuators = vec![0.0; world.actuators.len()];
+        let mut next = numbers.into_iter();
+        for control in own {
+            let values: Vec<f64> = next.by_ref().take(control.activations).collect();
+            if let (Some(actuator), [value]) = (control.actuator, values.as_slice()) {
+                of_actuators[actuator] = *value;
+            }
+        }
+        of_actuators
     }
 
     /// The controls of the actuators that are read; empty if all are zero.

@@ -34,6 +34,7 @@ pub(crate) fn world(
         gravity: simulation.gravity(),
         step: simulation.step,
         integrator: simulation.integrator.clone(),
+        stepping: Some(simulation.stepping()),
         planes: planes(&scope, log),
         home: states::home(&scope),
         ..World::default()

@@ -1,12 +1,11 @@
 //! Controllers of joints, as data in the order of a robot: as scenes contain them, and as
 //! simulations use them.
 
-use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
 
-use crate::scalar::Scalar;
+use crate::actuator::Actuators;
 
 /// A controller of the joints.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,23 +28,12 @@ pub enum Controller {
         torque: Vec<f64>,
     },
     /// Forces of actuators.
-    Actuators(Actuators),
-}
-
-/// Actuators with their controls.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Actuators {
-    /// The actuators.
-    pub laws: Vec<ActuatorLaw>,
-    /// The controls u, a number for each of them.
-    pub controls: Signal,
-    /// Bounds of their torque together on a degree of freedom: (number of the degree of freedom,
-    /// [lower, upper]), N·m or N.
-    pub bounds: Vec<(usize, [f64; 2])>,
-    /// Joints that follow others, on which actuators act.
-    pub followers: Vec<Follower>,
-    /// Springs and dampers of tendons: they have no control, and no bound applies to them.
-    pub passive: Vec<ActuatorLaw>,
+    Actuators {
+        /// The actuators.
+        actuators: Actuators,
+        /// The controls u, a number for each of them.
+        controls: Signal,
+    },
 }
 
 /// Numbers that may change over time.
@@ -60,136 +48,6 @@ pub enum Signal {
 impl Default for Signal {
     fn default() -> Self {
         Self::Still(Vec::new())
-    }
-}
-
-/// A force with an affine law on a sum of coordinates.
-///
-/// ```text
-/// l = Σ gear · q,   l̇ = Σ gear · v
-/// f = clamp((g₀ + g₁ l + g₂ l̇) clamp(u) + b₀ + b₁ l + b₂ l̇)
-/// τ = gear f
-/// ```
-///
-/// Of a ball joint, l counts the rotation vector log q in axes of the child.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ActuatorLaw {
-    /// Its name.
-    pub name: String,
-    /// The joints that it drives.
-    pub drives: Vec<Transmission>,
-    /// g₀, g₁, g₂: force for each unit of control, of length, and of rate of length.
-    pub gain: [f64; 3],
-    /// b₀, b₁, b₂: force without control.
-    pub bias: [f64; 3],
-    /// Bounds of the control u.
-    pub control_range: Option<[f64; 2]>,
-    /// Bounds of the force f.
-    pub force_range: Option<[f64; 2]>,
-}
-
-/// A joint with actuators that follows others: q = Σ multiplier · leader + offset. Each leader gets
-/// the torque of these actuators, times the multiplier. The bounds of the leaders do not limit it.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Follower {
-    /// The actuators on it: the place in [`Actuators::laws`], and the gear.
-    pub laws: Vec<(usize, f64)>,
-    /// Bounds of their torque together, N·m or N.
-    pub range: Option<[f64; 2]>,
-    /// The leaders: the degree of freedom, and the multiplier.
-    pub leaders: Vec<(usize, f64)>,
-}
-
-/// How an actuator drives a joint.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Transmission {
-    /// The first coordinate of the joint.
-    pub q: usize,
-    /// Its first degree of freedom.
-    pub v: usize,
-    /// d(length)/d(coordinate), a number for each degree of freedom: one, or three of a ball joint.
-    pub gear: Vec<f64>,
-    /// Whether it gives no torque, only a part of the length: a [`Follower`] has the torque.
-    pub has_no_torque: bool,
-}
-
-impl Transmission {
-    /// Part of the length, and of its rate.
-    fn length(&self, q: &[f64], v: &[f64]) -> (f64, f64) {
-        let rate = |v: &[f64]| self.gear.iter().zip(v).map(|(gear, v)| gear * v).sum::<f64>();
-        let rates = v.get(self.v..).map_or(0.0, rate);
-        let length = match (self.gear.as_slice(), q.get(self.q..)) {
-            (&[x, y, z], Some(&[qx, qy, qz, qw, ..])) => {
-                let way = rotation_vector([qx, qy, qz, qw]);
-                x * way[0] + y * way[1] + z * way[2]
-            }
-            (_, Some(q)) => rate(q),
-            _ => 0.0,
-        };
-        (length, rates)
-    }
-}
-
-/// The rotation vector of a unit quaternion (x, y, z, w), rad, of norm π at most.
-fn rotation_vector([x, y, z, w]: [f64; 4]) -> [f64; 3] {
-    let sine = Scalar::sqrt(x * x + y * y + z * z);
-    if sine == 0.0 {
-        return [0.0; 3];
-    }
-    let sign = if w < 0.0 { -1.0 } else { 1.0 };
-    let turns = sign * 2.0 * Scalar::atan2(sine, w.abs()) / sine;
-    [x * turns, y * turns, z * turns]
-}
-
-impl ActuatorLaw {
-    /// Its force f at a control, N or N·m at the actuator.
-    pub fn force(&self, control: f64, q: &[f64], v: &[f64]) -> f64 {
-        let parts = self.drives.iter().map(|drive| drive.length(q, v));
-        let (length, rate) = parts.fold((0.0, 0.0), |(l, r), (length, rate)| (l + length, r + rate));
-        let affine = |[at_rest, of_length, of_rate]: [f64; 3]| at_rest + of_length * length + of_rate * rate;
-        clamp(affine(self.gain) * clamp(control, self.control_range) + affine(self.bias), self.force_range)
-    }
-
-    /// τ += gear · f.
-    fn add_torque(&self, control: f64, q: &[f64], v: &[f64], tau: &mut [f64]) {
-        let force = self.force(control, q, v);
-        for drive in self.drives.iter().filter(|drive| !drive.has_no_torque) {
-            tau.iter_mut().skip(drive.v).zip(&drive.gear).for_each(|(tau, gear)| *tau += gear * force);
-        }
-    }
-}
-
-/// The nearest number within the range.
-fn clamp(x: f64, range: Option<[f64; 2]>) -> f64 {
-    range.map_or(x, |[lower, upper]| x.max(lower).min(upper))
-}
-
-impl Actuators {
-    /// Adds their torques to `tau` `[nv]`, N·m or N, which is zero on entry. Actuators without a
-    /// control have u = 0.
-    pub fn add_torques(&self, controls: &[f64], q: &[f64], v: &[f64], tau: &mut [f64]) {
-        let control = |k: usize| controls.get(k).copied().unwrap_or(0.0);
-        self.laws.iter().enumerate().for_each(|(k, law)| law.add_torque(control(k), q, v, tau));
-        for (k, range) in &self.bounds {
-            if let Some(tau) = tau.get_mut(*k) {
-                *tau = clamp(*tau, Some(*range));
-            }
-        }
-        for follower in &self.followers {
-            let laws = follower.laws.iter().filter_map(|(k, gear)| Some((self.laws.get(*k)?, *k, gear)));
-            let torque = laws.map(|(law, k, gear)| gear * law.force(control(k), q, v)).sum();
-            let torque = clamp(torque, follower.range);
-            for (k, multiplier) in &follower.leaders {
-                tau.iter_mut().skip(*k).take(1).for_each(|tau| *tau += multiplier * torque);
-            }
-        }
-        self.passive.iter().for_each(|law| law.add_torque(0.0, q, v, tau));
-    }
-
-    /// Whether a torque depends on q or v.
-    pub fn depend_on_state(&self) -> bool {
-        let depends = |[_, of_length, of_rate]: [f64; 3]| of_length != 0.0 || of_rate != 0.0;
-        self.laws.iter().chain(&self.passive).any(|law| depends(law.gain) || depends(law.bias))
     }
 }
 
@@ -424,59 +282,6 @@ mod tests {
         };
         assert_eq!([-1.0, 0.0, 0.5, 1.0, 2.0, 3.0, 9.0].map(|t| at(false, t)), [1.0, 1.0, 2.0, 3.0, 1.0, -1.0, -1.0]);
         assert_eq!([-1.0, 0.5, 1.0, 2.9, 3.0, 9.0].map(|t| at(true, t)), [1.0, 1.0, 3.0, 3.0, -1.0, -1.0]);
-    }
-
-    #[test]
-    fn an_actuator_follows_its_affine_law_within_its_bounds() {
-        let drive = |k, gear: f64| Transmission { q: k, v: k, gear: vec![gear], ..Transmission::default() };
-        let servo = ActuatorLaw {
-            name: "servo".into(),
-            drives: vec![drive(0, 2.0), drive(1, -1.0)],
-            gain: [10.0, 1.0, 0.5],
-            bias: [1.0, -10.0, -2.0],
-            control_range: Some([-1.0, 1.0]),
-            force_range: Some([-15.0, 15.0]),
-        };
-        // Length 2 · 0.5 − 0.25 = 0.75, rate 2 · 1 − 3 = −1.
-        let (q, v) = ([0.5, 0.25], [1.0, 3.0]);
-        let plain = ActuatorLaw { control_range: None, force_range: None, ..servo.clone() };
-        assert_eq!(plain.force(2.0, &q, &v), (10.0 + 0.75 - 0.5) * 2.0 + 1.0 - 7.5 + 2.0);
-        assert_eq!(servo.force(2.0, &q, &v), 10.25 - 4.5);
-        assert_eq!(servo.force(-2.0, &q, &v), -10.25 - 4.5);
-        assert_eq!(ActuatorLaw { bias: [-9.0, 0.0, 0.0], ..servo.clone() }.force(-1.0, &q, &v), -15.0);
-        let spring = ActuatorLaw { drives: vec![drive(1, 1.0)], bias: [0.0, -4.0, 0.0], ..ActuatorLaw::default() };
-        let mut all = Actuators { laws: vec![servo], passive: vec![spring], bounds: vec![(1, [-1.0, 2.0])], ..Actuators::default() };
-        let mut tau = [0.0; 2];
-        all.add_torques(&[2.0], &q, &v, &mut tau);
-        // The bound is of the servo alone: −5.75 becomes −1.
-        assert_eq!(tau, [2.0 * 5.75, -1.0 - 1.0]);
-        // A joint that follows the first, x = 3 q₀, has the servo too: its torque is bounded by
-        // itself.
-        all.laws[0].drives[0].has_no_torque = true;
-        all.followers = vec![Follower { laws: vec![(0, 2.0)], range: Some([-4.0, 7.0]), leaders: vec![(0, 3.0)] }];
-        let mut tau = [0.0; 2];
-        all.add_torques(&[2.0], &q, &v, &mut tau);
-        assert_eq!(tau, [3.0 * 7.0, -1.0 - 1.0]);
-        assert!(all.depend_on_state());
-        (all.laws[0].gain, all.laws[0].bias) = ([1.0, 0.0, 0.0], [0.0; 3]);
-        assert!(all.depend_on_state());
-        all.passive.clear();
-        assert!(!all.depend_on_state());
-    }
-
-    #[test]
-    fn an_actuator_of_a_ball_joint_pulls_along_the_rotation_vector() {
-        let axis = [0.6, 0.0, 0.8];
-        let drive = Transmission { q: 1, v: 1, gear: vec![1.0, 2.0, 3.0], ..Transmission::default() };
-        let law = ActuatorLaw { drives: vec![drive], bias: [0.0, 1.0, 0.0], ..ActuatorLaw::default() };
-        for angle in [0.0, 1e-9, 0.3, 2.5, -2.5] {
-            for sign in [1.0, -1.0] {
-                let (sine, cosine): (f64, f64) = (angle / 2.0_f64).sin_cos();
-                let q = [9.0, sign * axis[0] * sine, 0.0, sign * axis[2] * sine, sign * cosine];
-                let length = law.force(0.0, &q, &[0.0; 4]);
-                assert!((length - 3.0 * angle).abs() <= 1e-15 * (1.0 + angle.abs()) * 8.0, "{angle}: {length}");
-            }
-        }
     }
 
     #[test]

@@ -55,6 +55,8 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
+#[cfg(feature = "alloc")]
+pub mod actuator;
 pub mod dual;
 pub mod eigen;
 #[cfg(feature = "alloc")]

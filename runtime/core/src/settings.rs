@@ -273,7 +273,7 @@ mod tests {
 
     #[test]
     fn every_bad_setting_is_named_at_once() {
-        let shape = Shape { nq: 1, nv: 1, frames: 1, links: 1 };
+        let shape = Shape { nq: 1, nv: 1, frames: 1, links: 1, ..Shape::default() };
         assert_eq!(Settings::default().problems(shape), []);
         let bad = Settings {
             start: f64::NAN,
@@ -302,7 +302,7 @@ mod tests {
 
     #[test]
     fn a_step_that_the_time_cannot_take_is_refused() {
-        let shape = Shape { nq: 1, nv: 1, frames: 1, links: 1 };
+        let shape = Shape { nq: 1, nv: 1, frames: 1, links: 1, ..Shape::default() };
         let at = |start: f64, end: f64| {
             let settings =
                 Settings { integrator: IntegratorId::rk4, step: Some(0.25), start, end, output: Output::Ends, ..Settings::default() };
@@ -324,7 +324,7 @@ mod tests {
     fn records_are_as_many_as_there_is_room_and_time_for() {
         let told = |nv: usize, start: f64, every: f64| {
             let settings = Settings { start, end: start + 10.0, output: Output::Every(every), ..Settings::default() };
-            let problems = settings.problems(Shape { nq: nv, nv, frames: 1, links: 1 });
+            let problems = settings.problems(Shape { nq: nv, nv, frames: 1, links: 1, ..Shape::default() });
             problems.first().map(ToString::to_string).unwrap_or_default()
         };
         assert_eq!(told(1, 0.0, 2e-7), "");
@@ -334,7 +334,7 @@ mod tests {
 
     #[test]
     fn what_does_not_go_together_is_named() {
-        let shape = Shape { nq: 1, nv: 1, frames: 1, links: 1 };
+        let shape = Shape { nq: 1, nv: 1, frames: 1, links: 1, ..Shape::default() };
         let right = Settings {
             start: 1.0,
             end: 2.0,

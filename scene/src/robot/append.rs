@@ -144,19 +144,24 @@ impl Joining<'_> {
         for keyframe in &mut world.keyframes {
             keyframe.control = full(std::mem::take(&mut keyframe.control), own);
             keyframe.control.resize(own + appended, 0.0);
+            keyframe.activation = full(std::mem::take(&mut keyframe.activation), own);
+            keyframe.activation.resize(own + appended, 0.0);
         }
         for keyframe in other {
-            let (q, v, control) = (self.all_named(keyframe.q), self.all_named(keyframe.v), full(keyframe.control, appended));
+            let (q, v) = (self.all_named(keyframe.q), self.all_named(keyframe.v));
+            let [control, activation] = [keyframe.control, keyframe.activation].map(|all| full(all, appended));
             match world.keyframes.iter_mut().find(|known| known.name == keyframe.name) {
                 Some(known) => {
                     known.q.extend(q);
                     known.v.extend(v);
                     known.control.truncate(own);
                     known.control.extend(control);
+                    known.activation.truncate(own);
+                    known.activation.extend(activation);
                 }
                 None => {
-                    let control = [vec![0.0; own], control].concat();
-                    world.keyframes.push(Keyframe { name: self.named(&keyframe.name), q, v, control, place: At::Nowhere });
+                    let [control, activation] = [control, activation].map(|all| [vec![0.0; own], all].concat());
+                    world.keyframes.push(Keyframe { name: self.named(&keyframe.name), q, v, control, activation, place: At::Nowhere });
                 }
             }
         }

@@ -147,7 +147,8 @@ impl RobotRequest<'_> {
     fn model(&self, reading: &Reading) -> Result<Model<f64>, ModelError> {
         let gravity = self.options.gravity_in(&reading.world).map(|x| if x.is_finite() { x } else { 0.0 });
         let model = Model::new(&reading.description, self.options.base)?;
-        Ok(model.with_gravity(gravity).with_wrenches_in(self.options.wrench_reference))
+        let (actuators, _) = reading.world.actuators_of(&model);
+        Ok(model.with_gravity(gravity).with_wrenches_in(self.options.wrench_reference).with_actuators(actuators))
     }
 
     /// The model of a robot of this request whose description was changed since, with its effects.

@@ -1,6 +1,7 @@
 //! Generated code, compiled and run as a user's would be: against the generic library, against an
 //! independent program, and on unusual input.
 
+mod actuated_steps;
 mod balls;
 mod batches;
 mod c;

@@ -6,7 +6,7 @@ use articulated_codegen::function_groups::Group;
 use articulated_codegen::{Request, generate};
 use articulated_core::algorithm::functions;
 use articulated_core::description::Base;
-use articulated_core::step::steps;
+use articulated_core::step::beside_the_table;
 use articulated_tests::program::Program;
 
 use crate::robots::{NATIVE, ROBOTS};
@@ -110,8 +110,8 @@ fn an_unknown_function_is_refused_with_the_nearest_and_all() {
     let told = generate(&request).unwrap_err().to_string();
     let known =
         told.split_once("there are: ").expect("a list").1.split_once("; a function of your own").expect("advice").0.split(", ").count();
-    // With the words `steps` and `all`.
-    assert_eq!(known, functions::<f64>().len() + steps::<f64>().len() + Group::ALL.len() + 2);
+    // With the words `steps`, `actuators` and `all`.
+    assert_eq!(known, functions::<f64>().len() + beside_the_table::<f64>().count() + Group::ALL.len() + 3);
 }
 
 #[test]

@@ -10,6 +10,7 @@ use articulated_core::model::{JointInfo, Model};
 
 use crate::Request;
 use crate::language::Module;
+use crate::lir::function::Function;
 
 /// A name in upper case: letters and digits of ASCII stay, everything else is `_`.
 fn upper(name: &str) -> String {
@@ -102,6 +103,12 @@ pub(super) fn declare(out: &mut String, module: &Module, prefix: &str, infinity:
         ("LINKS", "Number of moving links.", model.links().count()),
     ] {
         let _ = writeln!(out, "/** {what} */\n#define {up}_{name} {n}");
+    }
+    let has_actuators = module.functions.iter().any(Function::is_of_actuators);
+    if has_actuators {
+        let (controls, activations) = (model.actuators().laws.len(), model.actuators().activations());
+        let _ = writeln!(out, "/** Number of actuators: the length of ctrl. */\n#define {up}_NU {controls}");
+        let _ = writeln!(out, "/** Number of actuators with an activation: the length of act. */\n#define {up}_NA {activations}");
     }
     if !module.parameters.is_empty() {
         let n: usize = module.parameters.iter().map(|p| p.nominal.len()).sum();

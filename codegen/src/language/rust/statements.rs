@@ -437,7 +437,7 @@ mod tests {
     fn text(ty: Ty, lanes: Lanes, statements: &[Stmt]) -> String {
         let results = vec![Array { start: 0, lengths: vec![4] }];
         let body = Body { ty, lanes, results, pieces: Vec::new(), kept: 0, slots: None, barrier: false, is_partial: true };
-        let shape = articulated_core::algorithm::Shape { nq: 4, nv: 4, frames: 0, links: 0 };
+        let shape = articulated_core::algorithm::Shape { nq: 4, nv: 4, frames: 0, links: 0, ..Default::default() };
         let arguments = [Argument::new("q", &[articulated_core::algorithm::Dim::Nq], shape)];
         let places = |at: usize| Place { array: "out".into(), index: Some(at) };
         let mut out = String::new();

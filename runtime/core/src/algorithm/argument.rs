@@ -17,6 +17,10 @@ pub enum Dim {
     Frames,
     /// One for each moving link.
     Links,
+    /// One for each actuator: a control.
+    Controls,
+    /// One for each actuator with an activation.
+    Activations,
     /// This many.
     Of(usize),
 }
@@ -29,6 +33,8 @@ impl Dim {
             Self::Nv => shape.nv,
             Self::Frames => shape.frames,
             Self::Links => shape.links,
+            Self::Controls => shape.controls,
+            Self::Activations => shape.activations,
             Self::Of(n) => n,
         }
     }
@@ -42,6 +48,8 @@ impl fmt::Display for Dim {
             Self::Nv => f.write_str("NV"),
             Self::Frames => f.write_str("FRAMES"),
             Self::Links => f.write_str("LINKS"),
+            Self::Controls => f.write_str("NU"),
+            Self::Activations => f.write_str("NA"),
             Self::Of(n) => write!(f, "{n}"),
         }
     }
@@ -60,6 +68,8 @@ macro_rules! dims {
     (one Nv) => { "[nv]" };
     (one Frames) => { "[frames]" };
     (one Links) => { "[links]" };
+    (one Controls) => { "[nu]" };
+    (one Activations) => { "[na]" };
     (one Of $n:literal) => { concat!("[", $n, "]") };
 }
 
@@ -180,6 +190,7 @@ const fn have_same_lengths(one: &[Dim], other: &[Dim]) -> bool {
     while k < one.len() && k < other.len() {
         match (one[k], other[k]) {
             (Dim::Nq, Dim::Nq) | (Dim::Nv, Dim::Nv) | (Dim::Frames, Dim::Frames) | (Dim::Links, Dim::Links) => {}
+            (Dim::Controls, Dim::Controls) | (Dim::Activations, Dim::Activations) => {}
             (Dim::Of(n), Dim::Of(m)) if n == m => {}
             _ => return false,
         }

@@ -65,6 +65,10 @@ pub(super) fn by_equation<S: Scalar>(
         for ((r, own), a) in r.iter_mut().zip(&ws.diagonal).zip(a) {
             own.iter().for_each(|own| *r += *own * *a);
         }
+        for (i, j, own) in &ws.coupled {
+            r[*i] += *own * a[*j];
+            r[*j] += *own * a[*i];
+        }
     };
     S::implicit(ws, &mut out[..model.nv], value, residual, solve);
 }
@@ -101,6 +105,7 @@ pub(super) fn factored<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[
     for (i, own) in ws.diagonal.iter().enumerate() {
         own.iter().for_each(|own| matrix[i * model.nv + i] += *own);
     }
+    ws.coupled.iter().for_each(|(i, j, own)| matrix[i * model.nv + j] += *own);
     factor(&mut matrix, &ws.parent_dof);
     matrix
 }

@@ -8,7 +8,7 @@ use crate::Scalar;
 use crate::model::Model;
 
 /// The sizes that the shapes of arguments and results depend on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shape {
     /// Number of coordinates.
     pub nq: usize,
@@ -18,6 +18,10 @@ pub struct Shape {
     pub frames: usize,
     /// Number of moving links ([`Model::links`](crate::model::Model::links)).
     pub links: usize,
+    /// Number of actuators ([`Model::actuators`](crate::model::Model::actuators)): of controls.
+    pub controls: usize,
+    /// Number of actuators with an activation.
+    pub activations: usize,
 }
 
 impl<S: Scalar> Model<S> {
@@ -30,7 +34,14 @@ impl<S: Scalar> Model<S> {
 
     /// The model's sizes.
     pub fn shape(&self) -> Shape {
-        Shape { nq: self.nq, nv: self.nv, frames: self.frames.len(), links: self.links().count() }
+        Shape {
+            nq: self.nq,
+            nv: self.nv,
+            frames: self.frames.len(),
+            links: self.links().count(),
+            controls: self.actuators.laws.len(),
+            activations: self.actuators.activations(),
+        }
     }
 }
 
@@ -113,6 +124,8 @@ pub enum Group {
     Configurations,
     /// Whole steps of time, which are in a table of their own ([`crate::step`]).
     Steps,
+    /// Forces of a robot's actuators and steps with them, which are in a table of their own.
+    Actuators,
     /// Functions of users, which are not in the table.
     User,
 }
@@ -142,6 +155,7 @@ impl Group {
             Self::Effects => "effects",
             Self::Configurations => "configurations",
             Self::Steps => "steps",
+            Self::Actuators => "actuators",
             Self::User => "user",
         }
     }
@@ -163,6 +177,7 @@ impl Group {
             Self::Effects => "Effects of a scene",
             Self::Configurations => "Configurations",
             Self::Steps => "Steps of time",
+            Self::Actuators => "Actuators of the file, and steps of time with them",
             Self::User => "Functions of users",
         }
     }

@@ -49,7 +49,7 @@ pub struct Workspace<S> {
     /// One row of a matrix, `[nv]`.
     pub(super) row: Vec<S>,
     /// For each degree of freedom the next one on the path to the root, as [`below`] gives them.
-    pub(super) parent_dof: Vec<usize>,
+    pub(crate) parent_dof: Vec<usize>,
     /// `[nv · nv]`.
     pub(super) matrix: Vec<S>,
     /// `[6 · nv]`.
@@ -62,6 +62,9 @@ pub struct Workspace<S> {
     /// Numbers on the diagonal of M beside those of the robot, for solutions of a step; none
     /// outside of one.
     pub(crate) diagonal: Vec<Option<S>>,
+    /// The same below the diagonal, (row, column, number), where M may have entries: for M = Lᵀ D L
+    /// alone.
+    pub(crate) coupled: Vec<(usize, usize, S)>,
     pub(super) formulation: Formulation<S>,
 }
 
@@ -172,6 +175,7 @@ impl<S: Scalar> Workspace<S> {
             driven: vec![S::zero(); nv],
             solution: vec![S::zero(); nv],
             diagonal: Vec::new(),
+            coupled: Vec::new(),
             formulation,
         }
     }

@@ -204,6 +204,8 @@ codes! {
     SingularMassMatrix "singular_mass_matrix",
     /// A function of the centre of mass, and nothing that moves has mass.
     NoMass "no_mass",
+    /// A function of actuators, for a robot that has none.
+    NoActuators "no_actuators",
     /// A function of frames with six degrees of freedom, and a frame has fewer.
     BoundFrames "bound_frames",
     /// More generated code than the request allows.

@@ -10,6 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::leaders::{Leads, leads, others};
 use super::{Body, BodyLink, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model};
+use crate::actuator::Actuators;
 use crate::description::{self, Base, ById, Description, Inertial, JointId, JointKind, Limit, LinkId, Mimic};
 use crate::effect::Effects;
 use crate::index::{BodyId, FrameId};
@@ -196,6 +197,7 @@ impl<'a> Builder<'a> {
             joints: Vec::new(),
             nq: 0,
             nv: 0,
+            actuators: Actuators::default(),
         };
         let (links, joints) = (description.links.len(), description.joints.len());
         Self {

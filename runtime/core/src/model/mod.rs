@@ -18,6 +18,7 @@ pub use parts::ModelParts;
 pub use regroup::{regroup, regroup_body, subtract};
 
 use crate::Scalar;
+use crate::actuator::Actuators;
 use crate::description::{ById, Description, EditError, JointKind, Limit, LinkId};
 use crate::effect::Effects;
 use crate::index::{BodyId, FrameId};
@@ -47,6 +48,7 @@ pub struct Model<S = f64> {
     pub(crate) joints: Vec<JointInfo>,
     pub(crate) nq: usize,
     pub(crate) nv: usize,
+    pub(crate) actuators: Actuators<S>,
 }
 
 /// A body and the joint that carries it.
@@ -190,6 +192,13 @@ impl<S: Scalar> Model<S> {
     pub fn nv(&self) -> usize {
         self.nv
     }
+
+    /// The actuators of the robot's file, and the springs and dampers of its tendons. Functions of
+    /// the group `actuators` have their forces; all others have torques as an argument.
+    #[inline(always)]
+    pub fn actuators(&self) -> &Actuators<S> {
+        &self.actuators
+    }
 }
 
 impl<S: Scalar> Model<S> {
@@ -327,6 +336,13 @@ impl<S: Scalar> Model<S> {
         self
     }
 
+    /// The same robot with these actuators instead of its own.
+    #[must_use]
+    pub fn with_actuators(mut self, actuators: Actuators<S>) -> Self {
+        self.actuators = actuators;
+        self
+    }
+
     /// The same robot under another gravity, given in the world frame, m/s².
     #[must_use]
     pub fn with_gravity(mut self, gravity: [f64; 3]) -> Self {
@@ -347,6 +363,7 @@ impl<S: Scalar> Model<S> {
             joints: self.joints.clone(),
             nq: self.nq,
             nv: self.nv,
+            actuators: self.actuators.map(f),
         }
     }
 }

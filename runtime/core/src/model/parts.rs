@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 
 use super::{Body, Frame, JointInfo, Model, ModelError};
 use crate::Scalar;
+use crate::actuator::Actuators;
 use crate::effect::Field;
 use crate::index::{BodyId, ById, FrameId};
 use crate::spatial::Reference;
@@ -27,14 +28,16 @@ pub struct ModelParts<S = f64> {
     pub frames: ById<FrameId, Frame<S>>,
     /// As [`Model::joints`].
     pub joints: Vec<JointInfo>,
+    /// As [`Model::actuators`].
+    pub actuators: Actuators<S>,
 }
 
 impl<S: Scalar> Model<S> {
     /// The model's parts.
     #[must_use]
     pub fn into_parts(self) -> ModelParts<S> {
-        let Self { name, gravity, wrench_reference, bodies, frames, joints, .. } = self;
-        ModelParts { name, gravity, wrench_reference, bodies, frames, joints }
+        let Self { name, gravity, wrench_reference, bodies, frames, joints, actuators, .. } = self;
+        ModelParts { name, gravity, wrench_reference, bodies, frames, joints, actuators }
     }
 
     /// A model of these parts. Its indices are checked, its numbers may be any.
@@ -50,8 +53,8 @@ impl<S: Scalar> Model<S> {
     /// * Effects act on degrees of freedom that exist, with as many numbers as their fields have.
     pub fn from_parts(parts: ModelParts<S>) -> Result<Self, ModelError> {
         let (nq, nv) = parts.check()?;
-        let ModelParts { name, gravity, wrench_reference, bodies, frames, joints } = parts;
-        Ok(Self { name, gravity, wrench_reference, bodies, frames, joints, nq, nv })
+        let ModelParts { name, gravity, wrench_reference, bodies, frames, joints, actuators } = parts;
+        Ok(Self { name, gravity, wrench_reference, bodies, frames, joints, nq, nv, actuators })
     }
 
     /// The same model with its parts changed, here with bodies that weigh twice as much:
@@ -90,7 +93,22 @@ impl<S: Scalar> ModelParts<S> {
             return Err(refused(part, format!("body {}", frame.body), "the index of a body"));
         }
         self.check_effects()?;
+        self.check_actuators(sizes)?;
         Ok(sizes)
+    }
+
+    fn check_actuators(&self, (nq, nv): (usize, usize)) -> Result<(), ModelError> {
+        for law in self.actuators.laws.iter().chain(&self.actuators.passive) {
+            let beyond = law.drives.iter().find(|drive| {
+                let (of_q, of_v) = if drive.gear.len() == 3 { (4, 3) } else { (1, drive.gear.len()) };
+                drive.q.saturating_add(of_q) > nq || drive.v.saturating_add(of_v) > nv
+            });
+            if let Some(drive) = beyond {
+                let found = format!("coordinate {} and rate {}", drive.q, drive.v);
+                return Err(refused(format!("actuator {:?}", law.name), found, "those of a joint"));
+            }
+        }
+        Ok(())
     }
 
     fn check_tree(&self) -> Result<(), ModelError> {

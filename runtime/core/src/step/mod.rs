@@ -1,16 +1,19 @@
-//! Whole steps of time: from a state (q, v) and torques τ to the state after h seconds.
+//! Whole steps of time: from a state (q, v) and torques τ, or controls of actuators, to the state
+//! after h seconds.
 //!
 //! Each method is written once over [`Scalar`]. With numbers it is a step of the library; with
-//! symbols it is generated code, with batches and derivatives as any function. The torques are held
-//! during the step. Effects of the scene act as in forward dynamics.
+//! symbols it is generated code, with batches and derivatives as any function. Torques and controls
+//! are held during the step. Effects of the scene act as in forward dynamics.
 //!
-//! [`steps`] is the table. Adding a method: its file here, its row in the table.
+//! [`steps`] and [`of_actuators`] are the tables. Adding a method: its file here, its row in them.
 
 mod euler;
 mod free;
 mod rk4;
 mod rollout;
 
+use alloc::vec;
+use alloc::vec::Vec;
 use core::marker::PhantomData;
 
 use crate::Scalar;
@@ -21,15 +24,22 @@ use crate::algorithm::{
 };
 use crate::model::Model;
 
-pub use rollout::rollout;
+pub use rollout::{State, rollout};
 
 /// The length of a step, s.
 pub const H: Argument = Argument::new(&Port::new("h", &[], "s"));
+/// Activations of the actuators that have one.
+pub const ACT: Argument = Argument::new(&Port::new("act", &[Dim::Activations], "activation of each actuator that has one"));
+/// Controls of the actuators.
+pub const CTRL: Argument = Argument::new(&Port::new("ctrl", &[Dim::Controls], "control of each actuator, in its own unit"));
 
 const TAKES: &[Argument] = &[Argument::Q, Argument::V, Argument::Tau, H];
+const GIVES: &[Port] = &[Q_NEXT, V_NEXT];
+const ACTUATED_TAKES: &[Argument] = &[Argument::Q, Argument::V, ACT, CTRL, H];
+const ACTUATED_GIVES: &[Port] = &[Q_NEXT, V_NEXT, Port::new("act_next", &[Dim::Activations], "activations after the step")];
 
-const GIVES: &[Port] =
-    &[Port::configuration("q_next", "rad|m|unit quaternion, after the step"), Port::new("v_next", &[Dim::Nv], "rad/s|m/s, after the step")];
+const Q_NEXT: Port = Port::configuration("q_next", "rad|m|unit quaternion, after the step");
+const V_NEXT: Port = Port::new("v_next", &[Dim::Nv], "rad/s|m/s, after the step");
 
 /// Forward dynamics with wrenches: one of its ways.
 type Accelerate<S> = fn(&Model<S>, &mut Workspace<S>, &[S], &[S], &[S], &[S], &mut [S]);
@@ -39,20 +49,66 @@ struct Start<'a, S: 'static> {
     model: &'a Model<S>,
     q: &'a [S],
     v: &'a [S],
-    tau: &'a [S],
+    /// Activations; empty without actuators.
+    act: &'a [S],
+    drive: Drive<'a, S>,
     h: S,
     accelerate: Accelerate<S>,
 }
 
+/// What drives the joints during a step: it is held.
+enum Drive<'a, S> {
+    /// Torques.
+    Torques(&'a [S]),
+    /// Controls of the actuators.
+    Controls(&'a [S]),
+}
+
 impl<S: Scalar> Start<'_, S> {
+    /// What gains of actuators multiply at these activations.
+    fn inputs(&self, act: &[S]) -> Vec<S> {
+        match self.drive {
+            Drive::Torques(_) => Vec::new(),
+            Drive::Controls(ctrl) => self.model.actuators.inputs(act, ctrl, Some(self.h)),
+        }
+    }
+
     /// Accelerations in a state.
-    fn acceleration(&self, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
-        (self.accelerate)(self.model, ws, q, v, self.tau, &[], out);
+    fn acceleration(&self, ws: &mut Workspace<S>, (q, v, act): (&[S], &[S], &[S]), out: &mut [S]) {
+        match self.drive {
+            Drive::Torques(tau) => (self.accelerate)(self.model, ws, q, v, tau, &[], out),
+            Drive::Controls(_) => {
+                let mut tau = vec![S::zero(); self.model.nv];
+                self.model.actuators.add_torques(&self.inputs(act), q, v, &mut tau);
+                (self.accelerate)(self.model, ws, q, v, &tau, &[], out);
+            }
+        }
+    }
+
+    /// The activations at the end of the step, at these rates.
+    fn advance_activations(&self, rates: &[S], end: &mut End<'_, S>) {
+        end.act.copy_from_slice(&self.model.actuators.next_activations(self.act, rates, self.h));
+    }
+
+    /// Rates of the activations.
+    fn activation_rates(&self, act: &[S]) -> Vec<S> {
+        match self.drive {
+            Drive::Torques(_) => Vec::new(),
+            Drive::Controls(ctrl) => self.model.actuators.activation_rates(act, ctrl),
+        }
     }
 }
 
-/// A method: from where it starts to the next configuration and velocity.
-type Method<S> = fn(&Start<'_, S>, &mut Workspace<S>, &mut [S], &mut [S]);
+/// Where a step ends.
+struct End<'a, S> {
+    q: &'a mut [S],
+    v: &'a mut [S],
+    /// Activations; empty without actuators.
+    act: &'a mut [S],
+}
+
+/// A method: from where it starts to where it ends.
+type Method<S> = fn(&Start<'_, S>, &mut Workspace<S>, &mut End<'_, S>);
 
 fn run<S: Scalar>(
     method: Method<S>,
@@ -61,15 +117,21 @@ fn run<S: Scalar>(
     inputs: &Inputs<'_, S>,
     out: &mut [S],
 ) {
-    let [q, v, tau, h] = [Argument::Q, Argument::V, Argument::Tau, H].map(|argument| inputs.get(argument));
-    let (q_next, v_next) = out.split_at_mut(model.nq);
-    method(&Start { model, q, v, tau, h: h[0], accelerate }, ws, q_next, v_next);
+    let [q, v, h] = [Argument::Q, Argument::V, H].map(|argument| inputs.get(argument));
+    let (q_next, rest) = out.split_at_mut(model.nq);
+    let (v_next, act_next) = rest.split_at_mut(model.nv);
+    // Torques are an argument, or the actuators have them.
+    let (act, drive) = match inputs.get(Argument::Tau) {
+        [] => (inputs.get(ACT), Drive::Controls(inputs.get(CTRL))),
+        tau => (&[][..], Drive::Torques(tau)),
+    };
+    let mut end = End { q: q_next, v: v_next, act: act_next };
+    method(&Start { model, q, v, act, drive, h: h[0], accelerate }, ws, &mut end);
 }
 
 macro_rules! steps {
-    ($($name:ident: $method:path, [$($contains:ident),*], $summary:literal, $source:literal;)*) => {
-        struct Steps<S>(PhantomData<S>);
-
+    ($list:ident, $group:ident, $takes:ident, $gives:ident, $untied:path, [$($first:ident)?];
+     $($name:ident: $method:path, [$($contains:ident),*], $summary:literal, $source:literal;)*) => {
         #[allow(non_upper_case_globals)]
         impl<S: Scalar> Steps<S> {
             $(const $name: Function<S> = Function {
@@ -78,18 +140,18 @@ macro_rules! steps {
                 name: stringify!($name),
                 summary: $summary,
                 source: $source,
-                takes: TAKES,
+                takes: $takes,
                 gives: &[],
-                outputs: GIVES,
+                outputs: $gives,
                 unit: "",
-                group: Group::Steps,
+                group: Group::$group,
                 needs: Needs::MassMatrix,
                 regrouped: true,
                 contains: &[$(FunctionId::$contains),*],
                 ways: &[
                     Variant {
                         name: "ABA",
-                        applies: untied,
+                        applies: $untied,
                         least: nothing,
                         run: &|model, ws, inputs, out| run($method, articulated_body_with_wrenches, (model, ws), inputs, out),
                     },
@@ -103,12 +165,14 @@ macro_rules! steps {
                 unsolved: None,
             };)*
 
-            const ROWS: &'static [Function<S>] = &[$(Self::$name),*];
+            const $list: &'static [Function<S>] = &[$(Self::$first,)? $(Self::$name),*];
         }
     };
 }
 
-steps! {
+struct Steps<S>(PhantomData<S>);
+
+steps! { ROWS, Steps, TAKES, GIVES, untied, [];
     step_semi_implicit_euler: euler::semi_implicit, [forward_dynamics_with_wrenches],
         "v + h a, then q with the new velocity; error of order 1",
         "Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, (I.1.9)";
@@ -125,21 +189,87 @@ steps! {
         "MuJoCo documentation, Numerical integration; Munthe-Kaas, BIT 38, 1998";
 }
 
-/// All steps, as functions beside those of the table.
+steps! { OF_ACTUATORS, Actuators, ACTUATED_TAKES, ACTUATED_GIVES, without_coupled_rates, [actuator_torques];
+    actuated_step_semi_implicit_euler: euler::semi_implicit, [forward_dynamics_with_wrenches],
+        "step_semi_implicit_euler with the forces of actuators, and of springs and dampers of tendons, at held controls",
+        "MuJoCo documentation, Actuation model";
+    actuated_step_implicit_damping: euler::implicit_damping, [forward_dynamics_with_wrenches],
+        "step_implicit_damping with actuators at held controls: MuJoCo's Euler",
+        "MuJoCo documentation, Actuation model; Numerical integration";
+    actuated_step_implicit_velocity: euler::implicit_velocity, [forward_dynamics_with_wrenches],
+        "as actuated_step_implicit_damping, D with the slopes of actuators and tendons too: MuJoCo's implicitfast",
+        "MuJoCo documentation, Actuation model; Numerical integration";
+    actuated_step_rk4: rk4::on_the_manifold,
+        [forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches],
+        "step_rk4 with actuators at held controls",
+        "MuJoCo documentation, Actuation model; Munthe-Kaas, BIT 38, 1998";
+    actuated_step_rk4_mujoco: rk4::in_axes_of_the_parent,
+        [forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches],
+        "step_rk4_mujoco with actuators at held controls: RK4 of MuJoCo 4",
+        "MuJoCo documentation, Actuation model; Numerical integration";
+}
+
+/// Whether one branch at a time can be solved: no joint follows another, and no force of an
+/// actuator or a tendon that depends on rates ties branches together.
+fn without_coupled_rates<S: Scalar>(model: &Model<S>) -> bool {
+    untied(model) && !model.actuators.couple_rates()
+}
+
+#[allow(non_upper_case_globals)]
+impl<S: Scalar> Steps<S> {
+    const actuator_torques: Function<S> = Function {
+        id: FunctionId::user,
+        general: FunctionId::user,
+        name: "actuator_torques",
+        summary: "torques of the actuators at these controls, and of springs and dampers of tendons",
+        source: "MuJoCo documentation, Actuation model",
+        takes: &[Argument::Q, Argument::V, ACT, CTRL],
+        gives: &[Dim::Nv],
+        outputs: &[],
+        unit: "N·m|N",
+        group: Group::Actuators,
+        needs: Needs::Nothing,
+        regrouped: false,
+        contains: &[],
+        ways: &[Variant { name: "direct", applies: always, least: nothing, run: &|model, _, inputs, out| torques(model, inputs, out) }],
+        unsolved: None,
+    };
+}
+
+/// Activations are those at the state, also of actuators whose force has the next one in a step.
+fn torques<S: Scalar>(model: &Model<S>, inputs: &Inputs<'_, S>, out: &mut [S]) {
+    let [q, v, act, ctrl] = [Argument::Q, Argument::V, ACT, CTRL].map(|argument| inputs.get(argument));
+    out.fill(S::zero());
+    model.actuators.add_torques(&model.actuators.inputs(act, ctrl, None), q, v, out);
+}
+
+/// All steps with torques, as functions beside those of the table.
 pub fn steps<S: Scalar>() -> &'static [Function<S>] {
     Steps::ROWS
 }
 
-/// The step called `name`.
-pub fn step<S: Scalar>(name: &str) -> Option<&'static Function<S>> {
-    steps().iter().find(|row| row.name == name)
+/// Functions of robots with actuators: their torques, and steps with them.
+pub fn of_actuators<S: Scalar>() -> &'static [Function<S>] {
+    Steps::OF_ACTUATORS
 }
 
-/// The step that moves as an integrator of MuJoCo does, by its name in files.
-pub fn step_of_mujoco(integrator: &str) -> Option<&'static str> {
+/// All functions beside those of the table: steps, and functions of actuators.
+pub fn beside_the_table<S: Scalar>() -> impl Iterator<Item = &'static Function<S>> + Clone {
+    steps().iter().chain(of_actuators())
+}
+
+/// The step, or the function of actuators, called `name`.
+pub fn step<S: Scalar>(name: &str) -> Option<&'static Function<S>> {
+    beside_the_table().find(|row| row.name == name)
+}
+
+/// The step that moves as an integrator of MuJoCo does, by its name in files: with torques, and
+/// with actuators.
+pub fn step_of_mujoco(integrator: &str) -> Option<[&'static str; 2]> {
     match integrator {
-        "Euler" | "implicitfast" => Some("step_implicit_damping"),
-        "RK4" => Some("step_rk4_mujoco"),
+        "Euler" => Some(["step_implicit_damping", "actuated_step_implicit_damping"]),
+        "implicitfast" => Some(["step_implicit_damping", "actuated_step_implicit_velocity"]),
+        "RK4" => Some(["step_rk4_mujoco", "actuated_step_rk4_mujoco"]),
         _ => None,
     }
 }

@@ -1,39 +1,73 @@
 //! Many steps, one after the other.
 
 use alloc::vec;
+use alloc::vec::Vec;
 
-use super::H;
+use super::{ACT, CTRL, H};
 use crate::Scalar;
-use crate::algorithm::{Argument, Function, FunctionError, Workspace};
+use crate::algorithm::{Argument, Function, FunctionError, Workspace, check_length};
 use crate::model::Model;
 
-/// Steps a state in place. `torque(k)` has the torques of step k, `[nv]`; `see(k, q, v)` is called
-/// after it.
+/// A state that is stepped.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct State<S = f64> {
+    /// Coordinates, `[nq]`.
+    pub q: Vec<S>,
+    /// Rates, `[nv]`.
+    pub v: Vec<S>,
+    /// Activations of actuators, `[na]`: for steps with actuators.
+    pub act: Vec<S>,
+}
+
+impl<S: Scalar> State<S> {
+    /// The neutral configuration at rest, with activations of zero.
+    pub fn neutral(model: &Model<S>) -> Self {
+        let act = vec![S::zero(); model.actuators().activations()];
+        Self { q: model.neutral(), v: vec![S::zero(); model.nv()], act }
+    }
+}
+
+/// Steps a state in place. `inputs` has what is held during each step: the torques `[nv]`, or the
+/// controls `[nu]` of a step with actuators. `see(k, state)` is called after step k.
 ///
-/// q: `[nq]`, v: `[nv]`, h in s; `method` is a row of [`super::steps`].
+/// `method` is a row of [`super::steps`], or a step of [`super::of_actuators`]; h in s.
 ///
 /// # Errors
 /// Vectors of another length than the model says, another robot's workspace, and another function.
 pub fn rollout<'a, S: Scalar>(
     method: &Function<S>,
     (model, ws): (&Model<S>, &mut Workspace<S>),
-    (q, v): (&mut [S], &mut [S]),
+    state: &mut State<S>,
     h: S,
-    torques: impl IntoIterator<Item = &'a [S]>,
-    mut see: impl FnMut(usize, &[S], &[S]),
+    inputs: impl IntoIterator<Item = &'a [S]>,
+    mut see: impl FnMut(usize, &State<S>),
 ) -> Result<(), FunctionError> {
     if !method.takes.contains(&H) {
         return Err(FunctionError::Arguments { function: method.name, found: 4, expected: method.takes.len() });
     }
-    crate::algorithm::check_length(Argument::Q.name(), q.len(), model.nq)?;
-    crate::algorithm::check_length(Argument::V.name(), v.len(), model.nv)?;
-    let mut next = vec![S::zero(); model.nq + model.nv];
-    for (k, tau) in torques.into_iter().enumerate() {
-        method.call(model, ws, &[q, v, tau, &[h]], &mut next)?;
-        let (q_next, v_next) = next.split_at(model.nq);
+    let has_actuators = method.takes.contains(&CTRL);
+    check_length(Argument::Q.name(), state.q.len(), model.nq)?;
+    check_length(Argument::V.name(), state.v.len(), model.nv)?;
+    let activations = if has_actuators { model.actuators.activations() } else { 0 };
+    if has_actuators {
+        check_length(ACT.name(), state.act.len(), activations)?;
+    }
+    let mut next = vec![S::zero(); model.nq + model.nv + activations];
+    for (k, input) in inputs.into_iter().enumerate() {
+        let State { q, v, act } = state;
+        if has_actuators {
+            method.call(model, ws, &[q, v, act, input, &[h]], &mut next)?;
+        } else {
+            method.call(model, ws, &[q, v, input, &[h]], &mut next)?;
+        }
+        let (q_next, rest) = next.split_at(model.nq);
+        let (v_next, act_next) = rest.split_at(model.nv);
         q.copy_from_slice(q_next);
         v.copy_from_slice(v_next);
-        see(k, q, v);
+        if has_actuators {
+            act.copy_from_slice(act_next);
+        }
+        see(k, state);
     }
     Ok(())
 }

@@ -2,8 +2,9 @@
 
 use std::borrow::Cow;
 
+use articulated_core::actuator::Actuators;
 use articulated_core::algorithm::{FunctionError, FunctionId};
-use articulated_core::control::{Actuators, Aim, Controller, Series, Signal};
+use articulated_core::control::{Aim, Controller, Series, Signal};
 use articulated_core::dynamics::Dynamics;
 
 use super::{Control, Dependence};
@@ -59,7 +60,7 @@ impl<'r, R: Dynamics<f64>> Drive<'r, R> {
             robot.check_function(&mut pursuit.ws, FunctionId::difference)?;
         }
         let controls = match &*controller {
-            Controller::Actuators(actuators) => vec![0.0; actuators.laws.len()],
+            Controller::Actuators { actuators, .. } => vec![0.0; actuators.laws.len()],
             _ => Vec::new(),
         };
         Ok(Self { controller, period: None, pursuit, controls })
@@ -132,12 +133,12 @@ impl<R: Dynamics<f64>> Control for Drive<'_, R> {
                     tau[i] = kp[i] * error[i] + kd[i] * (rate[i] - v[i]) + torque[i];
                 }
             }
-            Controller::Actuators(actuators) => {
-                match &actuators.controls {
+            Controller::Actuators { actuators, controls } => {
+                match controls {
                     Signal::Still(still) => self.controls.copy_from_slice(still),
                     Signal::Moving(series) => series.at(t, &mut self.controls),
                 }
-                actuators.add_torques(&self.controls, q, v, tau);
+                actuators.add_torques(&actuators.inputs(&[], &self.controls, None), q, v, tau);
             }
         }
     }
@@ -150,7 +151,7 @@ impl<R: Dynamics<f64>> Control for Drive<'_, R> {
         match &*self.controller {
             Controller::Table(series)
             | Controller::Pd { target: Aim::Moving(series), .. }
-            | Controller::Actuators(Actuators { controls: Signal::Moving(series), .. }) => series.next(t),
+            | Controller::Actuators { controls: Signal::Moving(series), .. } => series.next(t),
             _ => f64::INFINITY,
         }
     }
@@ -165,16 +166,16 @@ impl<R: Dynamics<f64>> Control for Drive<'_, R> {
             Controller::None | Controller::Torque(_) => Dependence::NOTHING,
             Controller::Table(_) => Dependence { time: true, state: false },
             Controller::Pd { target, .. } => Dependence { time: matches!(target, Aim::Moving(_)), state: true },
-            Controller::Actuators(actuators) => {
-                Dependence { time: matches!(actuators.controls, Signal::Moving(_)), state: actuators.depend_on_state() }
+            Controller::Actuators { actuators, controls } => {
+                Dependence { time: matches!(controls, Signal::Moving(_)), state: actuators.depend_on_state() }
             }
         }
     }
 }
 
 /// Numbers of actuators that are not finite or do not fit a robot of `nq` coordinates.
-fn wrong_actuators(actuators: &Actuators, nq: usize, nv: usize) -> Vec<StateError> {
-    let Actuators { laws, controls, bounds, followers, passive } = actuators;
+fn wrong_actuators(actuators: &Actuators, controls: &Signal, nq: usize, nv: usize) -> Vec<StateError> {
+    let Actuators { laws, bounds, followers, passive } = actuators;
     let mut wrong: Vec<StateError> = match controls {
         Signal::Still(u) => StateError::of("control.ctrl", u, laws.len(), |_| None).collect(),
         Signal::Moving(series) => StateError::of_table("control.rows", series, laws.len()).collect(),
@@ -235,6 +236,6 @@ fn wrong<R: Dynamics<f64>>(
             let freedoms = [(kp, p), (kd, d), (torque, given)];
             aim.into_iter().chain(freedoms.into_iter().flat_map(|(name, x)| StateError::of_freedoms(name, x, robot))).collect()
         }
-        Controller::Actuators(actuators) => wrong_actuators(actuators, robot.shape().nq, robot.shape().nv),
+        Controller::Actuators { actuators, controls } => wrong_actuators(actuators, controls, robot.shape().nq, robot.shape().nv),
     })
 }

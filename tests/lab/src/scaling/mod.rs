@@ -125,5 +125,5 @@ fn plan(settings: &Settings, notes: &mut Vec<String>) -> Vec<(&'static Function<
 
 /// The shape of a chain with the frame of its tip.
 fn shape(joints: usize) -> Shape {
-    Shape { nq: joints, nv: joints, frames: 1, links: joints }
+    Shape { nq: joints, nv: joints, frames: 1, links: joints, ..Shape::default() }
 }

@@ -9,6 +9,7 @@ mod unique;
 
 use articulated_core::algorithm::{Argument, Dim, Function};
 use articulated_core::model::{JointInfo, Model};
+use articulated_core::step::{ACT, CTRL};
 
 pub use articulated_reference::SplitMix64;
 pub use random::random;
@@ -64,6 +65,11 @@ pub struct Slot<'a> {
     pub count: usize,
 }
 
+/// The arguments that a file of states may have: those of the table, and of functions of actuators.
+pub fn known_arguments() -> impl Iterator<Item = Argument> {
+    Argument::ALL.into_iter().chain([ACT, CTRL])
+}
+
 /// The named parts of an argument, in its order.
 pub fn slots(argument: Argument, model: &Model<f64>) -> Vec<Slot<'_>> {
     let by_joint = |part: fn(&JointInfo) -> (usize, usize)| {
@@ -75,13 +81,21 @@ pub fn slots(argument: Argument, model: &Model<f64>) -> Vec<Slot<'_>> {
             model.frames().iter().enumerate().map(|(k, f)| Slot { name: &f.name, at: k * count, count }).collect()
         }
         [Dim::Nq] => by_joint(|j| j.q),
+        [dim @ (Dim::Controls | Dim::Activations)] => {
+            let own = model.actuators().laws.iter().filter(|law| *dim == Dim::Controls || law.activation.is_some());
+            own.enumerate().map(|(k, law)| Slot { name: &law.name, at: k, count: 1 }).collect()
+        }
         _ => by_joint(|j| j.v),
     }
 }
 
 /// The owners of an argument's parts.
 pub fn owner(argument: Argument) -> &'static str {
-    if argument == Argument::Wrenches { "link" } else { "joint" }
+    match argument {
+        Argument::Wrenches => "link",
+        ACT | CTRL => "actuator",
+        _ => "joint",
+    }
 }
 
 /// First indices in q of the unit quaternions, with the joints that have them.

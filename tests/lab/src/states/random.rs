@@ -2,6 +2,7 @@
 
 use articulated_core::algorithm::{Argument, Workspace, random_configuration};
 use articulated_core::model::Model;
+use articulated_core::step::{ACT, CTRL};
 use articulated_reference::SplitMix64;
 
 use super::State;
@@ -10,7 +11,8 @@ use super::State;
 const RATE: f64 = 2.0;
 
 /// `count` states: configurations by [`random_configuration`], numbers in [0, 1) for arguments that
-/// require it, all others in ±2.
+/// require it, controls and activations within their bounds (±1 where there are none), all others
+/// in ±2.
 pub fn random(model: &Model<f64>, count: usize, seed: u64) -> Vec<State> {
     let mut numbers = SplitMix64::new(seed);
     let mut workspace = Workspace::new(model);
@@ -29,6 +31,14 @@ fn one(model: &Model<f64>, workspace: &mut Workspace<f64>, numbers: &mut SplitMi
         };
         state.set(argument, vector);
     }
+    let laws = &model.actuators().laws;
+    let within = |numbers: &mut SplitMix64, range: Option<[f64; 2]>| {
+        let [lower, upper] = range.unwrap_or([-1.0, 1.0]);
+        numbers.uniform(lower, upper)
+    };
+    state.set(CTRL, laws.iter().map(|law| within(numbers, law.control_range)).collect());
+    let activations = laws.iter().filter_map(|law| law.activation.as_ref());
+    state.set(ACT, activations.map(|activation| within(numbers, activation.range)).collect());
     state
 }
 

@@ -4,10 +4,11 @@ use articulated_codegen::nearest;
 use articulated_core::algorithm::Argument;
 use articulated_core::model::Model;
 use articulated_core::spatial::{NORM_TOLERANCE, input_norm};
+use articulated_core::step::{ACT, CTRL};
 use articulated_scene::beyond_sense;
 
 use super::random::normalise;
-use super::{Slot, State, owner, quaternions, slots};
+use super::{Slot, State, known_arguments, owner, quaternions, slots};
 use crate::table::counted;
 
 /// Quaternions with norms this close to one cause no warning: the rounding of the four numbers.
@@ -113,6 +114,7 @@ impl<'a> Found<'a> {
                 place,
                 match argument {
                     Argument::Wrenches => format!("found link {name:?}, which is not a frame here{near}"),
+                    ACT | CTRL => format!("found actuator {name:?}, which has no number in {} of this robot{near}", argument.name()),
                     _ => format!("found joint {name:?}, which is not a coordinate of this robot{near}"),
                 },
             );
@@ -122,9 +124,9 @@ impl<'a> Found<'a> {
 
     /// The argument of this name, or an error that names the nearest.
     pub(super) fn argument(&mut self, place: &str, name: &str) -> Option<Argument> {
-        let found = Argument::ALL.into_iter().find(|a| a.name() == name);
+        let found = known_arguments().find(|a| a.name() == name);
         if found.is_none() {
-            let names = Argument::ALL.map(Argument::name);
+            let names: Vec<&str> = known_arguments().map(Argument::name).collect();
             let near = nearest(name, names.iter().copied());
             self.error(place, format!("found {name:?}, expected one of {}{}", names.join(", "), hint(near)));
         }

@@ -92,10 +92,13 @@ impl Variant {
         let _ = writeln!(out, "#[doc(hidden)]\n#[cfg({})]\nmod {} {{\n    mod lanes {{\n{text}}}\n", self.cfg, self.module);
         // Functions of the robot could have the names of the lanes' functions: only its constants
         // are imported.
-        let parameters = if functions.iter().any(|f| f.inputs().iter().any(|a| a.is_parameters)) { ", PARAMETERS" } else { "" };
+        let mut more = if functions.iter().any(|f| f.function.is_of_actuators()) { ", NA, NU".to_owned() } else { String::new() };
+        if functions.iter().any(|f| f.inputs().iter().any(|a| a.is_parameters)) {
+            more += ", PARAMETERS";
+        }
         let _ = writeln!(
             out,
-            "    use ::core::{{cmp::Ord, iter::Iterator}};\n\n    use self::lanes::*;\n    use super::{{Lanes, super::{{FRAMES, LINKS, NQ, NV{parameters}}}}};"
+            "    use ::core::{{cmp::Ord, iter::Iterator}};\n\n    use self::lanes::*;\n    use super::{{Lanes, super::{{FRAMES, LINKS, NQ, NV{more}}}}};"
         );
         let _ = writeln!(out, "    batch_support!({attribute});");
         let (few, more) = (spills::FEW_REGISTERS, spills::MORE_REGISTERS);

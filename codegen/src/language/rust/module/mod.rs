@@ -9,6 +9,7 @@ pub(crate) mod warnings;
 
 use std::fmt::Write;
 
+use articulated_core::actuator::Actuators;
 use articulated_core::algorithm::{Dim, neutral};
 use articulated_core::description::Limit;
 use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
@@ -32,6 +33,10 @@ pub(crate) fn module(module: &Module, rust: &RustOptions) -> String {
     let mut text = Text::default();
     header(&mut text.public, module, rust);
     constants(&mut text.public, model);
+    let has_actuators = functions.iter().any(Function::is_of_actuators);
+    if has_actuators {
+        of_actuators(&mut text.public, model.actuators());
+    }
     indices(&mut text.public, model, &Names::of(model, request));
     inputs(&mut text.public, parameters);
     let (forbid_unsafe, level) = (rust.forbid_unsafe, request.options.level);
@@ -56,13 +61,16 @@ pub(crate) fn module(module: &Module, rust: &RustOptions) -> String {
     }
     out += &warnings::warnings(warnings);
     out.push('\n');
-    let parameters = if parameters.is_empty() { "" } else { ", PARAMETERS" };
+    let mut more = if has_actuators { ", NA, NU".to_owned() } else { String::new() };
+    if !parameters.is_empty() {
+        more += ", PARAMETERS";
+    }
     let lint = if forbid_unsafe { "" } else { "unsafe_code, unused_unsafe, " };
     let _ = write!(
         out,
         "/// Bodies of the functions, and what they call.\n#[doc(hidden)]\n#[cfg_attr(rustfmt, rustfmt_skip)]\n\
          #[allow({lint}dead_code, non_snake_case, unreachable_pub, unused_imports, unused_results, clippy::all, clippy::pedantic)]\n\
-         mod {IMPLEMENTATION} {{\nuse super::{{FRAMES, LINKS, NQ, NV{parameters}}};\n\n{}\n}}\n",
+         mod {IMPLEMENTATION} {{\nuse super::{{FRAMES, LINKS, NQ, NV{more}}};\n\n{}\n}}\n",
         implementation.trim_end()
     );
     out
@@ -115,6 +123,23 @@ fn constants(out: &mut String, model: &Model<f64>) {
     for (name, length, doc, values) in rows {
         let values: Vec<String> = values.into_iter().map(literal).collect();
         constant(out, doc, &format!("{NUMBERS}\npub const {name}: [f64; {length}] = [{}];", values.join(", ")));
+    }
+}
+
+/// The sizes of controls and activations, and the names and bounds of controls.
+fn of_actuators(out: &mut String, actuators: &Actuators) {
+    let laws = &actuators.laws;
+    let names: Vec<&str> = laws.iter().map(|law| law.name.as_str()).collect();
+    let _ = writeln!(out, "/// Number of actuators: the length of ctrl.\npub const NU: usize = {};", laws.len());
+    let _ =
+        writeln!(out, "/// Number of actuators with an activation: the length of act.\npub const NA: usize = {};", actuators.activations());
+    constant(out, "Names of the actuators, in the order of ctrl.", &format!("pub const ACTUATOR_NAMES: [&str; NU] = {names:?};"));
+    for (name, side, none, doc) in [
+        ("CTRL_LOWER", 0, f64::NEG_INFINITY, "Lower bounds of the controls; −∞ where there is none."),
+        ("CTRL_UPPER", 1, f64::INFINITY, "Upper bounds of the controls; ∞ where there is none."),
+    ] {
+        let values: Vec<String> = laws.iter().map(|law| literal(law.control_range.map_or(none, |range| range[side]))).collect();
+        constant(out, doc, &format!("{NUMBERS}\npub const {name}: [f64; NU] = [{}];", values.join(", ")));
     }
 }
 
@@ -191,7 +216,10 @@ fn robot(out: &mut String, (path, real): (&str, &str), model: &Model<f64>, funct
         "#[cfg_attr(rustfmt, rustfmt_skip)]\n#[allow(unused_qualifications, clippy::all, clippy::pedantic)]\nimpl {path}::Dynamics<{real}> for Robot {{"
     );
     let _ = writeln!(out, "    type Workspace = ();\n    fn workspace(&self) {{}}");
-    let _ = writeln!(out, "    fn shape(&self) -> {path}::Shape {{ {path}::Shape {{ nq: NQ, nv: NV, frames: FRAMES, links: LINKS }} }}");
+    let _ = writeln!(
+        out,
+        "    fn shape(&self) -> {path}::Shape {{ {path}::Shape {{ nq: NQ, nv: NV, frames: FRAMES, links: LINKS, ..{path}::Shape::default() }} }}"
+    );
     let _ = writeln!(out, "    fn name(&self) -> &str {{ NAME }}");
     names_by_number(out, path, model);
     if model.has_motors() {

@@ -17,7 +17,7 @@ impl<S: Scalar> Textbook<S> {
     }
 
     fn check(&self, function: &Function<f64>, arguments: &[&[S]]) -> Result<(), FunctionError> {
-        let shape = Shape { nq: self.nq, nv: self.nv, frames: self.frames.len(), links: self.moving_links().len() };
+        let shape = Shape { nq: self.nq, nv: self.nv, frames: self.frames.len(), links: self.moving_links().len(), ..Shape::default() };
         check_count(function.name, arguments.len(), function.takes.len())?;
         function.takes.iter().zip(arguments).try_for_each(|(takes, given)| check_length(takes.name(), given.len(), takes.len(shape)))
     }

@@ -3,7 +3,7 @@
 use articulated::simulate::Settings;
 use articulated_core::description::Base;
 use articulated_motion::InitialState;
-use articulated_scene::{Actuators, Aim, Controller, Signal};
+use articulated_scene::{Aim, Controller, Signal};
 
 use super::subject::Subject;
 use crate::error::Error;
@@ -43,7 +43,7 @@ fn pushes_base(controller: &Controller) -> bool {
         Controller::Torque(tau) => some(tau),
         Controller::Table(series) => series.rows.iter().any(|row| some(row)),
         Controller::Pd { kp, kd, torque, .. } => some(kp) || some(kd) || some(torque),
-        Controller::Actuators(actuators) => {
+        Controller::Actuators { actuators, .. } => {
             actuators.laws.iter().chain(&actuators.passive).flat_map(|law| &law.drives).any(|drive| drive.v < 6)
         }
     }
@@ -56,7 +56,7 @@ impl Subject {
         let mut notes = Vec::new();
         if let Controller::Table(series)
         | Controller::Pd { target: Aim::Moving(series), .. }
-        | Controller::Actuators(Actuators { controls: Signal::Moving(series), .. }) = controller
+        | Controller::Actuators { controls: Signal::Moving(series), .. } = controller
         {
             notes.push(self.of_table(&series.times, period.is_some()));
         }

@@ -1,0 +1,88 @@
+//! The motion that a robot's file describes: its state, controls, method and step.
+
+use articulated_core::actuator::Actuators;
+use articulated_core::model::Model;
+use articulated_core::step::State;
+use articulated_formats::world::{Keyframe, Stepping, World};
+
+use crate::console;
+use crate::failure::Failure;
+
+/// The step of a file that has none, s.
+pub(crate) const STEP: f64 = 1e-3;
+/// The keyframe with which a motion starts, if the file has it.
+const HOME: &str = "home";
+
+/// Where a motion starts.
+pub(crate) struct Start {
+    /// The state.
+    pub(crate) state: State,
+    /// The controls of the actuators.
+    pub(crate) ctrl: Vec<f64>,
+    /// Where they are from, in words.
+    pub(crate) source: String,
+}
+
+impl Start {
+    /// The keyframe of this name; without a name that called `home`, or else the initial state of
+    /// the file, with controls of 0.
+    ///
+    /// # Errors
+    /// A name that no keyframe has.
+    pub(crate) fn of_file(file: &str, world: &World, model: &Model<f64>, keyframe: Option<&str>) -> Result<Self, Failure> {
+        let named = |name: &str| world.keyframes.iter().find(|keyframe| keyframe.name == name);
+        let found = named(keyframe.unwrap_or(HOME));
+        if let (Some(name), None) = (keyframe, found) {
+            let names: Vec<&str> = world.keyframes.iter().map(|keyframe| keyframe.name.as_str()).collect();
+            let known =
+                if names.is_empty() { "no --keyframe: the file has none".to_owned() } else { format!("one of {}", names.join(", ")) };
+            return Err(Failure::input([format!("{file}: --keyframe: found {name:?}, expected {known}")]));
+        }
+        let mut state = State::neutral(model);
+        let mut ctrl = vec![0.0; model.actuators().laws.len()];
+        for keyframe in world.home.iter().chain(found) {
+            put(model, keyframe, &mut state);
+        }
+        if let Some(keyframe) = found {
+            put_controls(model.actuators(), keyframe, &mut state, &mut ctrl);
+        }
+        let controls = if ctrl.is_empty() { "" } else { ", controls of 0" };
+        let source = match found {
+            Some(keyframe) => format!("the keyframe {:?}", keyframe.name),
+            None if world.home.is_some() => format!("the initial state of the file{controls}"),
+            None => format!("coordinates of 0 at rest{controls}"),
+        };
+        Ok(Self { state, ctrl, source })
+    }
+}
+
+/// Writes the coordinates and rates of a state of the file. Joints that the robot no longer has are
+/// left out.
+fn put(model: &Model<f64>, keyframe: &Keyframe, state: &mut State) {
+    for (numbers, is_rates) in [(&keyframe.q, false), (&keyframe.v, true)] {
+        for (name, values) in numbers {
+            let Some(joint) = model.joints().iter().find(|joint| joint.name == *name) else { continue };
+            let (into, (first, count)) = if is_rates { (&mut state.v, joint.v) } else { (&mut state.q, joint.q) };
+            if values.len() == count {
+                into[first..first + count].copy_from_slice(values);
+            }
+        }
+    }
+}
+
+fn put_controls(actuators: &Actuators, keyframe: &Keyframe, state: &mut State, ctrl: &mut [f64]) {
+    ctrl.iter_mut().zip(&keyframe.control).for_each(|(u, value)| *u = *value);
+    let own = actuators.laws.iter().zip(&keyframe.activation).filter(|(law, _)| law.activation.is_some());
+    state.act.iter_mut().zip(own).for_each(|(w, (_, value))| *w = *value);
+}
+
+/// The names of the function of a step that a file requests, with torques and with actuators. A
+/// note says where it differs from the file's own.
+pub(crate) fn step_of_file(stepping: Option<&Stepping>) -> [&'static str; 2] {
+    let Some(stepping) = stepping else { return ["step_semi_implicit_euler", "actuated_step_semi_implicit_euler"] };
+    stepping.functions().unwrap_or_else(|| {
+        let known = ["step_implicit_damping", "actuated_step_implicit_velocity"];
+        console::note(&format!("the file's integrator is {}: steps are those of implicitfast", stepping.integrator));
+        known
+    })
+}

@@ -1,0 +1,208 @@
+//! Torques of actuators, and their slopes in the rates.
+
+use alloc::vec;
+
+use super::{ActuatorLaw, Actuators, Transmission};
+use crate::Scalar;
+use crate::spatial::screw::Quaternion;
+
+/// The nearest number within the range.
+pub(super) fn clamp<S: Scalar>(x: S, range: Option<[S; 2]>) -> S {
+    range.map_or(x, |[lower, upper]| {
+        let x = S::select((x - lower).positive(), x, lower);
+        S::select((upper - x).positive(), x, upper)
+    })
+}
+
+/// `value` inside of the range, zero at its bounds and beyond.
+fn within<S: Scalar>(x: S, range: Option<[S; 2]>, value: S) -> S {
+    range.map_or(value, |[lower, upper]| {
+        let above = S::select((x - lower).positive(), value, S::zero());
+        S::select((upper - x).positive(), above, S::zero())
+    })
+}
+
+impl<S: Scalar> Transmission<S> {
+    /// Part of the length, and of its rate.
+    fn length(&self, q: &[S], v: &[S]) -> (S, S) {
+        let sum = |x: &[S]| self.gear.iter().zip(x).fold(S::zero(), |sum, (gear, x)| sum + *gear * *x);
+        let rates = v.get(self.v..).map_or(S::zero(), sum);
+        let length = match (self.gear.len(), q.get(self.q..)) {
+            // The rotation vector in axes of the child, rad, of norm π at most
+            (3, Some(&[x, y, z, w, ..])) => sum(Quaternion::from_array([x, y, z, w]).log().as_slice()),
+            (_, Some(q)) => sum(q),
+            _ => S::zero(),
+        };
+        (length, rates)
+    }
+}
+
+impl<S: Scalar> ActuatorLaw<S> {
+    /// Its force f with the input w of its gain, N or N·m at the actuator.
+    pub fn force(&self, input: S, q: &[S], v: &[S]) -> S {
+        clamp(self.unbounded(input, q, v), self.force_range)
+    }
+
+    fn unbounded(&self, input: S, q: &[S], v: &[S]) -> S {
+        let parts = self.drives.iter().map(|drive| drive.length(q, v));
+        let (length, rate) = parts.fold((S::zero(), S::zero()), |(l, r), (length, rate)| (l + length, r + rate));
+        let affine = |[at_rest, of_length, of_rate]: [S; 3]| at_rest + of_length * length + of_rate * rate;
+        affine(self.gain) * input + affine(self.bias)
+    }
+
+    /// −∂f/∂l̇, zero at a bound of the force.
+    fn damping(&self, input: S, q: &[S], v: &[S]) -> S {
+        let slope = -(self.gain[2] * input + self.bias[2]);
+        let force = self.force_range.map(|_| self.unbounded(input, q, v)).unwrap_or(S::zero());
+        within(force, self.force_range, slope)
+    }
+
+    /// The degree of freedom, if it drives one joint of one degree.
+    fn only_joint(&self) -> Option<usize> {
+        let [Transmission { v, gear, .. }] = &self.drives[..] else { return None };
+        (gear.len() == 1).then_some(*v)
+    }
+
+    /// The torque of a force of one: its entries, each with its degree of freedom.
+    fn row(&self) -> impl Iterator<Item = (usize, S)> + Clone + '_ {
+        self.drives.iter().flat_map(|drive| drive.gear.iter().enumerate().map(|(k, gear)| (drive.v + k, *gear)))
+    }
+
+    /// τ += gear · f.
+    fn add_torque(&self, input: S, q: &[S], v: &[S], tau: &mut [S]) {
+        let force = self.force(input, q, v);
+        for drive in self.drives.iter().filter(|drive| !drive.has_no_torque) {
+            tau.iter_mut().skip(drive.v).zip(&drive.gear).for_each(|(tau, gear)| *tau += *gear * force);
+        }
+    }
+
+    /// Whether it depends on a rate.
+    fn has_damping(&self, is_zero: impl Fn(S) -> bool) -> bool {
+        !is_zero(self.gain[2]) || !is_zero(self.bias[2])
+    }
+}
+
+impl<S: Scalar> Actuators<S> {
+    /// Adds their torques to `tau` `[nv]`, N·m or N, which is zero on entry. Missing inputs are 0.
+    ///
+    /// inputs: `[nu]`, of [`Actuators::inputs`]; q: `[nq]`; v: `[nv]`.
+    pub fn add_torques(&self, inputs: &[S], q: &[S], v: &[S], tau: &mut [S]) {
+        let input = |k: usize| inputs.get(k).copied().unwrap_or(S::zero());
+        self.laws.iter().enumerate().for_each(|(k, law)| law.add_torque(input(k), q, v, tau));
+        for (k, range) in &self.bounds {
+            if let Some(tau) = tau.get_mut(*k) {
+                *tau = clamp(*tau, Some(*range));
+            }
+        }
+        for follower in &self.followers {
+            let laws = follower.laws.iter().filter_map(|(k, gear)| Some((self.laws.get(*k)?, *k, *gear)));
+            let torque = laws.fold(S::zero(), |sum, (law, k, gear)| sum + gear * law.force(input(k), q, v));
+            let torque = clamp(torque, follower.range);
+            for (k, multiplier) in &follower.leaders {
+                tau.iter_mut().skip(*k).take(1).for_each(|tau| *tau += *multiplier * torque);
+            }
+        }
+        self.passive.iter().for_each(|law| law.add_torque(S::zero(), q, v, tau));
+    }
+
+    /// Visits d g_i g_j of each force whose slope −∂f/∂l̇ = d may not be zero, for the entries
+    /// i ≥ j of its row g = ∂l/∂q.
+    ///
+    /// As in MuJoCo 4, d is zero at a bound of the force, and for an actuator of one joint at a
+    /// bound of the torque of that joint.
+    pub(crate) fn damping(&self, inputs: &[S], q: &[S], v: &[S], mut visit: impl FnMut(usize, usize, S)) {
+        let zero = S::zero();
+        let laws = self.laws.iter().enumerate().map(|(k, law)| (law, inputs.get(k).copied().unwrap_or(zero)));
+        let bound = |law: &ActuatorLaw<S>| law.only_joint().and_then(|own| self.bounds.iter().find(|(k, _)| *k == own));
+        let bounded = laws.clone().map(|(law, input)| (law, input, bound(law)));
+        let all = bounded.chain(self.passive.iter().map(|law| (law, zero, None)));
+        for (law, input, bound) in all.filter(|(law, ..)| law.has_damping(|x| x == zero)) {
+            let mut slope = law.damping(input, q, v);
+            if let Some((own, range)) = bound {
+                let mut tau = vec![zero; v.len()];
+                laws.clone().for_each(|(law, input)| law.add_torque(input, q, v, &mut tau));
+                slope = within(tau[*own], Some(*range), slope);
+            }
+            for (i, a) in law.row() {
+                law.row().filter(|(j, _)| *j <= i).for_each(|(j, b)| visit(i, j, slope * a * b));
+            }
+        }
+    }
+
+    /// Whether a force that depends on a rate acts on several degrees of freedom.
+    pub fn couple_rates(&self) -> bool {
+        let all = self.laws.iter().chain(&self.passive);
+        all.filter(|law| law.has_damping(|x| x == S::zero())).any(|law| {
+            let first = law.row().next();
+            law.row().any(|(k, _)| first.is_some_and(|(first, _)| first != k))
+        })
+    }
+
+    /// Whether a torque depends on q or v.
+    pub fn depend_on_state(&self) -> bool {
+        let depends = |[_, of_length, of_rate]: [S; 3]| of_length != S::zero() || of_rate != S::zero();
+        self.laws.iter().chain(&self.passive).any(|law| depends(law.gain) || depends(law.bias))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::actuator::Follower;
+
+    #[test]
+    fn an_actuator_follows_its_affine_law_within_its_bounds() {
+        let drive = |k, gear: f64| Transmission { q: k, v: k, gear: vec![gear], ..Transmission::default() };
+        let servo = ActuatorLaw {
+            name: "servo".into(),
+            drives: vec![drive(0, 2.0), drive(1, -1.0)],
+            gain: [10.0, 1.0, 0.5],
+            bias: [1.0, -10.0, -2.0],
+            control_range: Some([-1.0, 1.0]),
+            force_range: Some([-15.0, 15.0]),
+            activation: None,
+        };
+        // Length 2 · 0.5 − 0.25 = 0.75, rate 2 · 1 − 3 = −1.
+        let (q, v) = ([0.5, 0.25], [1.0, 3.0]);
+        let plain = ActuatorLaw { control_range: None, force_range: None, ..servo.clone() };
+        assert_eq!(plain.force(2.0, &q, &v), (10.0 + 0.75 - 0.5) * 2.0 + 1.0 - 7.5 + 2.0);
+        assert_eq!(servo.force(1.0, &q, &v), 10.25 - 4.5);
+        assert_eq!(servo.force(-1.0, &q, &v), -10.25 - 4.5);
+        assert_eq!(ActuatorLaw { bias: [-9.0, 0.0, 0.0], ..servo.clone() }.force(-1.0, &q, &v), -15.0);
+        let spring = ActuatorLaw { drives: vec![drive(1, 1.0)], bias: [0.0, -4.0, 0.0], ..ActuatorLaw::default() };
+        let mut all = Actuators { laws: vec![servo], passive: vec![spring], bounds: vec![(1, [-1.0, 2.0])], ..Actuators::default() };
+        let mut tau = [0.0; 2];
+        let inputs = all.inputs(&[], &[2.0], None);
+        assert_eq!((&inputs[..], &all.inputs(&[], &[-2.0], None)[..]), (&[1.0][..], &[-1.0][..]));
+        all.add_torques(&inputs, &q, &v, &mut tau);
+        // The bound is of the servo alone: −5.75 becomes −1.
+        assert_eq!(tau, [2.0 * 5.75, -1.0 - 1.0]);
+        // A joint that follows the first, x = 3 q₀, has the servo too: its torque is bounded by
+        // itself.
+        all.laws[0].drives[0].has_no_torque = true;
+        all.followers = vec![Follower { laws: vec![(0, 2.0)], range: Some([-4.0, 7.0]), leaders: vec![(0, 3.0)] }];
+        let mut tau = [0.0; 2];
+        all.add_torques(&inputs, &q, &v, &mut tau);
+        assert_eq!(tau, [3.0 * 7.0, -1.0 - 1.0]);
+        assert!(all.depend_on_state());
+        (all.laws[0].gain, all.laws[0].bias) = ([1.0, 0.0, 0.0], [0.0; 3]);
+        assert!(all.depend_on_state());
+        all.passive.clear();
+        assert!(!all.depend_on_state());
+    }
+
+    #[test]
+    fn an_actuator_of_a_ball_joint_pulls_along_the_rotation_vector() {
+        let axis = [0.6, 0.0, 0.8];
+        let drive = Transmission { q: 1, v: 1, gear: vec![1.0, 2.0, 3.0], ..Transmission::default() };
+        let law = ActuatorLaw { drives: vec![drive], bias: [0.0, 1.0, 0.0], ..ActuatorLaw::default() };
+        for angle in [0.0, 1e-9, 0.3, 2.5, -2.5] {
+            for sign in [1.0, -1.0] {
+                let (sine, cosine): (f64, f64) = (angle / 2.0_f64).sin_cos();
+                let q = [9.0, sign * axis[0] * sine, 0.0, sign * axis[2] * sine, sign * cosine];
+                let length = law.force(0.0, &q, &[0.0; 4]);
+                assert!((length - 3.0 * angle).abs() <= 1e-15 * (1.0 + angle.abs()) * 8.0, "{angle}: {length}");
+            }
+        }
+    }
+}
