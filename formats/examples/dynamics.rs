@@ -12,6 +12,7 @@ use std::fmt::Write as _;
 use std::io::{Read, Write};
 use std::process::ExitCode;
 
+use articulated_core::actuator::Filter;
 use articulated_core::algorithm::{Workspace, inverse_dynamics, torque_regressor};
 use articulated_core::description::{Base, Description};
 use articulated_core::model::Model;
@@ -116,14 +117,24 @@ fn world(world: &World) -> String {
             // An infinite bound is `inf` in Rust, and `Infinity` in JSON as Python reads it.
             let range = |range: Option<[f64; 2]>| or_null(range.as_ref()).replace("inf", "Infinity");
             let (control, force) = (range(own.control_range), range(own.force_range));
+            let activation = own.activation.as_ref().map_or("null".to_owned(), |own| {
+                let (kind, time) = match own.filter {
+                    Filter::Integrator => ("integrator", 0.0),
+                    Filter::Euler(time) => ("filter", time),
+                    Filter::Exact(time) => ("filterexact", time),
+                };
+                let (range, early) = (range(own.range), own.is_early);
+                format!("{{\"kind\": {kind:?}, \"time\": {time:?}, \"range\": {range}, \"early\": {early}}}")
+            });
             format!(
-                "{{\"name\": {name:?}, \"drives\": {drives}, \"gain\": {gain:?}, \"bias\": {bias:?}, \"control_range\": {control}, \"force_range\": {force}}}"
+                "{{\"name\": {name:?}, \"activation\": {activation}, \"drives\": {drives}, \"gain\": {gain:?}, \"bias\": {bias:?}, \"control_range\": {control}, \"force_range\": {force}}}"
             )
         })
     };
     let keyframe = |own: &Keyframe| {
         let (q, v) = (by_name(&own.q), by_name(&own.v));
-        format!("{{\"name\": {:?}, \"q\": {q}, \"v\": {v}, \"control\": {:?}}}", own.name, own.control)
+        let (name, control, activation) = (&own.name, &own.control, &own.activation);
+        format!("{{\"name\": {name:?}, \"q\": {q}, \"v\": {v}, \"control\": {control:?}, \"activation\": {activation:?}}}")
     };
     let couplings = list(&world.couplings, |(own, _)| {
         let leaders = list(&own.leaders, |(name, factor)| format!("[{name:?}, {factor:?}]"));

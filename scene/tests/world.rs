@@ -187,7 +187,7 @@ fn what_a_scene_does_not_take_from_the_file_is_listed() {
     };
     let all = unused("");
     for part in [
-        "line 2: actuator: one actuator: used in scenes with control = { kind = \"actuators\" }",
+        "line 2: actuator: one actuator: used in scenes with control = { kind = \"actuators\" }, and by functions of the group actuators",
         "line 3: keyframe: 2 states: used in scenes with initial = { keyframe = … }",
         "option timestep: 0.005 s: used in scenes with simulation = { step = \"file\" }",
     ] {

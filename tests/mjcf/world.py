@@ -14,12 +14,19 @@ import numpy as np
 
 BALL, SLIDE, HINGE = 1, 2, 3
 ACTING = {int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT), int(mujoco.mjtTrn.mjTRN_TENDON)}
+# The dynamics of actuators that are read, and their words.
+STATES = {
+    mujoco.mjtDyn.mjDYN_NONE: None,
+    mujoco.mjtDyn.mjDYN_INTEGRATOR: "integrator",
+    mujoco.mjtDyn.mjDYN_FILTER: "filter",
+    mujoco.mjtDyn.mjDYN_FILTEREXACT: "filterexact",
+}
 # As documented in docs/mjcf.md.
 OUTSIDE = [
     "forces of contacts, and what adheres by them",
     "forces of the solver: limits, dry friction and equations act by their numbers, which are compared",
     "armature in the mass matrix: compared by itself",
-    "states of actuators and springs (act, plastic), and bodies that a program moves (mocap)",
+    "states of springs (plastic), and bodies that a program moves (mocap)",
 ]
 # More warnings are counted, not listed.
 MOST_WARNINGS = 1000
@@ -140,6 +147,8 @@ def keyframes(model, world, joints, differ, count):
         ids = numbers_of(model, [one["name"] for one in world["actuators"]])
         expected = [data.ctrl[model.actuator_ctrladr[one]] for one in ids]
         differ("keyframe control", key["control"] or [0.0] * len(expected), expected, 1.0)
+        expected = [data.act[model.actuator_actadr[one]] if model.actuator_actnum[one] else 0.0 for one in ids]
+        differ("keyframe activation", key["activation"] or [0.0] * len(expected), expected, 1.0)
 
 
 def state(found, expected, kind, differ):
@@ -189,7 +198,7 @@ def obstacle(model, one):
     kind, target = int(model.actuator_trntype[one]), model.actuator_trnid[one, 0]
     if model.actuator_plugin[one] >= 0:
         return "plugin"
-    if model.actuator_dyntype[one]:
+    if mujoco.mjtDyn(model.actuator_dyntype[one]) not in STATES or model.actuator_actnum[one] > 1:
         return "state " + mujoco.mjtDyn(model.actuator_dyntype[one]).name[6:].lower()
     if model.actuator_gaintype[one] > 1 or model.actuator_biastype[one] > 1:
         return "gain " + mujoco.mjtGain(model.actuator_gaintype[one]).name[7:].lower()
@@ -214,6 +223,18 @@ def actuators(model, world, differ, count):
     found = [one["name"] for one in world["actuators"]]
     differ("actuators", found != wanted, 0, 1.0)
     count("actuators read", len(found))
+    for one, number in zip(world["actuators"], numbers_of(model, found)):
+        state = one["activation"]
+        kind = mujoco.mjtDyn(model.actuator_dyntype[number])
+        differ("activations", STATES[kind] != (state and state["kind"]), 0, 1.0)
+        if state:
+            count("activations read", 1)
+            lower, upper = state["range"] or [0, 0]
+            limited = model.actuator_actlimited[number]
+            differ("activations", [lower, upper] if limited else bool(state["range"]), model.actuator_actrange[number] if limited else False, 1.0)
+            if kind != mujoco.mjtDyn.mjDYN_INTEGRATOR:
+                differ("activations", state["time"], model.actuator_dynprm[number, 0], 1.0)
+            differ("activations", state["early"], bool(model.actuator_actearly[number]), 1.0)
     for reason in filter(None, why):
         count(f"actuators not read: {reason}", 1)
     return numbers_of(model, found)
@@ -316,6 +337,8 @@ def reduce(model, read, warned):
         if model.actuator_dampingpoly[one].any() and not no_damper:
             warned.demand("damping of higher degree of the actuator", name, "damping of an actuator", "an actuator")
     model.actuator_dampingpoly[:] = 0
+    # The activation after a step: steps.py compares it.
+    model.actuator_actearly[:] = 0
 
 
 def constraints(model, warned):
@@ -355,7 +378,7 @@ def length(drives, by_name, data):
 def law(one, u, data, by_name):
     """Force and torques, and how large the terms of the force are."""
     at, rate, row = length(one["drives"], by_name, data)
-    if one["control_range"]:
+    if one["control_range"] and not one["activation"]:
         u = np.clip(u, *one["control_range"])
     parts = np.array([1, at, rate])
     force = np.dot(one["gain"], parts) * u + np.dot(one["bias"], parts)
@@ -378,11 +401,14 @@ def forces(model, data, robot, read, by_name, random, differ):
         lower, upper = model.actuator_ctrlrange[address]
         middle, width = ((lower + upper) / 2, upper - lower) if model.actuator_ctrllimited[address] else (0, 2)
         data.ctrl[address] = middle + width * random.uniform(-1, 1)
-        own = law(one, data.ctrl[address], data, by_name)
-        if own[3]:
-            data.ctrl[address] = 0.0
-            own = law(one, 0.0, data, by_name)
-        laws.append(own)
+        # The gain multiplies the activation, if there is one.
+        own, place = (data.act, model.actuator_actadr[number]) if one["activation"] else (data.ctrl, address)
+        own[place] = data.ctrl[address]
+        found = law(one, own[place], data, by_name)
+        if found[3]:
+            own[place] = 0.0
+            found = law(one, 0.0, data, by_name)
+        laws.append(found)
     mujoco.mj_forward(model, data)
     for (force, torque, size, _), number in zip(laws, read):
         scale = max(scale, size)

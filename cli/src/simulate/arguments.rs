@@ -13,6 +13,14 @@ pub(crate) struct SimulateArguments {
     /// or SDF), whose smooth motion is simulated
     #[arg(value_name = "SCENE", required_unless_present = "all")]
     pub(crate) scene: Option<PathBuf>,
+    /// The smooth motion that a robot's file describes, without contacts, limits and dry friction: its
+    /// method, step and actuators, from its keyframe `home` or its initial state. As MuJoCo's with
+    /// constraints off
+    #[arg(long, conflicts_with_all = ["print_scene", "all", "generated", "against", "integrator", "rtol", "atol"])]
+    pub(crate) smooth: bool,
+    /// Start with this keyframe of the file, and its controls, instead of `home`
+    #[arg(long, value_name = "NAME", requires = "smooth")]
+    pub(crate) keyframe: Option<String>,
     /// Print the scene that a robot's file is simulated as, to begin a scene of your own
     #[arg(long, conflicts_with_all = ["all", "output", "mcap", "generated", "against", "end", "integrator", "step", "rtol", "atol", "every"])]
     pub(crate) print_scene: bool,

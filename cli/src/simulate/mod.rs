@@ -14,6 +14,7 @@ mod plot;
 mod recording;
 mod settings;
 mod size;
+mod smooth;
 mod summary;
 mod table;
 mod text;
@@ -33,6 +34,7 @@ use compiled::Compiler;
 use files::Files;
 use motion::Motion;
 use size::Size;
+use smooth::Smooth;
 use summary::Summary;
 
 /// Output of `--print-scene` as JSON.
@@ -56,6 +58,10 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
         console::report(format, || text.clone(), || crate::json(&PrintedScene { scene: &text }))?;
         return Ok(OK);
     }
+    if arguments.smooth && !named_scene::is_robot(scene) {
+        let expected = "a URDF, xacro, MJCF or SDF: a scene has its own integrator";
+        return Err(Failure::usage(format!("{}: --smooth: found no file of a robot, expected {expected}", scene.display())));
+    }
     let session = named_scene::session(scene)?;
     if named_scene::is_robot(scene) {
         robot_scene::note(scene)?.iter().for_each(|line| console::note(line));
@@ -67,14 +73,17 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
         return compiled::against(&session, &initial, &settings, file, format);
     }
     motion::solvable(&session)?;
+    let keyframe = arguments.keyframe.as_deref();
+    let smooth = arguments.smooth.then(|| Smooth::of(&session, keyframe, arguments.step, &mut settings)).transpose()?;
     let compiler = arguments.generated.then(Compiler::find).transpose()?;
     let size = Size::look_ahead(session.model.shape(), &mut settings, arguments)?;
     let files = arguments.output.as_deref().map(|path| Files::at(path, &arguments.package, &settings, files::OPTIONS)).transpose()?;
     arguments.mcap.as_deref().map_or(Ok(()), |path| output::file("--mcap", path))?;
     let progress = Progress::of_whole(format!("{}: motion", session.name));
-    let (mut motion, code) = match &compiler {
-        Some(compiler) => (compiler.run(&session, &initial, &settings, &progress)?, "generated"),
-        None => (by_generic_code(&session, &initial, &settings, &progress)?, "generic"),
+    let (mut motion, code) = match (&compiler, &smooth) {
+        (_, Some(smooth)) => (smooth.run(&session, &settings, &progress)?, "generic"),
+        (Some(compiler), None) => (compiler.run(&session, &initial, &settings, &progress)?, "generated"),
+        (None, None) => (by_generic_code(&session, &initial, &settings, &progress)?, "generic"),
     };
     if let (Some(error), Some(full)) = (&mut motion.error, size.and_then(|size| size.ended(motion.recording.len()))) {
         *error += &format!("; {full}");

@@ -11,6 +11,7 @@ use articulated_motion::{Creep, Ending, InitialState, Occurrence, Outcome, Slide
 
 use super::monitor::RunMonitor;
 use super::recording::{EventRecord, Recording};
+use super::summary::Method;
 use crate::console::{self, Progress};
 use crate::failure::Failure;
 use crate::named_scene;
@@ -37,6 +38,8 @@ pub(super) struct Motion {
     pub(super) error: Option<String>,
     /// Warnings about its initial state, its events and its steps.
     pub(super) warnings: Vec<String>,
+    /// The steps of a robot's file, in place of an integrator.
+    pub(super) of_file: Option<Method>,
 }
 
 /// The warnings about a scene's motion. Errors: everything that keeps the motion from starting, or
@@ -106,6 +109,7 @@ pub(super) fn run(
         ball,
         error,
         warnings,
+        of_file: None,
     })
 }
 

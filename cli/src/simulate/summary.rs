@@ -23,6 +23,9 @@ pub(super) struct Summary {
     /// `generated` or `generic`.
     pub(super) code: &'static str,
     pub(super) integrator: Method,
+    /// Whether these are the steps of a robot's file: they are what was asked for, at any error.
+    #[serde(skip)]
+    pub(super) is_of_file: bool,
     pub(super) start_s: f64,
     /// The time that was reached.
     pub(super) end_s: f64,
@@ -206,7 +209,14 @@ impl Summary {
             degrees_of_freedom: session.model.nv(),
             effects: sorts(&session.effects),
             code,
-            integrator: Method { name: row.name, order: row.order, step_s: settings.step, rtol: settings.rtol, atol: settings.atol },
+            integrator: motion.of_file.clone().unwrap_or(Method {
+                name: row.name,
+                order: row.order,
+                step_s: settings.step,
+                rtol: settings.rtol,
+                atol: settings.atol,
+            }),
+            is_of_file: motion.of_file.is_some(),
             start_s: settings.start,
             end_s: motion.reached,
             requested_end_s: settings.end,
@@ -236,7 +246,7 @@ impl Summary {
 
     fn with_balance(mut self, file: &str) -> Self {
         self.warnings.extend(self.out_of_balance().map(|warning| format!("{file}: {warning}")));
-        if self.status == "ok" && (!self.energy.is_kept() || self.counts.has_no_balance()) {
+        if self.status == "ok" && !self.is_of_file && (!self.energy.is_kept() || self.counts.has_no_balance()) {
             self.status = "out_of_tolerance";
         }
         self
@@ -290,6 +300,9 @@ impl Summary {
             return Some("all steps pass over a stiff layer: none is in the balance of energy; take shorter steps".into());
         }
         let lacks = format!("the balance of energy lacks {} of the largest energy moved", crate::table::number(part));
+        if self.is_of_file {
+            return (part > NOT_KEPT).then(|| format!("{lacks}: the steps of the file are long for this motion, whose error is as large"));
+        }
         if !self.energy.is_kept() {
             return Some(format!("{lacks}: the steps are too long, and this motion is not that of the scene"));
         }

@@ -55,3 +55,65 @@ fn what_is_wrong_is_told() {
     let answer = run(&["rollout", scene.name(), "--steps", "500", "--states", "2", "--method", "implicit_damping"]);
     assert!(answer.status == 0 && !answer.err.contains("not finite"), "{}", answer.err);
 }
+
+/// A slide with a servo whose activation follows the control, damping and two keyframes.
+const SERVO: &str = r#"<mujoco model="cart"><option timestep="0.004" integrator="implicitfast"/>
+<worldbody><body><joint name="x" type="slide" axis="1 0 0" damping="0.5"/><inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/></body></worldbody>
+<actuator><position name="servo" joint="x" kp="40" kv="3" timeconst="0.1"/><motor name="push" joint="x"/></actuator>
+<keyframe><key name="home" qpos="0.1" ctrl="0.5 0.2" act="0.3"/><key name="rest" qpos="0.4"/></keyframe></mujoco>"#;
+
+#[test]
+fn the_motion_of_a_file_is_that_of_its_step_and_starts_at_home() {
+    let file = File::new("cart.xml", SERVO.as_bytes());
+    let rolled = |more: &[&str]| run(&[&["rollout", file.name(), "--steps", "250", "--format", "json"], more].concat());
+    let json = rolled(&[]).json();
+    assert_eq!((json["method"].as_str(), json["time_step"].as_f64()), (Some("actuated_step_implicit_velocity"), Some(0.004)));
+    assert_eq!(json["actuators"], serde_json::json!(["servo", "push"]));
+    let end = |vector: &str| json["states"][0][vector][0].as_f64().unwrap();
+    // The activation: an exact filter, w = u + (w₀ − u) exp(−t/T).
+    assert!((end("act") - (0.5 - 0.2 * (-10.0_f64).exp())).abs() < 1e-14, "{json}");
+    // (m + h (d + kv)) (v₁ − v₀) = h (kp (w − x) − (kv + d) v₀ + u), by hand.
+    let (mut x, mut v, mut w, h) = (0.1, 0.0, 0.3, 0.004);
+    for _ in 0..250 {
+        v += h * (40.0 * (w - x) - 3.5 * v + 0.2) / (2.0 + h * 3.5);
+        x += h * v;
+        w = 0.5 + (w - 0.5) * f64::exp(-h / 0.1);
+    }
+    assert!((end("q") - x).abs() < 1e-13 && (end("v") - v).abs() < 1e-13, "{json} {x} {v}");
+    // The same motion with its records, energies and files.
+    let simulated = run(&["simulate", file.name(), "--smooth", "--end", "1", "--format", "json"]);
+    let summary = simulated.json();
+    assert!(simulated.status == 0 && simulated.err.contains("the keyframe \"home\""), "{}", simulated.err);
+    assert_eq!((summary["integrator"]["name"].as_str(), summary["counts"]["steps"].as_u64()), (json["method"].as_str(), Some(250)));
+    let kinetic = summary["energy"]["kinetic_end"].as_f64().unwrap();
+    assert!((kinetic - v * v).abs() < 1e-14, "{kinetic} {}", v * v);
+    let folder = tempfile::tempdir().unwrap();
+    let to = folder.path().to_str().unwrap();
+    let written = run(&["simulate", file.name(), "--smooth", "--end", "1", "--every", "0.5", "-o", to]);
+    assert_eq!(written.status, 0, "{}", written.err);
+    let table = std::fs::read_to_string(folder.path().join("recording.csv")).unwrap();
+    let times: Vec<f64> = table.lines().skip(1).map(|line| line.split(',').next().unwrap().parse().unwrap()).collect();
+    assert_eq!(times, [0.0, 0.5, 1.0]);
+    // Another keyframe, whose controls and activations are 0.
+    let rest = rolled(&["--keyframe", "rest"]);
+    assert!(rest.err.contains("the keyframe \"rest\"") && rest.json()["states"][0]["act"][0] == 0.0, "{}", rest.err);
+    let unknown = rolled(&["--keyframe", "hom"]);
+    assert!(unknown.status == 1 && unknown.err.contains("expected one of home, rest"), "{}", unknown.err);
+    // Torques are of steps with torques.
+    let states = File::new("states.json", br#"{"states": [{"q": [0.5], "v": [1], "tau": [4]}]}"#);
+    assert_eq!(rolled(&["--states", states.name()]).json()["method"], "step_implicit_damping");
+    let both = rolled(&["--states", states.name(), "--method", "actuated_step_rk4"]);
+    assert!(both.status == 1 && both.err.contains("states[0]: found tau, expected ctrl"), "{}", both.err);
+}
+
+#[test]
+fn a_smooth_motion_is_of_a_file() {
+    let told = |words: &[&str]| run(&[&["simulate"], words].concat()).err;
+    assert!(told(&["pendulum", "--smooth"]).contains("--smooth: found no file of a robot"));
+    let file = File::new("cart.xml", SERVO.as_bytes());
+    assert!(told(&[file.name(), "--smooth", "--integrator", "rk4"]).contains("cannot be used with"));
+    // A scene has no activations.
+    assert!(told(&[file.name()]).contains("the actuator \"servo\", which gives no force in a scene"), "{}", told(&[file.name()]));
+    let long = run(&["simulate", file.name(), "--smooth", "--step", "100", "--end", "100000"]);
+    assert!(long.err.contains("cart.xml"), "{}", long.err);
+}

@@ -104,8 +104,9 @@ impl Balance {
         if self.largest_moved == 0.0 { 0.0 } else { self.largest_imbalance / self.largest_moved }
     }
 
-    /// One more state. A NaN is larger than every number.
-    pub(crate) fn add(&mut self, imbalance: f64, moved: [f64; 4]) {
+    /// One more state: its imbalance, J, and [T, work, dissipated, from events], J. A NaN is larger
+    /// than every number.
+    pub fn add(&mut self, imbalance: f64, moved: [f64; 4]) {
         fn larger(most: f64, x: f64) -> f64 {
             if x.abs() > most || x.is_nan() { x.abs() } else { most }
         }

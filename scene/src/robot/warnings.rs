@@ -50,6 +50,7 @@ impl Editing<'_> {
         self.warn_of_masses();
         self.leave_what_is_used(effects);
         self.report_world();
+        self.warn_of_activations();
     }
 
     /// Lists content of the file's world that the scene does not request.
@@ -62,7 +63,7 @@ impl Editing<'_> {
         let mut list = |tag: &str, place: At, why: String| {
             unused.push(Unused { line: place.line(), subject: Subject::Document, tag: tag.to_owned(), why });
         };
-        let control = "used in scenes with control = { kind = \"actuators\" }";
+        let control = "used in scenes with control = { kind = \"actuators\" }, and by functions of the group actuators";
         for (tag, all, what) in [("actuator", &world.actuators, "actuator"), ("tendon", &world.passive, "spring or damper of tendon")] {
             if let Some(first) = all.first().filter(|_| !is_driven) {
                 list(tag, first.place, format!("{}: {control}", count(all.len(), what)));
@@ -78,6 +79,22 @@ impl Editing<'_> {
         if let Some(step) = world.step.filter(|_| !is_stepped) {
             let why = format!("{} s: used in scenes with simulation = {{ step = \"file\" }}", Plain(step));
             list("option timestep", At::Nowhere, why);
+        }
+    }
+
+    /// A scene has no states but those of the robot: actuators with an activation give no force in it.
+    fn warn_of_activations(&mut self) {
+        let Some(control) = self.request.scene.map(|scene| &scene.control) else { return };
+        if !matches!(control.drive, Drive::Actuators(_)) {
+            return;
+        }
+        let Reading { world, warnings, .. } = &mut self.reading;
+        let is_left = |name: &str| control.without.iter().any(|(left, _)| left == name);
+        for actuator in world.actuators.iter().filter(|own| own.activation.is_some() && !is_left(&own.name)) {
+            let place = Place { at: actuator.place, subject: &Subject::Document, field: "actuator" };
+            let found = format!("an activation of the actuator {:?}, which gives no force in a scene", actuator.name);
+            let expected = "`articulated simulate FILE --smooth` or `articulated rollout`, which step it, or `without` in [control]";
+            warnings.push(warning(self.request.file, &place, Code::LostDynamics, found, expected));
         }
     }
 

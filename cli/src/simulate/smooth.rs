@@ -1,0 +1,214 @@
+//! The smooth motion that a robot's file describes: its method, step, actuators and start, without
+//! contacts, limits and dry friction.
+
+use std::time::Instant;
+
+use articulated::simulate::{Balance, Counts, Output, Settings};
+use articulated_core::algorithm::{Function, FunctionError, Workspace, function};
+use articulated_core::model::Model;
+use articulated_core::step::{self, CTRL, rollout};
+use articulated_lab::session::Session;
+use articulated_motion::Ending;
+
+use super::monitor::RunMonitor;
+use super::motion::Motion;
+use super::recording::Recording;
+use super::summary::Method;
+use crate::console::{self, Progress};
+use crate::failure::Failure;
+use crate::file_motion::{STEP, Start, step_of_file};
+
+/// How a file's motion is stepped.
+pub(super) struct Smooth {
+    method: &'static Function<f64>,
+    /// s.
+    step: f64,
+    start: Start,
+}
+
+impl Smooth {
+    /// The file's own motion; notes say where it starts. `settings` get its step.
+    ///
+    /// # Errors
+    /// A keyframe that the file does not have.
+    pub(super) fn of(session: &Session, keyframe: Option<&str>, step: Option<f64>, settings: &mut Settings) -> Result<Self, Failure> {
+        let (model, world) = (&session.model, &session.world);
+        let [plain, actuated] = step_of_file(world.stepping.as_ref());
+        let name = if model.actuators().is_empty() { plain } else { actuated };
+        let method = step::step(name).ok_or_else(|| Failure::usage(format!("--smooth: found no step {name}")))?;
+        let start = Start::of_file(&session.scene.file, world, model, keyframe)?;
+        let step = step.or(world.stepping.as_ref().map(|stepping| stepping.step)).or(world.step).unwrap_or(STEP);
+        console::note(&format!("steps of {step} s by {name}, starts with {}", start.source));
+        settings.step = Some(step);
+        Ok(Self { method, step, start })
+    }
+
+    /// What the report says of it.
+    fn method(&self) -> Method {
+        let order = if self.method.name.contains("rk4") { 4 } else { 1 };
+        Method { name: self.method.name, order, step_s: Some(self.step), rtol: 0.0, atol: 0.0 }
+    }
+
+    /// Steps to the end, in whole steps. A state that is not finite ends the motion.
+    pub(super) fn run(&self, session: &Session, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
+        let model = &session.model;
+        let length = (settings.end - settings.start) / self.step;
+        let count = (length - ROUNDING).ceil().max(1.0).min(settings.max_steps as f64) as usize;
+        let held = if self.method.takes.contains(&CTRL) { self.start.ctrl.clone() } else { vec![0.0; model.nv()] };
+        let mut own = Own { smooth: self, model, ws: Workspace::new(model), torques: vec![0.0; model.nv()] };
+        let mut recording = Recording::of(model);
+        let mut energy = Sums::start(own.energies(&self.start.state)?);
+        own.record(settings.start, &self.start.state, &energy, &mut recording)?;
+        let (mut monitor, mut counts) = (RunMonitor::new(session, settings, progress), Counts::default());
+        let (mut last, mut error) = (settings.start, None);
+        let (mut state, clock) = (self.start.state.clone(), Instant::now());
+        let mut ws = Workspace::new(model);
+        for k in 1..=count {
+            rollout(self.method, (model, &mut ws), &mut state, self.step, [held.as_slice()], |_, _| {}).map_err(of_function)?;
+            let t = settings.start + k as f64 * self.step;
+            (counts.steps, last) = (k as u64, t);
+            if state.q.iter().chain(&state.v).chain(&state.act).any(|x| !x.is_finite()) {
+                error = Some(format!(
+                    "the state at t = {t} s is not finite: the step of {} s is too long, or the motion has no bound",
+                    self.step
+                ));
+                break;
+            }
+            energy.add(own.energies(&state)?, self.step);
+            if k == count || is_recorded(&settings.output, settings.start, t, self.step) {
+                own.record(t, &state, &energy, &mut recording)?;
+            }
+            monitor.look(t, &counts);
+        }
+        counts.evaluations = counts.steps * self.method.contains.len() as u64;
+        (counts.largest_step, counts.smallest_step) = (self.step, self.step);
+        let ending = if error.is_some() { Ending::ByError } else { Ending::AtEnd };
+        Ok(Motion {
+            recording,
+            counts,
+            balance: energy.balance,
+            creep: Vec::new(),
+            slides: Vec::new(),
+            reached: last,
+            ending,
+            wall: clock.elapsed(),
+            ball: None,
+            error,
+            warnings: Vec::new(),
+            of_file: Some(self.method()),
+        })
+    }
+}
+
+/// Part of a step that a motion may end before its end: times are sums of rounded steps.
+const ROUNDING: f64 = 1e-6;
+
+/// Whether the step that ends at t, s, is the first at a time of output or after it.
+fn is_recorded(output: &Output, start: f64, t: f64, step: f64) -> bool {
+    let slack = ROUNDING * step;
+    match output {
+        Output::Steps => true,
+        Output::Ends => false,
+        Output::Every(every) => ((t - start + slack) / every).floor() > ((t - start - step + slack) / every).floor(),
+        Output::At(times) => times.iter().any(|at| *at <= t + slack && *at > t - step + slack),
+    }
+}
+
+/// Evaluations of functions of a state.
+struct Own<'a> {
+    smooth: &'a Smooth,
+    model: &'a Model<f64>,
+    ws: Workspace<f64>,
+    /// Of actuators, N·m or N.
+    torques: Vec<f64>,
+}
+
+/// Energies of a state, J, and their rates, W.
+#[derive(Clone, Copy)]
+struct Energies {
+    kinetic: f64,
+    potential: f64,
+    /// Power of the actuators.
+    power: f64,
+    /// Power of effects that are not conservative.
+    loss: f64,
+}
+
+impl Own<'_> {
+    fn call(&mut self, name: &str, inputs: &[&[f64]], out: &mut [f64]) -> Result<(), Failure> {
+        let row = function::<f64>(name).or_else(|| step::step(name));
+        row.map_or(Ok(()), |row| row.call(self.model, &mut self.ws, inputs, out)).map_err(of_function)
+    }
+
+    fn energies(&mut self, state: &step::State) -> Result<Energies, Failure> {
+        let (q, v) = (state.q.as_slice(), state.v.as_slice());
+        let mut one = |name: &str, inputs: &[&[f64]]| {
+            let mut out = [0.0];
+            self.call(name, inputs, &mut out).map(|()| out[0])
+        };
+        let (kinetic, potential) = (one("kinetic_energy", &[q, v])?, one("potential_energy", &[q])?);
+        let loss = self.lost(q, v);
+        let mut tau = vec![0.0; v.len()];
+        if self.smooth.method.takes.contains(&CTRL) {
+            let ctrl = self.smooth.start.ctrl.clone();
+            self.call("actuator_torques", &[q, v, &state.act, &ctrl], &mut tau)?;
+        }
+        let power = tau.iter().zip(v).map(|(tau, v)| tau * v).sum();
+        self.torques = tau;
+        Ok(Energies { kinetic, potential, power, loss })
+    }
+
+    /// Power of effects; 0 of effects without loss.
+    fn lost(&mut self, q: &[f64], v: &[f64]) -> f64 {
+        let mut out = [0.0];
+        self.call("dissipation", &[q, v], &mut out).map_or(0.0, |()| out[0])
+    }
+
+    /// Adds a record. The torques are those of the last energies.
+    fn record(&mut self, t: f64, state: &step::State, energy: &Sums, to: &mut Recording) -> Result<(), Failure> {
+        let mut momentum = [0.0; 6];
+        // Without mass there is no centre of mass.
+        if self.model.moving_mass() > 0.0 {
+            self.call("centroidal_momentum", &[&state.q, &state.v], &mut momentum)?;
+        }
+        to.t.push(t);
+        to.q.extend(&state.q);
+        to.v.extend(&state.v);
+        to.tau.extend(&self.torques);
+        to.kinetic.push(energy.now.kinetic);
+        to.potential.push(energy.now.potential);
+        to.work.push(energy.work);
+        to.dissipated.push(energy.dissipated);
+        to.from_events.push(0.0);
+        to.momentum.push(momentum);
+        Ok(())
+    }
+}
+
+/// Work since the start, by the trapezoidal rule, and the balance of energy.
+struct Sums {
+    now: Energies,
+    /// T + U at the start, J.
+    before: f64,
+    work: f64,
+    dissipated: f64,
+    balance: Balance,
+}
+
+impl Sums {
+    fn start(now: Energies) -> Self {
+        Self { now, before: now.kinetic + now.potential, work: 0.0, dissipated: 0.0, balance: Balance::default() }
+    }
+
+    fn add(&mut self, next: Energies, step: f64) {
+        self.work += 0.5 * step * (self.now.power + next.power);
+        self.dissipated += 0.5 * step * (self.now.loss + next.loss);
+        self.now = next;
+        let imbalance = next.kinetic + next.potential - self.before - self.work - self.dissipated;
+        self.balance.add(imbalance, [next.kinetic, self.work, self.dissipated, 0.0]);
+    }
+}
+
+fn of_function(error: FunctionError) -> Failure {
+    Failure::tool(&error)
+}
