@@ -81,7 +81,7 @@ fn put_controls(actuators: &Actuators, keyframe: &Keyframe, state: &mut State, c
 pub(crate) fn step_of_file(stepping: Option<&Stepping>) -> [&'static str; 2] {
     let Some(stepping) = stepping else { return ["step_semi_implicit_euler", "actuated_step_semi_implicit_euler"] };
     stepping.functions().unwrap_or_else(|| {
-        let known = ["step_implicit_damping", "actuated_step_implicit_velocity"];
+        let known = ["step_implicit_velocity", "actuated_step_implicit_velocity"];
         console::note(&format!("the file's integrator is {}: steps are those of implicitfast", stepping.integrator));
         known
     })

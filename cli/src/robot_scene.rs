@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use articulated_core::description::Joint;
+use articulated_core::effect::effects;
 use articulated_core::model::GRAVITY;
 use articulated_formats::{Environment, Options, Reading, included, read_file, read_with};
 use articulated_scene::folder_of;
@@ -24,6 +25,11 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     for (effect, has) in SMOOTH {
         if joints.iter().any(has) {
             let _ = writeln!(out, "{effect} = \"file\"");
+        }
+    }
+    for row in effects() {
+        if world.effects.iter().any(|(own, _)| own.effect == row.id) {
+            let _ = writeln!(out, "{} = \"file\"", row.name);
         }
     }
     for (line, what, has) in OTHERS {

@@ -140,7 +140,13 @@ fn world(world: &World) -> String {
         let leaders = list(&own.leaders, |(name, factor)| format!("[{name:?}, {factor:?}]"));
         format!("{{\"joint\": {:?}, \"leaders\": {leaders}, \"offset\": {:?}}}", own.joint, own.offset)
     });
+    let effects = list(&world.effects, |(own, _)| {
+        let turn: Vec<f64> = own.at.rotation.matrix::<f64>().transpose().iter().copied().collect();
+        let (effect, on, xyz, numbers) = (own.effect.name(), &own.on, own.at.xyz, &own.parameters);
+        format!("{{\"effect\": {effect:?}, \"on\": {on:?}, \"xyz\": {xyz:?}, \"turn\": {turn:?}, \"numbers\": {numbers:?}}}")
+    });
     let fields = [
+        ("effects", effects),
         ("gravity", or_null(world.gravity.as_ref())),
         ("step", or_null(world.step.as_ref())),
         ("integrator", or_null(world.integrator.as_ref())),

@@ -193,12 +193,12 @@ fn dynamics_that_are_not_read_are_warnings() {
     let option = |attributes: &str| body("").replace("<worldbody>", &format!("<option {attributes}/><worldbody>"));
     let joint = |attributes: &str| body("").replace("name=\"j\"", attributes);
     let texts = [
-        option("density=\"1000\""),
-        body("gravcomp=\"1\""),
+        option("density=\"1000\" wind=\"1 0 0\""),
+        option("viscosity=\"1\"").replace("size=\"1\"", "size=\"1\" fluidshape=\"ellipsoid\""),
         joint("type=\"free\" springdamper=\"1 1\""),
         joint("stiffness=\"1 2\""),
         joint("stiffness=\"1\" springyield=\"0.1\""),
-        joint("type=\"free\" armature=\"1\""),
+        joint("type=\"free\" frictionloss=\"1\""),
         joint("type=\"free\" stiffness=\"1\""),
     ];
     for text in texts {
@@ -206,6 +206,34 @@ fn dynamics_that_are_not_read_are_warnings() {
         assert_eq!(codes, [Code::LostDynamics], "{text}");
     }
     assert!(accepted(&option("gravity=\"0 0 0\"")).warnings.is_empty());
+}
+
+/// Compensated weight, the medium, and armature of a free joint: effects of the world.
+#[test]
+fn what_acts_on_links_is_kept() {
+    use articulated_core::effect::EffectId::{added_mass, box_drag, gravity_compensation};
+    let reading = accepted(
+        &world(
+            "<body name=\"a\" gravcomp=\"0.5\"><joint name=\"j\" type=\"free\" damping=\"2\" armature=\"3\"/>\
+         <inertial pos=\"0 0 1\" mass=\"6\" diaginertia=\"13 10 5\"/></body>",
+        )
+        .replace("<worldbody>", "<option density=\"2\" viscosity=\"5\"/><worldbody>"),
+    );
+    assert!(reading.warnings.is_empty(), "{:?}", reading.warnings);
+    assert_eq!(reading.description.joints[JointId(0)].dynamics, JointDynamics { damping: Some(2.0), ..JointDynamics::default() });
+    let found: Vec<_> = reading.world.effects.iter().map(|(own, _)| (own.effect, own.at.xyz, own.parameters.clone())).collect();
+    let isotropic = [3.0, 0.0, 0.0, 3.0, 0.0, 3.0];
+    assert_eq!(found[0], (added_mass, [0.0; 3], [&isotropic[..], &isotropic, &[0.0; 9]].concat()));
+    assert_eq!(found[1], (gravity_compensation, [0.0, 0.0, 1.0], vec![3.0]));
+    // The box has the sides s² = 6 (I_j + I_k − I_i)/m: √2, √8, √18.
+    let [x, y, z] = [2.0_f64, 8.0, 18.0].map(f64::sqrt);
+    let diameter = (x + y + z) / 3.0;
+    let about = |own: f64, one: f64, other: f64| 2.0 * own * (one.powi(4) + other.powi(4)) / 64.0;
+    let viscous = [3.0 * std::f64::consts::PI * diameter * 5.0, std::f64::consts::PI * diameter.powi(3) * 5.0];
+    let expected = [y * z, z * x, x * y, about(x, y, z), about(y, z, x), about(z, x, y), viscous[0], viscous[1]];
+    let (effect, at, drag) = &found[2];
+    assert_eq!((*effect, *at, found.len()), (box_drag, [0.0, 0.0, 1.0], 3));
+    assert!(drag.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-13 * b), "{drag:?} {expected:?}");
 }
 
 #[test]

@@ -11,11 +11,14 @@
 from ._compiled import CompiledRobot
 from ._derivative import Derivative
 from ._errors import RobotError, RobotWarning
-from ._robot import Function, Joint, Robot, bundled, bundled_names, functions, load, loads
-from ._rollout import Rollout, RolloutGradient
+from ._robot import Actuator, Function, Joint, Robot, bundled, bundled_names, functions, load, loads
+from ._rollout import ActuatedRollout, ActuatedRolloutGradient, Rollout, RolloutGradient
 from ._scene import Motion, Scene, bundled_scene_names
 
 __all__ = [
+    "ActuatedRollout",
+    "ActuatedRolloutGradient",
+    "Actuator",
     "CompiledRobot",
     "Derivative",
     "Function",
@@ -35,5 +38,6 @@ __all__ = [
     "loads",
 ]
 __version__ = "0.1.0"
-for _class in (RobotError, RobotWarning, Robot, CompiledRobot, Derivative, Joint, Function, Rollout, RolloutGradient, Scene, Motion):
+_RESULTS = Rollout, RolloutGradient, ActuatedRollout, ActuatedRolloutGradient
+for _class in (RobotError, RobotWarning, Robot, CompiledRobot, Derivative, Actuator, Joint, Function, *_RESULTS, Scene, Motion):
     _class.__module__ = __name__

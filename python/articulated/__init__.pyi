@@ -22,6 +22,12 @@ class RobotWarning(UserWarning):
     diagnostic: Optional[dict[str, Any]]
     def __init__(self, message: str = ..., diagnostic: Optional[dict[str, Any]] = ...) -> None: ...
 
+class Actuator(NamedTuple):
+    name: str
+    lower: float
+    upper: float
+    has_activation: bool
+
 class Joint(NamedTuple):
     name: str
     kind: str
@@ -239,6 +245,8 @@ class Robot(_Functions):
     @property
     def joints(self) -> tuple[Joint, ...]: ...
     @property
+    def actuators(self) -> tuple[Actuator, ...]: ...
+    @property
     def frames(self) -> tuple[str, ...]: ...
     @property
     def links(self) -> tuple[str, ...]: ...
@@ -302,6 +310,32 @@ class Robot(_Functions):
         method: str = "semi_implicit_euler",
         threads: Optional[int] = None,
     ) -> RolloutGradient: ...
+    def actuated_rollout(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        ctrl: ArrayLike,
+        h: float,
+        *,
+        act: Optional[ArrayLike] = None,
+        method: str = "implicit_velocity",
+        every: int = 1,
+        threads: Optional[int] = None,
+    ) -> ActuatedRollout: ...
+    def actuated_rollout_gradient(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        ctrl: ArrayLike,
+        h: float,
+        *,
+        act: Optional[ArrayLike] = None,
+        weights_q: Optional[ArrayLike] = None,
+        weights_v: Optional[ArrayLike] = None,
+        weights_act: Optional[ArrayLike] = None,
+        method: str = "implicit_velocity",
+        threads: Optional[int] = None,
+    ) -> ActuatedRolloutGradient: ...
     def wheel(
         self,
         folder: Union[str, PathLike[str]],
@@ -337,6 +371,17 @@ class RolloutGradient(NamedTuple):
     q: NDArray[np.float64]
     v: NDArray[np.float64]
     tau: NDArray[np.float64]
+
+class ActuatedRollout(NamedTuple):
+    q: NDArray[np.float64]
+    v: NDArray[np.float64]
+    act: NDArray[np.float64]
+
+class ActuatedRolloutGradient(NamedTuple):
+    q: NDArray[np.float64]
+    v: NDArray[np.float64]
+    act: NDArray[np.float64]
+    ctrl: NDArray[np.float64]
 
 class CompiledRobot(_Functions):
     robot: Robot

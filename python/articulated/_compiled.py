@@ -52,6 +52,7 @@ def cache():
 def lengths(robot, dims):
     """Dimensions as numbers of this robot."""
     named = {"nq": robot.nq, "nv": robot.nv, "frames": len(robot.frames), "links": len(robot.links)}
+    named |= {"nu": len(robot.actuators), "na": sum(actuator.has_activation for actuator in robot.actuators)}
     return tuple(named.get(dim, dim) for dim in dims)
 
 

@@ -12,6 +12,15 @@ from ._derivative import Derivative
 from ._errors import RobotWarning, as_numbers
 
 
+class Actuator(NamedTuple):
+    """An actuator of the robot's file."""
+
+    name: str
+    lower: float
+    upper: float
+    has_activation: bool
+
+
 class Joint(NamedTuple):
     """A joint that has coordinates of its own."""
 
@@ -192,6 +201,12 @@ class Robot(_native.Robot):
         """The joints that have coordinates of their own, in the order of q and v."""
         return tuple(Joint(name, kind, slice(*q), slice(*v)) for name, kind, q, v in self._joints)
 
+    @property
+    def actuators(self):
+        """The actuators of the robot's file (MJCF), in the order of controls: name, bounds of the control (or
+        infinite ones), and whether it has an activation."""
+        return tuple(Actuator(*actuator) for actuator in self._actuators)
+
     def with_gravity(self, gravity):
         """The same robot under another gravity, m/s² in the world frame."""
         return self._made(self._source._replace(gravity=_vector("gravity", gravity, "three finite numbers, m/s² in the world frame")), self)
@@ -364,7 +379,8 @@ class Robot(_native.Robot):
             v: Velocities, [..., nv].
             tau: Torques, [..., steps, nv], N·m or N, held during each step. Dimensions of a batch broadcast.
             h: The length of a step, s.
-            method: semi_implicit_euler, implicit_damping (MuJoCo's Euler), rk4, or rk4_mujoco.
+            method: semi_implicit_euler, implicit_damping (MuJoCo's Euler), implicit_velocity (its implicitfast), rk4, or
+                rk4_mujoco.
             every: Every so many steps are recorded.
             threads: None or 1 for one thread, 0 for all, or a number.
 
@@ -374,7 +390,7 @@ class Robot(_native.Robot):
         Raises:
             ValueError: Another method, shapes that do not fit, or numbers that are not finite.
         """
-        return _rollout.rollout(self, q, v, tau, h, method, every, threads)
+        return _rollout.rollout(self, q, v, None, tau, h, method, every, threads, False)
 
     def rollout_gradient(self, q, v, tau, h, *, weights_q=None, weights_v=None, method="semi_implicit_euler", threads=None):
         """The gradient of a weighted sum of all states of a rollout, from the last step to the first.
@@ -389,7 +405,54 @@ class Robot(_native.Robot):
         Returns:
             RolloutGradient: by the start q (in the tangent space) and v, [..., nv], and by tau, [..., steps, nv].
         """
-        return _rollout.gradient(self, q, v, tau, h, weights_q, weights_v, method, threads)
+        weights = {"weights_q": weights_q, "weights_v": weights_v}
+        return _rollout.gradient(self, q, v, None, tau, h, weights, method, threads, False)
+
+    def actuated_rollout(self, q, v, ctrl, h, *, act=None, method="implicit_velocity", every=1, threads=None):
+        """Steps states of a robot with actuators (of an MJCF), with the controls of each step, as MuJoCo without contacts.
+
+        >>> robot = articulated.load("model.xml")                              # doctest: +SKIP
+        >>> ends = robot.actuated_rollout(q, v, controls, 0.002, threads=0)    # doctest: +SKIP
+        >>> ends.q[..., -1, :]                                                 # doctest: +SKIP
+
+        Args:
+            q: Configurations, [..., nq].
+            v: Velocities, [..., nv].
+            ctrl: Controls, [..., steps, nu], of ``robot.actuators``, each in its own unit, held during each step.
+                Dimensions of a batch broadcast.
+            h: The length of a step, s.
+            act: Activations of the actuators that have one, [..., na]; None for zeros.
+            method: implicit_velocity (MuJoCo's implicitfast), implicit_damping (its Euler), semi_implicit_euler, rk4,
+                or rk4_mujoco.
+            every: Every so many steps are recorded.
+            threads: None or 1 for one thread, 0 for all, or a number.
+
+        Returns:
+            ActuatedRollout: q, [..., steps // every, nq], v, [..., steps // every, nv], and act,
+            [..., steps // every, na], after the steps.
+
+        Raises:
+            ValueError: Another method, a robot without actuators, shapes that do not fit, or numbers that are not finite.
+        """
+        return _rollout.rollout(self, q, v, act, ctrl, h, method, every, threads, True)
+
+    def actuated_rollout_gradient(
+        self, q, v, ctrl, h, *, act=None, weights_q=None, weights_v=None, weights_act=None, method="implicit_velocity", threads=None
+    ):
+        """The gradient of a weighted sum of all states of an ``actuated_rollout``, from the last step to the first.
+
+        Args:
+            q, v, ctrl, h, act, method, threads: As for ``actuated_rollout``.
+            weights_q: ∂cost/∂q after each step in the tangent space, [..., steps, nv]; None for zeros.
+            weights_v: ∂cost/∂v after each step, [..., steps, nv]; None for zeros.
+            weights_act: ∂cost/∂act after each step, [..., steps, na]; None for zeros.
+
+        Returns:
+            ActuatedRolloutGradient: by the start q (in the tangent space) and v, [..., nv], by act, [..., na], and
+            by ctrl, [..., steps, nu].
+        """
+        weights = {"weights_q": weights_q, "weights_v": weights_v, "weights_act": weights_act}
+        return _rollout.gradient(self, q, v, act, ctrl, h, weights, method, threads, True)
 
     def wheel(self, folder, functions=_wheel.FUNCTIONS, *, name=None, version="0.1.0", flags=(), batch=False):
         """Writes a wheel of this robot: a package of its functions that needs NumPy alone, neither

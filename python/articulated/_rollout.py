@@ -10,29 +10,56 @@ from ._errors import as_numbers
 
 Rollout = collections.namedtuple("Rollout", ["q", "v"])
 RolloutGradient = collections.namedtuple("RolloutGradient", ["q", "v", "tau"])
+ActuatedRollout = collections.namedtuple("ActuatedRollout", ["q", "v", "act"])
+ActuatedRolloutGradient = collections.namedtuple("ActuatedRolloutGradient", ["q", "v", "act", "ctrl"])
 # Derivatives of steps, by robot and method.
 _DERIVATIVES = weakref.WeakKeyDictionary()
 
 
-def arrays(robot, q, v, tau):
-    """q, v and torques with the same dimensions of a batch, and these dimensions."""
-    found = []
-    for name, value, tail in (("q", q, (robot.nq,)), ("v", v, (robot.nv,)), ("tau", tau, (None, robot.nv))):
-        array = np.asarray(as_numbers(name, value), dtype=np.float64)
-        own = array.shape[max(array.ndim - len(tail), 0) :]
-        if len(own) != len(tail) or any(n is not None and n != m for n, m in zip(tail, own)):
-            expected = "(steps, nv)" if name == "tau" else f"({tail[0]},)"
-            raise ValueError(f"{name}: found shape {array.shape}, expected {expected}, or that behind dimensions of a batch")
-        if not np.isfinite(array).all():
-            raise ValueError(f"{name}: found {array[~np.isfinite(array)].flat[0]}, expected finite numbers")
-        found.append((array, array.shape[: array.ndim - len(tail)], own))
-    try:
-        batch = np.broadcast_shapes(*(own for _, own, _ in found))
-    except ValueError:
-        raise ValueError(f"rollout: found dimensions of a batch that do not fit: {[own for _, own, _ in found]}") from None
-    count = math.prod(batch)
-    flat = [np.ascontiguousarray(np.broadcast_to(array, batch + own).reshape((count, *own))) for array, _, own in found]
-    return flat, batch
+class Steps:
+    """A method of steps: with torques, or with controls of actuators."""
+
+    def __init__(self, robot, method, actuated):
+        prefix = "actuated_step_" if actuated else "step_"
+        self.robot, self.actuated = robot, actuated
+        self.name = method if str(method).startswith(prefix) else f"{prefix}{method}"
+        if actuated and not robot._has_actuators:
+            raise ValueError(f"actuated_rollout: {robot.name!r} has no actuators, expected a robot of an MJCF with <actuator>")
+
+    def arrays(self, q, v, act, held):
+        """q, v, activations and what is held in each step with the same dimensions of a batch, and these dimensions."""
+        count = len(self.robot.actuators)
+        states = sum(actuator.has_activation for actuator in self.robot.actuators)
+        held_row = ("ctrl", held, (None, count), "(steps, nu)") if self.actuated else ("tau", held, (None, self.robot.nv), "(steps, nv)")
+        act = np.zeros(states) if act is None else act
+        rows = [("q", q, (self.robot.nq,), None), ("v", v, (self.robot.nv,), None), ("act", act, (states,), None), held_row]
+        found = []
+        for name, value, tail, words in rows:
+            array = np.asarray(as_numbers(name, value), dtype=np.float64)
+            own = array.shape[max(array.ndim - len(tail), 0) :]
+            if len(own) != len(tail) or any(n is not None and n != m for n, m in zip(tail, own)):
+                raise ValueError(f"{name}: found shape {array.shape}, expected {words or f'({tail[0]},)'}, or that behind dimensions of a batch")
+            if not np.isfinite(array).all():
+                raise ValueError(f"{name}: found {array[~np.isfinite(array)].flat[0]}, expected finite numbers")
+            found.append((array, array.shape[: array.ndim - len(tail)], own))
+        try:
+            batch = np.broadcast_shapes(*(own for _, own, _ in found))
+        except ValueError:
+            raise ValueError(f"rollout: found dimensions of a batch that do not fit: {[own for _, own, _ in found]}") from None
+        count = math.prod(batch)
+        return [np.ascontiguousarray(np.broadcast_to(array, batch + own).reshape((count, *own))) for array, _, own in found], batch
+
+    def run(self, flat, h, every, threads):
+        """q, v and activations after every so many steps."""
+        return self.robot._rollout(self.name, *flat, step_length(h), every, threads)
+
+    def pull(self):
+        """The vector–Jacobian product of a step."""
+        known = _DERIVATIVES.setdefault(self.robot, {})
+        if self.name not in known:
+            by = "q v act ctrl" if self.actuated else "q v tau"
+            known[self.name] = self.robot.derivative(f"vjp({self.name}, {by})")
+        return known[self.name]
 
 
 def step_length(h):
@@ -42,35 +69,38 @@ def step_length(h):
     return h
 
 
-def rollout(robot, q, v, tau, h, method, every, threads):
+def rollout(robot, q, v, act, held, h, method, every, threads, actuated):
     if isinstance(every, bool) or not isinstance(every, int) or every < 1:
         raise ValueError(f"every: found {every!r}, expected a number of steps, at least 1")
-    flat, batch = arrays(robot, q, v, tau)
-    ends = robot._rollout(str(method), *flat, step_length(h), every, threads)
-    return Rollout(*(end.reshape(batch + end.shape[1:]) for end in ends))
+    steps = Steps(robot, method, actuated)
+    flat, batch = steps.arrays(q, v, act, held)
+    ends = [end.reshape(batch + end.shape[1:]) for end in steps.run(flat, h, every, threads)]
+    return ActuatedRollout(*ends) if actuated else Rollout(*ends[:2])
 
 
-def gradient(robot, q, v, tau, h, weights_q, weights_v, method, threads):
-    name = method if str(method).startswith("step_") else f"step_{method}"
-    flat, batch = arrays(robot, q, v, tau)
-    q, v, tau = flat
-    count, steps, nv = tau.shape
-    ends = robot._rollout(name, q, v, tau, step_length(h), 1, threads)
+def gradient(robot, q, v, act, held, h, weights, method, threads, actuated):
+    """`weights`: of q, v and activations after each step."""
+    method = Steps(robot, method, actuated)
+    (q, v, act, held), batch = method.arrays(q, v, act, held)
+    count, steps, _ = held.shape
+    ends = method.run((q, v, act, held), h, 1, threads)
     given = []
-    for label, weights in (("weights_q", weights_q), ("weights_v", weights_v)):
-        array = np.zeros(()) if weights is None else np.asarray(as_numbers(label, weights), dtype=np.float64)
+    for (label, own), size in zip(weights.items(), (robot.nv, robot.nv, act.shape[-1])):
+        array = np.zeros(()) if own is None else np.asarray(as_numbers(label, own), dtype=np.float64)
         try:
-            given.append(np.broadcast_to(array, (*batch, steps, nv)).reshape(count, steps, nv))
+            given.append(np.broadcast_to(array, (*batch, steps, size)).reshape(count, steps, size))
         except ValueError:
-            raise ValueError(f"{label}: found shape {array.shape}, expected {(*batch, steps, nv)}") from None
-    known = _DERIVATIVES.setdefault(robot, {})
-    pull = known.get(name)
-    if pull is None:
-        pull = known[name] = robot.derivative(f"vjp({name}, q v tau)")
-    by_tau = np.empty_like(tau)
-    by_q, by_v = np.zeros((count, nv)), np.zeros((count, nv))
+            raise ValueError(f"{label}: found shape {array.shape}, expected {(*batch, steps, size)}") from None
+    pull, by_held = method.pull(), np.empty_like(held)
+    by = [np.zeros((count, own.shape[-1])) for own in given]
     # From the last step to the first; by q in the tangent space at the state before the step.
     for k in reversed(range(steps)):
-        before_q, before_v = (q, v) if k == 0 else (ends[0][:, k - 1], ends[1][:, k - 1])
-        by_q, by_v, by_tau[:, k] = pull(before_q, before_v, tau[:, k], h, by_q + given[0][:, k], by_v + given[1][:, k], threads=threads)
-    return RolloutGradient(by_q.reshape((*batch, nv)), by_v.reshape((*batch, nv)), by_tau.reshape((*batch, steps, nv)))
+        before = (q, v, act) if k == 0 else [end[:, k - 1] for end in ends]
+        after = [own + one[:, k] for own, one in zip(by, given)]
+        if actuated:
+            *by, by_held[:, k] = pull(*before, held[:, k], h, *after, threads=threads)
+        else:
+            *by, by_held[:, k] = pull(*before[:2], held[:, k], h, *after, threads=threads)
+    parts = [*by, by_held]
+    shaped = [own.reshape((*batch, *own.shape[1:])) for own in parts]
+    return ActuatedRolloutGradient(*shaped) if actuated else RolloutGradient(*shaped)

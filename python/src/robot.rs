@@ -12,8 +12,9 @@ use articulated::formats::{Environment, Included, LeaveOut};
 use articulated::spatial::Reference;
 use articulated::{Base, Model};
 use articulated_codegen::{Appended, COptions, Real, Request, Target, generate};
+use articulated_core::actuator::ActuatorLaw;
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
-use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
@@ -392,8 +393,9 @@ impl Robot {
         Derived::of(py, self.request.clone(), text)
     }
 
-    /// The states after every so many steps: q, v and torques of all steps, a row for each state.
-    #[pyo3(signature = (method, q, v, tau, h, every, threads=None))]
+    /// The states after every so many steps: q, v, activations, and torques or controls of all
+    /// steps, a row for each state.
+    #[pyo3(signature = (method, q, v, act, held, h, every, threads=None))]
     #[expect(clippy::too_many_arguments, reason = "those of the method in Python")]
     fn _rollout<'py>(
         &self,
@@ -401,12 +403,13 @@ impl Robot {
         method: &str,
         q: PyReadonlyArray2<'py, f64>,
         v: PyReadonlyArray2<'py, f64>,
-        tau: PyReadonlyArray3<'py, f64>,
+        act: PyReadonlyArray2<'py, f64>,
+        held: PyReadonlyArray3<'py, f64>,
         h: f64,
         every: usize,
         threads: Option<Bound<'py, PyAny>>,
-    ) -> PyResult<(Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>)> {
-        rollout::run(py, &self.model, method, (&q, &v, &tau), h, every, batch::threads(threads.as_ref())?)
+    ) -> PyResult<rollout::Ends<'py>> {
+        rollout::run(py, &self.model, method, ([&q, &v, &act], &held), h, every, batch::threads(threads.as_ref())?)
     }
 
     /// Row `index` of the table at these arguments, one state or many.
@@ -465,6 +468,21 @@ impl Robot {
     #[getter]
     fn links<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, &self.links)
+    }
+
+    /// Name, bounds of the control, and whether it has an activation, of each actuator.
+    #[getter]
+    fn _actuators(&self) -> Vec<(&str, f64, f64, bool)> {
+        let whole = [f64::NEG_INFINITY, f64::INFINITY];
+        let row = |law: &'_ ActuatorLaw| (law.control_range.unwrap_or(whole), law.activation.is_some());
+        let laws = self.model.actuators().laws.iter();
+        laws.map(|law| (law.name.as_str(), row(law))).map(|(name, ([lower, upper], has))| (name, lower, upper, has)).collect()
+    }
+
+    /// Whether there are actuators, or springs and dampers of tendons.
+    #[getter]
+    fn _has_actuators(&self) -> bool {
+        !self.model.actuators().is_empty()
     }
 
     /// Name, kind, range in q and range in v of each joint.

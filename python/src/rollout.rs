@@ -2,7 +2,7 @@
 
 use articulated::Model;
 use articulated_core::algorithm::Workspace;
-use articulated_core::step::{State, rollout, step, steps};
+use articulated_core::step::{CTRL, H, State, beside_the_table, rollout, step};
 use numpy::{PyArray3, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -10,64 +10,79 @@ use rayon::prelude::*;
 
 use crate::batch;
 
-/// States and rates after steps, state by state.
-type Ends<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>);
+/// How names of steps with actuators begin.
+const ACTUATED: &str = "actuated_step_";
 
-/// The states after every so many steps, `[states][records][nq]` and `[…][nv]`. q: `[states][nq]`,
-/// v: `[states][nv]`, tau: `[states][steps][nv]`.
+/// Coordinates, rates and activations after steps, state by state.
+pub(crate) type Ends<'py> = [Bound<'py, PyArray3<f64>>; 3];
+
+/// The states after every so many steps, `[states][records][nq]`, `[…][nv]` and `[…][na]`. q:
+/// `[states][nq]`, v: `[states][nv]`, act: `[states][na]`; held: torques `[states][steps][nv]`, or
+/// controls `[states][steps][nu]` of a step with actuators.
 pub(crate) fn run<'py>(
     py: Python<'py>,
     model: &Model<f64>,
     method: &str,
-    (q, v, tau): (&PyReadonlyArray2<'py, f64>, &PyReadonlyArray2<'py, f64>, &PyReadonlyArray3<'py, f64>),
+    (start, held): ([&PyReadonlyArray2<'py, f64>; 3], &PyReadonlyArray3<'py, f64>),
     h: f64,
     every: usize,
     threads: usize,
 ) -> PyResult<Ends<'py>> {
-    let name = if method.starts_with("step_") { method.to_owned() } else { format!("step_{method}") };
-    let row = step::<f64>(&name).ok_or_else(|| {
-        let all: Vec<&str> = steps::<f64>().iter().filter_map(|row| row.name.strip_prefix("step_")).collect();
-        PyValueError::new_err(format!("method: found {method:?}, expected one of {}", all.join(", ")))
+    let row = step::<f64>(method).filter(|row| row.takes.contains(&H)).ok_or_else(|| {
+        let prefix = if method.starts_with(ACTUATED) { ACTUATED } else { "step_" };
+        let found = method.strip_prefix(prefix).unwrap_or(method);
+        let all: Vec<&str> = beside_the_table::<f64>().filter_map(|row| row.name.strip_prefix(prefix)).collect();
+        PyValueError::new_err(format!("method: found {found:?}, expected one of {}", all.join(", ")))
     })?;
-    let (nq, nv) = (model.nq(), model.nv());
-    let ([states, _], [_, count, _]) = ([q.shape()[0], nq], [states_of(tau), tau.shape()[1], nv]);
-    let fits = q.shape() == [states, nq] && v.shape() == [states, nv] && tau.shape() == [states, count, nv];
-    let wrong = || PyValueError::new_err("found arrays of other shapes, expected q, v and tau of the same states");
+    let is_actuated = row.takes.contains(&CTRL);
+    let shape = model.shape();
+    let width = if is_actuated { shape.controls } else { shape.nv };
+    let sizes = [shape.nq, shape.nv, if is_actuated { shape.activations } else { 0 }];
+    let [states, count, _] = [held.shape()[0], held.shape()[1], held.shape()[2]];
+    let fits = held.shape()[2] == width
+        && start.iter().zip(sizes).take(2 + usize::from(is_actuated)).all(|(own, size)| own.shape() == [states, size]);
+    let wrong = || PyValueError::new_err("found arrays of other shapes, expected those of the same states");
     if !fits || every == 0 {
         return Err(wrong());
     }
-    let [given_q, given_v, given_tau] = [q.as_slice(), v.as_slice(), tau.as_slice()].map(|slice| slice.map_err(|_| wrong()));
-    let (given_q, given_v, given_tau) = (given_q?, given_v?, given_tau?);
+    let mut given: [&[f64]; 3] = [&[]; 3];
+    for (into, own) in given.iter_mut().zip(&start).take(2 + usize::from(is_actuated)) {
+        *into = own.as_slice().map_err(|_| wrong())?;
+    }
+    let held = held.as_slice().map_err(|_| wrong())?;
     let records = count / every;
-    let (mut out_q, mut out_v) = (vec![0.0; states * records * nq], vec![0.0; states * records * nv]);
-    let one = |(state, (out_q, out_v)): (usize, (&mut [f64], &mut [f64]))| {
-        let torques = (0..count).map(|k| &given_tau[(state * count + k) * nv..][..nv]);
-        let (q, v) = (given_q[state * nq..][..nq].to_vec(), given_v[state * nv..][..nv].to_vec());
-        let mut state = State { q, v, act: Vec::new() };
-        let see = |k: usize, State { q, v, .. }: &State| {
+    let mut out = sizes.map(|size| vec![0.0; states * records * size]);
+    let one = |(state, mut rows): (usize, [&mut [f64]; 3])| {
+        let inputs = (0..count).map(|k| &held[(state * count + k) * width..][..width]);
+        let [q, v, act] =
+            [0, 1, 2].map(|part| given[part].get(state * sizes[part]..(state + 1) * sizes[part]).unwrap_or_default().to_vec());
+        let see = |k: usize, now: &State| {
             if (k + 1) % every == 0 {
                 let at = (k + 1) / every - 1;
-                out_q[at * nq..][..nq].copy_from_slice(q);
-                out_v[at * nv..][..nv].copy_from_slice(v);
+                let parts = [&now.q, &now.v, &now.act];
+                rows.iter_mut().zip(parts).zip(sizes).for_each(|((row, part), size)| row[at * size..][..size].copy_from_slice(part));
             }
         };
-        rollout(row, (model, &mut Workspace::new(model)), &mut state, h, torques, see)
+        rollout(row, (model, &mut Workspace::new(model)), &mut State { q, v, act }, h, inputs, see)
     };
     let pool = batch::pool(threads)?;
     let done = py.detach(|| {
-        let chunks = (out_q.chunks_mut((records * nq).max(1)), out_v.chunks_mut((records * nv).max(1)));
-        let mut all: Vec<_> = chunks.0.zip(chunks.1).enumerate().collect();
+        // A part without numbers has no chunks: an empty row for each state.
+        let [q, v, act] = &mut out;
+        let mut rows: [Vec<&mut [f64]>; 3] = [(q, 0), (v, 1), (act, 2)].map(|(all, part)| match records * sizes[part] {
+            0 => (0..states).map(|_| Default::default()).collect(),
+            size => all.chunks_mut(size).collect(),
+        });
+        let [q, v, act] = rows.each_mut().map(|rows| rows.drain(..));
+        let mut all: Vec<_> = q.zip(v).zip(act).map(|((q, v), act)| [q, v, act]).enumerate().collect();
         match pool {
             Some(pool) => pool.install(|| all.into_par_iter().try_for_each(one)),
             None => all.drain(..).try_for_each(one),
         }
     });
     done.map_err(|error| PyValueError::new_err(error.to_string()))?;
-    Ok((array(py, [states, records, nq], &out_q)?, array(py, [states, records, nv], &out_v)?))
-}
-
-fn states_of(tau: &PyReadonlyArray3<'_, f64>) -> usize {
-    tau.shape()[0]
+    let [q, v, act] = [0, 1, 2].map(|part| array(py, [states, records, sizes[part]], &out[part]));
+    Ok([q?, v?, act?])
 }
 
 fn array<'py>(py: Python<'py>, shape: [usize; 3], numbers: &[f64]) -> PyResult<Bound<'py, PyArray3<f64>>> {

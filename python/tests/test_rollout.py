@@ -86,3 +86,59 @@ def test_what_is_wrong_is_told(robot):
             robot.rollout(*arguments, **options)
     with pytest.raises(ValueError, match="weights_q: found shape"):
         robot.rollout_gradient(q, v, tau, 1e-3, weights_q=np.zeros(2))
+
+
+SERVO = b"""<mujoco model="cart"><option timestep="0.004"/><worldbody><body name="cart">
+<joint name="x" type="slide" axis="1 0 0"/><inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/>
+<body name="bob"><joint name="turn" type="hinge" axis="0 1 0"/><inertial pos="0 0 -0.4" mass="0.5" diaginertia="0.02 0.02 0.01"/></body>
+</body></worldbody><actuator><position name="servo" joint="x" kp="40" kv="3" timeconst="0.1" ctrlrange="-1 1"/>
+<motor name="spin" joint="turn"/></actuator></mujoco>"""
+
+
+def test_controls_of_a_file():
+    robot = articulated.loads(SERVO)
+    assert [(one.name, one.upper, one.has_activation) for one in robot.actuators] == [("servo", 1.0, True), ("spin", np.inf, False)]
+    random = np.random.default_rng(3)
+    q, v, act = (random.uniform(-1, 1, (5, n)) for n in (2, 2, 1))
+    ctrl = random.uniform(-0.9, 0.9, (5, 40, 2))
+    ends = robot.actuated_rollout(q, v, ctrl, 0.004, act=act, threads=0)
+    assert ends.q.shape == (5, 40, 2) and ends.act.shape == (5, 40, 1)
+    # The exact filter with a held control, by hand.
+    w = act
+    for k in range(40):
+        w = ctrl[:, k, :1] + (w - ctrl[:, k, :1]) * np.exp(-0.004 / 0.1)
+        assert np.allclose(ends.act[:, k], w, atol=1e-14)
+    # A first step: (M + h D) Δv = h (τ − h(q, v)), D = kv of the servo.
+    tau = np.stack([40 * (act[:, 0] - q[:, 0]) - 3 * v[:, 0], ctrl[:, 0, 1]], axis=-1)
+    matrix = robot.mass_matrix(q) + 0.004 * np.diag([3.0, 0.0])
+    a = np.linalg.solve(matrix, (tau - robot.bias_forces(q, v))[..., None])[..., 0]
+    assert np.allclose(ends.v[:, 0], v + 0.004 * a, atol=1e-13)
+    assert np.array_equal(robot.actuated_rollout(q[1], v[1], ctrl[1], 0.004, act=act[1]).v, ends.v[1])
+    # Gradients by differences.
+    weights = [random.uniform(-1, 1, (5, 40, n)) for n in (2, 2, 1)]
+    labels = {"weights_q": weights[0], "weights_v": weights[1], "weights_act": weights[2]}
+    gradient = robot.actuated_rollout_gradient(q, v, ctrl, 0.004, act=act, **labels)
+    along = [random.uniform(-1, 1, x.shape) for x in gradient]
+
+    def cost(by):
+        found = robot.actuated_rollout(
+            q + by * along[0], v + by * along[1], ctrl + by * along[3], 0.004, act=act + by * along[2]
+        )
+        return sum((one * other).sum() for one, other in zip(found, weights))
+
+    expected = (cost(1e-6) - cost(-1e-6)) / 2e-6
+    found = sum((one * other).sum() for one, other in zip(gradient, along))
+    assert abs(found - expected) < 1e-6 * max(1, abs(expected)), (found, expected)
+
+
+def test_what_is_wrong_with_controls_is_told(robot):
+    with pytest.raises(ValueError, match="has no actuators"):
+        robot.actuated_rollout(robot.neutral, np.zeros(robot.nv), np.zeros((3, 1)), 1e-3)
+    cart = articulated.loads(SERVO)
+    for ctrl, options, text in [
+        (np.zeros((3, 1)), {}, "ctrl: found shape"),
+        (np.zeros((3, 2)), {"act": np.zeros(3)}, "act: found shape"),
+        (np.zeros((3, 2)), {"method": "rk5"}, "method: found \"rk5\", expected one of semi_implicit_euler"),
+    ]:
+        with pytest.raises(ValueError, match=text):
+            cart.actuated_rollout([0, 0], [0, 0], ctrl, 1e-3, **options)

@@ -280,3 +280,50 @@ fn an_actuator_on_a_joint_that_follows_several_drives_each() {
     }
     assert!(expected < -1.5);
 }
+
+const SWIMMER: &str = "<mujoco><option density='100' viscosity='2'/><worldbody><body name='fish' gravcomp='1'>
+  <joint name='f' type='free' damping='0.5'/><geom size='0.1' mass='2'/>
+  <body name='fin' pos='0.2 0 0'><joint name='j'/><geom size='0.05' mass='0.5'/></body></body></worldbody>
+  <actuator><position name='slow' joint='j' kp='3' timeconst='0.2'/></actuator></mujoco>";
+
+/// Effects on links are taken from the file whole, for all links or for those that are named.
+#[test]
+fn effects_of_the_file_on_links_are_taken_where_the_scene_says_so() {
+    use articulated_core::effect::EffectId::{box_drag, damping, gravity_compensation};
+    let built = |text: &str| articulated_scene::Opened::new(scene(text), "m.xml", SWIMMER.into(), Base::Fixed, vec![]).build();
+    let effects = |text: &str| {
+        let mut all: Vec<_> = built(text).unwrap().effects.iter().map(|own| (own.effect, own.on.clone())).collect();
+        all.sort();
+        all
+    };
+    let on = |effect, name: &str| (effect, name.to_owned());
+    assert_eq!(effects(""), []);
+    assert_eq!(effects("effects = { box_drag = \"file\" }"), [on(box_drag, "fin"), on(box_drag, "fish")]);
+    assert_eq!(effects("effects = { box_drag = { fin = \"file\" } }"), [on(box_drag, "fin")]);
+    assert_eq!(effects("effects = { box_drag = { \"*\" = \"file\", fin = \"off\" } }"), [on(box_drag, "fish")]);
+    let both = "effects = { gravity_compensation = \"file\", damping = \"file\" }";
+    assert_eq!(effects(both), [on(damping, "f"), on(gravity_compensation, "fish")]);
+    // The whole weight is carried: what is left is that of the fin.
+    let robot = built(both).unwrap();
+    let carried = robot.effects.iter().find(|own| own.effect == gravity_compensation).unwrap();
+    assert_eq!(carried.parameters, [2.0]);
+    // What no link has, and what a scene does not use
+    let none = built("effects = { gravity_compensation = { fin = \"file\" } }").unwrap_err().to_string();
+    assert!(none.contains("found no gravity_compensation of link \"fin\" in m.xml"), "{none}");
+    let nothing = built("effects = { added_mass = \"file\" }").unwrap();
+    assert!(nothing.resolved.warnings.iter().any(|warning| warning.to_string().contains("no link of m.xml has numbers")));
+    let unused: Vec<String> = built("").unwrap().reading.unused.iter().map(ToString::to_string).collect();
+    assert!(unused.iter().any(|line| line.contains("box_drag: 2 links: used in scenes with effects.box_drag = \"file\"")), "{unused:#?}");
+}
+
+/// A scene has no activations: an actuator with one gives no force, and a warning says so.
+#[test]
+fn an_actuator_with_an_activation_is_a_warning_in_a_scene() {
+    let warnings = |text: &str| {
+        let built = articulated_scene::Opened::new(scene(text), "m.xml", SWIMMER.into(), Base::Fixed, vec![]).build().unwrap();
+        built.reading.warnings.iter().map(ToString::to_string).filter(|line| line.contains("activation")).count()
+    };
+    assert_eq!(warnings("control = { kind = \"actuators\" }"), 1);
+    assert_eq!(warnings("control = { kind = \"actuators\", without = [\"slow\"] }"), 0);
+    assert_eq!(warnings(""), 0);
+}

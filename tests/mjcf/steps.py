@@ -5,8 +5,7 @@
     python3 tests/mjcf/steps.py --file F.xml      one file
 
 Contacts, limits, dry friction and equality constraints are off in MuJoCo, and so are actuators that are not read ("off": how
-many). A file with other actuators has random controls and activations, any other file random forces on its joints. implicitfast
-is compared where no body is free, since MuJoCo solves the rotation of free bodies by themselves.
+many). A file with other actuators has random controls and activations, any other file random forces on its joints.
 
 * "one step": the largest difference after one step from 20 states, over 1 and the largest rate.
 * "steps": after 1000 steps from 5 states, the difference over the largest of four MuJoCo rollouts whose starts differ by one
@@ -60,8 +59,6 @@ def main():
                 print(f"{path.name:40}{str(error).splitlines()[0][:100]}", flush=True)
                 good = False
                 break
-            if row is None:
-                continue
             counts, one, many, most = row
             good &= one <= ONE_STEP and (many is None or many <= most)
             text = "left out" if many is None else f"{many:.2f}"
@@ -80,8 +77,6 @@ def measure(path, integrator):
         model = mujoco.MjModel.from_xml_path(str(path))
     except ValueError as error:
         raise RuntimeError(f"MuJoCo: {error}") from error
-    if integrator == "implicitfast" and (model.jnt_type == mujoco.mjtJoint.mjJNT_FREE).any():
-        return None
     disable = mujoco.mjtDisableBit
     model.opt.disableflags |= disable.mjDSBL_CONTACT | disable.mjDSBL_LIMIT | disable.mjDSBL_FRICTIONLOSS | disable.mjDSBL_EQUALITY
     # Without a reset where a motion has no bound.

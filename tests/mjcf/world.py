@@ -78,6 +78,13 @@ def compare(model, states, robot, differ, count):
     for seed, (q, v, *_) in enumerate(states):
         data.qpos[:], data.qvel[:] = q, v
         forces(own, data, robot, read, by_name, np.random.default_rng(seed), differ)
+    added = {one["on"]: one["numbers"][0] for one in world["effects"] if one["effect"] == "added_mass"}
+    for joint in joints:
+        if joint.kind == 0:
+            body = model.jnt_bodyid[joint.index]
+            found = added.get(name_of(model, "BODY", body) or f"body_{body}", 0.0)
+            differ("armature of a free joint", found, model.dof_armature[joint.v : joint.v + 6], 1.0)
+    count("effects on links", len(world["effects"]))
     equations(model, world, joints, states[0][0], differ, count)
     constraints(model, warned)
     ranges = {joint.name: model.jnt_actfrcrange[joint.index] for joint in joints if model.jnt_actfrclimited[joint.index] and joint.is_scalar}
@@ -256,8 +263,6 @@ def reduce_armature(model, warned):
     """Takes all armature out of the model: that of hinges, slides and balls is compared by itself."""
     for joint in range(model.njnt):
         first = model.jnt_dofadr[joint]
-        if model.jnt_type[joint] == 0 and model.dof_armature[first : first + 6].any():
-            warned.demand("armature of the free joint", name_of(model, "JOINT", joint), "armature of a free joint")
     for tendon in range(model.ntendon):
         if model.tendon_armature[tendon]:
             phrase = SPATIAL if is_spatial(model, tendon) else "armature of a tendon"
@@ -281,14 +286,18 @@ def reduce(model, read, warned):
         model.actuator_forcelimited[one] = 0
     no_spring, no_damper = disabled(model, "SPRING"), disabled(model, "DAMPER")
     has_passive = not (no_spring and no_damper)
-    for body in np.flatnonzero(model.body_gravcomp):
-        if has_passive and model.opt.gravity.any():
-            warned.demand("gravcomp of the body", name_of(model, "BODY", body), "a body whose weight is compensated")
     model.jnt_actgravcomp[:] = 0
-    model.body_gravcomp[:] = 0
     if has_passive and (model.opt.density or model.opt.viscosity):
-        warned.demand("the medium", "", "a medium")
-    model.opt.density = model.opt.viscosity = 0
+        if model.opt.wind.any():
+            warned.demand("the wind", "", "a medium that moves")
+        # What the medium does on ellipsoids is not read: on no body of the model then.
+        ellipsoids = [geom for geom in range(model.ngeom) if model.geom_fluid[geom, 0] > 0]
+        for body in {model.geom_bodyid[geom] for geom in ellipsoids}:
+            if moves(model, body):
+                warned.demand("the ellipsoid in the medium", name_of(model, "BODY", body), "an ellipsoid in the medium")
+        if ellipsoids:
+            model.opt.density = model.opt.viscosity = 0
+    model.opt.wind[:] = 0
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
     for joint in range(model.njnt):
         name, first = name_of(model, "JOINT", joint), model.jnt_dofadr[joint]
@@ -297,8 +306,9 @@ def reduce(model, read, warned):
         if model.jnt_type[joint] == 0:
             if model.jnt_stiffness[joint] and not no_spring:
                 warned.demand("stiffness of the free joint", name, "stiffness of a free joint", "a springdamper of a free joint")
-            if model.dof_damping[dofs].any() and not no_damper:
-                warned.demand("damping of the free joint", name, "damping of a free joint", "a springdamper of a free joint")
+            # Damping of free joints is compared below.
+            if no_damper:
+                model.dof_damping[dofs] = 0
         elif model.jnt_stiffnesspoly[joint].any() and not no_spring:
             warned.demand("stiffness of higher degree of the joint", name, "a stiffness of higher degree")
         elif model.dof_dampingpoly[dofs].any() and not no_damper:
@@ -306,7 +316,7 @@ def reduce(model, read, warned):
         if model.jnt_springyield[joint] > 0 and model.jnt_stiffness[joint] and not no_spring:
             warned.demand("the spring that yields of the joint", name, "a spring that yields")
         # The numbers of balls are compared elsewhere.
-        if size > 1:
+        if size == 3:
             model.jnt_stiffness[joint] = 0
             model.dof_damping[dofs] = 0
     model.dof_dampingpoly[:] = model.jnt_stiffnesspoly[:] = 0
@@ -429,7 +439,36 @@ def forces(model, data, robot, read, by_name, random, differ):
             parts = (own["stiffness"] or 0) * offset, (own["damping"] or 0) * data.qvel[joint.v]
             passive[joint.v] -= sum(parts)
             scale = max(scale, *np.abs(parts))
+    for joint in by_name.values():
+        if joint.kind == 0:
+            damping = robot["joints"][joint.index]["damping"] or 0
+            passive[joint.v : joint.v + 6] -= damping * data.qvel[joint.v : joint.v + 6]
+            scale = max(scale, damping * np.abs(data.qvel[joint.v : joint.v + 6]).max())
+    for one in world["effects"]:
+        own, size = on_link(one, model, data)
+        passive, scale = passive + own, max(scale, size)
     differ("passive force", passive, data.qfrc_passive, scale)
+
+
+def on_link(effect, model, data):
+    """The torques of an effect on a body, and how large they are."""
+    body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, effect["on"])
+    if body < 0:
+        body = int(effect["on"].removeprefix("body_"))
+    turn = data.xmat[body].reshape(3, 3)
+    point, axes = data.xpos[body] + turn @ effect["xyz"], turn @ np.reshape(effect["turn"], (3, 3))
+    along, about = np.zeros((3, model.nv)), np.zeros((3, model.nv))
+    mujoco.mj_jac(model, data, along, about, point, body)
+    numbers = np.array(effect["numbers"])
+    force, moment = np.zeros(3), np.zeros(3)
+    if effect["effect"] == "gravity_compensation":
+        force = -numbers[0] * model.opt.gravity
+    elif effect["effect"] == "box_drag" and (model.opt.density or model.opt.viscosity):
+        v, w = axes.T @ along @ data.qvel, axes.T @ about @ data.qvel
+        force = axes @ -((numbers[:3] * np.abs(v) + numbers[6]) * v)
+        moment = axes @ -((numbers[3:6] * np.abs(w) + numbers[7]) * w)
+    torques = along.T @ force + about.T @ moment
+    return torques, np.abs(torques).max(initial=0.0)
 
 
 def equations(model, world, joints, q, differ, count):

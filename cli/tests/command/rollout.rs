@@ -101,7 +101,7 @@ fn the_motion_of_a_file_is_that_of_its_step_and_starts_at_home() {
     assert!(unknown.status == 1 && unknown.err.contains("expected one of home, rest"), "{}", unknown.err);
     // Torques are of steps with torques.
     let states = File::new("states.json", br#"{"states": [{"q": [0.5], "v": [1], "tau": [4]}]}"#);
-    assert_eq!(rolled(&["--states", states.name()]).json()["method"], "step_implicit_damping");
+    assert_eq!(rolled(&["--states", states.name()]).json()["method"], "step_implicit_velocity");
     let both = rolled(&["--states", states.name(), "--method", "actuated_step_rk4"]);
     assert!(both.status == 1 && both.err.contains("states[0]: found tau, expected ctrl"), "{}", both.err);
 }

@@ -42,6 +42,8 @@ pub(crate) struct Body<'a> {
     pub(crate) geoms: Vec<Geom<'a>>,
     pub(crate) sites: Vec<Site<'a>>,
     pub(crate) inertial: Option<Explicit<'a>>,
+    /// The part of its weight that is compensated (`gravcomp`).
+    pub(crate) compensated: f64,
     /// The part of the tree that it is in.
     pub(crate) part: usize,
 }
@@ -170,15 +172,10 @@ struct Context<'a> {
 }
 
 /// All bodies of a model, with these flags. Elements in `leave_out` are left out.
-pub(crate) fn tree<'a>(
-    documents: &'a Documents,
-    (flags, is_weightless): (Flags, bool),
-    leave_out: &'a BTreeSet<LeaveOut>,
-    log: &mut Diagnostics,
-) -> Tree<'a> {
+pub(crate) fn tree<'a>(documents: &'a Documents, flags: Flags, leave_out: &'a BTreeSet<LeaveOut>, log: &mut Diagnostics) -> Tree<'a> {
     let settings: Vec<Rc<Settings<'a>>> = documents.roots().map(|root| Rc::new(Settings::of(root, log))).collect();
     let fit_corners = settings.first().is_some_and(|main| main.compiler.fit_aabb);
-    let (rules, gate) = (Rules { flags, fit_corners, is_weightless }, Gate::new(leave_out));
+    let (rules, gate) = (Rules { flags, fit_corners }, Gate::new(leave_out));
     let (bodies, parts) = (Vec::new(), Vec::new());
     let mut build = Build { documents, settings, rules, gate, bodies, parts, items: 0, letters: 0, depth: 0 };
     let root = documents.root(0);
@@ -247,6 +244,7 @@ impl<'a> Build<'a> {
             geoms: Vec::new(),
             sites: Vec::new(),
             inertial: None,
+            compensated: 0.0,
             part: context.part,
         });
         self.bodies.len() - 1
@@ -370,13 +368,10 @@ impl<'a> Build<'a> {
             let attribute = element.attribute("mocap");
             element.unused(&subject, attribute, "the body is fixed at its place: nothing moves it", log);
         }
-        let is_compensated = !self.rules.is_weightless && !self.rules.flags.no_passive_force();
-        if is_compensated && values.number("gravcomp", log).is_some_and(|part| part != 0.0) {
-            let expected = "gravity on all bodies: it is not compensated";
-            element.warning((&subject, "gravcomp"), Code::LostDynamics, "a body whose weight is compensated", expected, log);
-        }
+        let compensated = values.number("gravcomp", log).unwrap_or(0.0);
         let name = self.name(element, context, log);
         let body = self.add(name, element, parent, context.frame.then(&pose), context);
+        self.bodies[body].compensated = compensated;
         let context = Context { frame: Pose::default(), class, ..context.clone() };
         self.content(element, body, &context, log);
     }
@@ -636,12 +631,13 @@ fn dynamics(values: &Values<'_>, kind: Kind, flags: Flags, angle: &dyn Fn(f64) -
         let rest = if kind == Kind::Ball { None } else { values.number("springref", log).map(angle) };
         return JointDynamics { damping, friction, armature, stiffness, rest: rest.filter(|_| stiffness.is_some()) };
     }
-    let lost = [("damping", damping), ("frictionloss", friction), ("armature", armature), ("stiffness", stiffness)];
+    let lost = [("frictionloss", friction), ("stiffness", stiffness)];
     for (name, _) in lost.iter().filter(|(_, number)| number.is_some_and(|number| number != 0.0)) {
         let expected = "none: a free joint keeps no such number";
         values.element.warning((&values.subject, name), Code::LostDynamics, format!("{name} of a free joint"), expected, log);
     }
-    JointDynamics::default()
+    // Armature of a free joint is an effect on its body: see `surroundings`.
+    JointDynamics { damping, ..JointDynamics::default() }
 }
 
 /// The pose of a joint in the body's frame, turned or moved back by its reference, so that the

@@ -53,6 +53,8 @@ pub(crate) struct Geom<'a> {
     /// `contype` and `conaffinity`.
     pub(crate) mask: ContactMask,
     pub(crate) color: Option<[f64; 4]>,
+    /// Whether the medium acts on it as on an ellipsoid.
+    pub(crate) is_ellipsoid_in_fluid: bool,
 }
 
 const KINDS: [(&str, Kind); 9] = [
@@ -153,6 +155,7 @@ pub(crate) fn geom<'a>(
         group: values.integer("group", log).unwrap_or(0),
         mask,
         color: values.exactly::<4>("rgba", log),
+        is_ellipsoid_in_fluid: values.word("fluidshape", &[("none", false), ("ellipsoid", true)], log).unwrap_or(false),
     })
 }
 

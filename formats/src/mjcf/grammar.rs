@@ -35,7 +35,7 @@ const PLUGIN: &str = "plugins of MuJoCo are not read";
 const ACTUATOR: &str = "controls are given by the scene";
 const UNREAD_ACTUATOR: &str = "actuators of this kind are not read";
 const HEIGHTS: &str = "contact with height fields is not computed: they give mass alone";
-const FLUID: &str = "forces of the medium are given by the scene";
+const FLUID: &str = "forces of the medium on ellipsoids are given by the scene";
 
 const BODY_TAGS: Names = "body frame replicate attach inertial joint freejoint geom site";
 const BODY_UNUSED_TAGS: &[(Names, &str)] =
@@ -90,9 +90,8 @@ const ROWS: &[Row] = &[
     Row {
         name: "option",
         within: "mujoco",
-        attributes: "gravity timestep integrator actuatorgroupdisable",
+        attributes: "gravity timestep integrator actuatorgroupdisable wind density viscosity",
         unused_attributes: &[
-            ("wind density viscosity", FLUID),
             ("magnetic", "sensors play no part in the dynamics"),
             ("o_margin o_solref o_solimp o_friction", CONTACT),
             (
@@ -213,11 +212,11 @@ const ROWS: &[Row] = &[
         name: "geom",
         within: IN_BODIES,
         attributes: "name class type contype conaffinity group size mass density shellinertia fromto pos quat axisangle xyaxes zaxis euler \
-                     mesh hfield fitscale rgba",
+                     mesh hfield fitscale rgba fluidshape",
         unused_attributes: &[
             ("condim priority friction solmix solref solimp margin gap surfacevel adhesion", CONTACT),
             ("material", APPEARANCE),
-            ("fluidshape fluidcoef", FLUID),
+            ("fluidcoef", FLUID),
             ("user", USER),
         ],
         tags: "",

@@ -22,6 +22,8 @@ pub(crate) struct Lowered {
     pub(crate) description: Description,
     /// Names of joints, in the order of the bodies.
     pub(crate) joints: Vec<String>,
+    /// The name of the link of each body.
+    pub(crate) links: Vec<String>,
     /// For each link, the contact masks of its collision geometry.
     pub(crate) masks: BTreeMap<String, Vec<ContactMask>>,
 }
@@ -49,7 +51,8 @@ pub(crate) fn lower(name: &str, bodies: &[Body<'_>], inertials: &[Option<Mass>],
         lower.content(index, body);
     }
     lower.sites(bodies, log);
-    Lowered { description: lower.description, joints: lower.names, masks: lower.masks }
+    let links = lower.link_of.iter().map(|link| lower.description.links[*link].name.clone()).collect();
+    Lowered { description: lower.description, joints: lower.names, links, masks: lower.masks }
 }
 
 struct Lower {
@@ -148,8 +151,9 @@ impl Lower {
         let name = joint.name.clone().unwrap_or_else(|| self.joints.free(format!("{}_free", link.name)));
         // A free joint with others is an error.
         self.names.extend(body.joints.iter().map(|_| name.clone()));
-        let child = self.add_link(link);
-        self.add_joint(Joint { name, kind: JointKind::Floating, parent: LinkId(0), child, ..Joint::default() });
+        keep_dynamics(joint, &name, log);
+        let (child, dynamics) = (self.add_link(link), joint.dynamics);
+        self.add_joint(Joint { name, kind: JointKind::Floating, parent: LinkId(0), child, dynamics, ..Joint::default() });
     }
 
     /// Hinges, slides and balls, one after the other. The frame of each link in between is at the

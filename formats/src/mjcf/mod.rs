@@ -43,6 +43,7 @@ mod scope;
 mod settings;
 mod simulation;
 mod states;
+mod surroundings;
 mod tendons;
 mod values;
 mod world;
@@ -83,13 +84,12 @@ impl Format for Mjcf {
         let documents = documents::Documents::read(input, diagnostics)?;
         let name = documents.root(0).text("model").filter(|name| !name.trim().is_empty()).unwrap_or("robot");
         let simulation = simulation::Simulation::of(&documents, diagnostics);
-        let rules = (simulation.flags(), simulation.gravity() == Some([0.0; 3]));
-        let mut tree = bodies::tree(&documents, rules, &input.options.leave_out, diagnostics);
+        let mut tree = bodies::tree(&documents, simulation.flags(), &input.options.leave_out, diagnostics);
         let mut meshes = mesh::Meshes::new(input.sources);
         let mut inertials = inertia::of_bodies(&tree.bodies, &mut meshes, diagnostics);
         align::align(&mut tree.bodies, &mut inertials);
         let mut lowered = lower::lower(name, &tree.bodies, &inertials, input.options, diagnostics);
-        let world = world::world(&documents, &tree, &simulation, &mut lowered, diagnostics);
+        let world = world::world(&documents, (&tree, &inertials), &simulation, &mut lowered, diagnostics);
         Some(Document { description: lowered.description, world })
     }
 }

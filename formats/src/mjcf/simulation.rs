@@ -6,6 +6,7 @@ use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
 use super::documents::Documents;
 use super::element::Element;
+use super::surroundings::Medium;
 use super::values::Values;
 use crate::world::Stepping;
 
@@ -43,8 +44,6 @@ pub(crate) struct Rules {
     pub(crate) flags: Flags,
     /// Whether shapes are fitted to the corners of meshes, rather than to their inertia.
     pub(crate) fit_corners: bool,
-    /// Whether gravity is off.
-    pub(crate) is_weightless: bool,
 }
 
 /// The flags that are read, each with the effect if it is disabled; empty: that is reported
@@ -86,6 +85,10 @@ pub(crate) struct Simulation<'a> {
     /// kg/m³ and Pa·s.
     density: Option<f64>,
     viscosity: Option<f64>,
+    /// m/s.
+    wind: Option<[f64; 3]>,
+    /// The medium, if there is one.
+    pub(crate) medium: Option<Medium>,
     /// Groups of actuators without force.
     pub(crate) disabled_groups: BTreeSet<i64>,
     /// Flags as the file has them: whether each is disabled.
@@ -97,18 +100,18 @@ pub(crate) struct Simulation<'a> {
 impl<'a> Simulation<'a> {
     /// For the main document, with the changes by attached models. A medium is a warning.
     pub(crate) fn of(documents: &'a Documents, log: &mut Diagnostics) -> Self {
-        let all = Self::with_attached(0, documents, &mut BTreeSet::new(), log);
+        let mut all = Self::with_attached(0, documents, &mut BTreeSet::new(), log);
         for (flag, why) in FLAGS.iter().filter(|(flag, why)| !why.is_empty() && all.is_off(flag)) {
             if let Some(place) = all.places.get(flag) {
                 place.unused(&Subject::Document, place.attribute(flag), why, log);
             }
         }
-        for (name, number) in [("density", all.density), ("viscosity", all.viscosity)] {
-            let place = all.places.get(name).filter(|_| number.is_some_and(|number| number != 0.0));
-            if let Some(place) = place.filter(|_| !all.flags().no_passive_force()) {
-                let expected = "effects of the scene, as `drag` and `buoyancy`: the forces of the medium are not read";
-                place.warning((&Subject::Document, name), Code::LostDynamics, "a medium", expected, log);
-            }
+        let medium = Medium { density: all.density.unwrap_or(0.0), viscosity: all.viscosity.unwrap_or(0.0) };
+        all.medium = Some(medium).filter(|medium| medium.density > 0.0 || medium.viscosity > 0.0);
+        let is_blown = all.medium.is_some() && !all.flags().no_passive_force() && all.wind.is_some_and(|wind| wind != [0.0; 3]);
+        if let Some(place) = all.places.get("wind").filter(|_| is_blown) {
+            let expected = "a medium at rest: the wind is not read";
+            place.warning((&Subject::Document, "wind"), Code::LostDynamics, "a medium that moves", expected, log);
         }
         all
     }
@@ -162,8 +165,9 @@ impl<'a> Simulation<'a> {
             all.integrator = values.word("integrator", &words, log).map(str::to_owned).or(all.integrator);
             all.density = values.number("density", log).or(all.density);
             all.viscosity = values.number("viscosity", log).or(all.viscosity);
+            all.wind = values.exactly("wind", log).or(all.wind);
             all.disabled_groups.extend(values.list("actuatorgroupdisable", log).unwrap_or_default().iter().map(|group| *group as i64));
-            for name in ["gravity", "timestep", "integrator", "density", "viscosity", "actuatorgroupdisable"] {
+            for name in ["gravity", "timestep", "integrator", "density", "viscosity", "wind", "actuatorgroupdisable"] {
                 if section.attribute(name).is_some() {
                     all.places.insert(name, section);
                 }
@@ -226,6 +230,10 @@ impl<'a> Simulation<'a> {
         if merge.takes("density", texts(self.density), texts(other.density), other) {
             self.take("density", other);
             self.density = other.density;
+        }
+        if merge.takes("wind", vector(self.wind), vector(other.wind), other) {
+            self.take("wind", other);
+            self.wind = other.wind;
         }
         if merge.takes("viscosity", texts(self.viscosity), texts(other.viscosity), other) {
             self.take("viscosity", other);

@@ -9,10 +9,12 @@ use super::element::Element;
 use super::equalities::equalities;
 use super::grammar::subject;
 use super::lower::Lowered;
+use super::mass::Mass;
 use super::reflected::spring_dampers;
 use super::scope::Scope;
 use super::simulation::Simulation;
 use super::states;
+use super::surroundings;
 use super::tendons::tendons;
 use crate::pose::{Pose, rotate};
 use crate::world::{Plane, World};
@@ -20,7 +22,7 @@ use crate::world::{Plane, World};
 /// Reads the rest of a model.
 pub(crate) fn world(
     documents: &Documents,
-    tree: &Tree<'_>,
+    (tree, inertials): (&Tree<'_>, &[Option<Mass>]),
     simulation: &Simulation<'_>,
     lowered: &mut Lowered,
     log: &mut Diagnostics,
@@ -43,6 +45,8 @@ pub(crate) fn world(
     world.joint_forces = bounds.filter_map(|known| Some((known.name.to_owned(), known.joint.force_range?))).collect();
     let tendons = tendons(&mut scope, flags, &mut world.passive, log);
     let (controls, armatures) = actuators(&mut scope, &tendons, simulation, &lowered.description, &mut world, log);
+    let links: Vec<&str> = lowered.links.iter().map(String::as_str).collect();
+    world.effects = surroundings::effects(&scope, (tree, inertials), &links, simulation, log);
     world.contact_masks = std::mem::take(&mut lowered.masks);
     spring_dampers(&scope, flags, &mut lowered.description, &armatures, log);
     equalities(&mut scope, &tendons, flags.no_equality, &mut world, log);

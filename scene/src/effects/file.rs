@@ -7,9 +7,18 @@ use articulated_core::effect::{Effect, EffectId};
 use super::collision;
 use super::resolve::Filled;
 
+/// Effects on links that a file may have, whole, with what has them there.
+const ON_LINKS: [(EffectId, &str); 3] =
+    [(EffectId::gravity_compensation, "gravcomp"), (EffectId::box_drag, "medium"), (EffectId::added_mass, "armature of the free joint")];
+
+/// What has an effect on links in the file.
+pub(super) fn of_link(effect: EffectId) -> Option<&'static str> {
+    ON_LINKS.iter().find(|(id, _)| *id == effect).map(|(_, name)| *name)
+}
+
 /// Whether the format has numbers for this effect.
 pub(crate) fn offers(row: &Effect) -> bool {
-    row.fields.iter().any(|field| tag(row.id, field.name).is_some())
+    of_link(row.id).is_some() || row.fields.iter().any(|field| tag(row.id, field.name).is_some())
 }
 
 /// The word for the robot's file; `file` is a synonym.

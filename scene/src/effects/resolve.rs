@@ -5,7 +5,7 @@ use crate::table::bare;
 use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Subject, Unused};
 use std::collections::HashSet;
 
-use articulated_core::description::{Base, ById, Description, Joint, JointId, JointKind, LinkId, Origin};
+use articulated_core::description::{Base, ById, Description, Joint, JointId, JointKind, Link, LinkId, Origin};
 
 use super::index::{Index, Named};
 use super::still::{moving, still};
@@ -248,6 +248,10 @@ impl<'a> Resolving<'a> {
             ones.extend(asked.iter().filter(|one| !named && one.on == Selector::All && is_meant(one)));
             for one in ones {
                 let Some(says) = &one.says else { continue };
+                if says.from_urdf {
+                    self.of_file(row, link, one, named, log);
+                    continue;
+                }
                 let rest = all.filter(|_| named).and_then(|a| a.says.as_ref());
                 let Some(planes) = plane::of(row, one, says, rest, &self.robot.world.planes, log) else { continue };
                 for (own, mask) in &planes {
@@ -265,12 +269,32 @@ impl<'a> Resolving<'a> {
         }
     }
 
+    /// The effects of the file on a link. A link by its name must have one.
+    fn of_file(&mut self, row: &'static Effect, link: &'a Link, asked: &EffectRequest, named: bool, log: &mut Diagnostics) {
+        let own = self.robot.world.effects.iter().filter(|(own, _)| own.effect == row.id && own.on == link.name);
+        let own: Vec<&Applied> = own.map(|(own, _)| own).collect();
+        if own.is_empty() && named {
+            let found = format!("no {} of link {:?} in {}", row.name, link.name, self.robot.file);
+            log.error((asked.place, &asked.key), Code::NoNumbers, found, "a link with such an effect in the robot's file, or numbers here");
+        }
+        for own in own.into_iter().filter(|own| !row.is_nothing(&own.parameters)) {
+            self.put(row, own.clone(), (asked.place, asked.key.clone()), &vec![file::of_link(row.id); row.fields.len()]);
+        }
+    }
+
     /// Warns if the numbers of all joints are requested from the robot's file, which has them for
     /// no joint, not even a locked one, or has zeros.
     fn warn_of_no_numbers(&mut self, row: &'static Effect, asked: &[&EffectRequest]) {
         let Some((one, says)) = for_all(asked).and_then(|one| Some((one, one.says.as_ref()?))).filter(|(_, says)| says.from_urdf) else {
             return;
         };
+        if row.on == On::Link {
+            if !self.robot.world.effects.iter().any(|(own, _)| own.effect == row.id) {
+                let found = format!("no link of {} has numbers for effects.{}", self.robot.file, row.name);
+                self.warn(one, &Subject::Document, Code::NoNumbers, &found, "numbers in the scene: the effect does nothing");
+            }
+            return;
+        }
         let of = |joint: &Joint| fill((row, fields_on(row, joint.kind)), &[Some(says)], &|tag: &str| file::number(joint, tag)).ok();
         let mut all = self.robot.description.joints.iter().filter_map(|joint| Some((joint, of(joint)?)));
         let has_tag = |filled: &[Filled]| filled.iter().any(|(_, tag)| tag.is_some());

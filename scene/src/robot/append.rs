@@ -10,6 +10,7 @@ use std::collections::HashSet;
 use articulated_core::description::{Base, Coupling, EditError, Editor};
 use articulated_core::diagnostic::{At, Code, Diagnostic, Place, Subject, Unused};
 use articulated_core::diagnostic::{Diagnostics, quote};
+use articulated_core::effect::Applied;
 use articulated_formats::world::{Actuator, Keyframe, Loop, World};
 use articulated_formats::{Options, read_with};
 
@@ -89,6 +90,8 @@ impl Joining<'_> {
         world.joint_forces.extend(self.all_named(other.joint_forces));
         world.couplings.extend(other.couplings.into_iter().map(|(coupling, at)| (self.coupling(coupling), at)));
         world.contact_masks.extend(self.all_named(other.contact_masks));
+        let on_link = |(effect, _): (Applied, At)| (Applied { on: self.named(&effect.on), ..effect }, At::Nowhere);
+        world.effects.extend(other.effects.into_iter().map(on_link));
         for plane in &other.planes {
             let place = Place { at: plane.place, subject: &Subject::Document, field: "plane" };
             let found = format!("the plane {} in a robot that is appended", quote(&plane.name));

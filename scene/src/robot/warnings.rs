@@ -5,13 +5,14 @@ use std::collections::{HashMap, HashSet};
 use articulated_core::Plain;
 use articulated_core::description::{Collision, ContactSphere, JointKind, LinkId, PrincipalMoments};
 use articulated_core::diagnostic::{At, Code, Diagnostic, Place, Subject, Unused};
-use articulated_core::effect::{Applied, EffectId};
+use articulated_core::effect::{Applied, EffectId, effects};
 use articulated_core::model::Model;
 use articulated_formats::{Reading, beyond_any_mass};
 
 use super::build::Editing;
 use crate::control::Drive;
 use crate::effects::{indices, still};
+use crate::scene::Scene;
 
 /// The sun has 274 m/s².
 const MOST_GRAVITY: f64 = 1000.0;
@@ -67,6 +68,15 @@ impl Editing<'_> {
         for (tag, all, what) in [("actuator", &world.actuators, "actuator"), ("tendon", &world.passive, "spring or damper of tendon")] {
             if let Some(first) = all.first().filter(|_| !is_driven) {
                 list(tag, first.place, format!("{}: {control}", count(all.len(), what)));
+            }
+        }
+        for row in effects() {
+            let asked = |scene: &Scene| scene.effects.iter().any(|one| one.effect == row.id);
+            let mut own = world.effects.iter().filter(|(own, _)| own.effect == row.id);
+            let count_of = own.clone().count();
+            if let Some((_, place)) = own.next().filter(|_| !scene.is_some_and(asked)) {
+                let why = format!("{}: used in scenes with effects.{} = \"file\"", count(count_of, "link"), row.name);
+                list(row.name, *place, why);
             }
         }
         if let Some(first) = world.keyframes.first().filter(|_| !is_placed) {

@@ -68,6 +68,7 @@ fn parameters(random: &mut Random, effect: EffectId) -> Vec<f64> {
         EffectId::motor => [some(3), vec![0.8, 0.1]].concat(),
         EffectId::friction => [some(1), vec![0.3]].concat(),
         EffectId::buoyancy => [vec![0.002], vec![900.0]].concat(),
+        EffectId::gravity_compensation => vec![0.4],
         EffectId::added_mass => {
             let (mut angular, mut linear) = (some(6), some(6));
             for matrix in [&mut angular, &mut linear] {

@@ -65,6 +65,7 @@ fn robots() -> Vec<Robot> {
         all_of(EffectId::contact, &links, &[0.05, 800.0, 0.4, 0.6, 0.05, 0.0, 0.0, 1.0, 0.0, 0.03]),
         all_of(EffectId::box_drag, &links, &[1.0, 2.0, 3.0, 0.1, 0.2, 0.3, 0.5, 0.05]),
         all_of(EffectId::buoyancy, &links, &[1e-3, 1000.0]),
+        all_of(EffectId::gravity_compensation, &links, &[0.6]),
     ]
     .concat();
     let on_pitch = |(effect, parameters): (EffectId, &[f64])| all_of(effect, &["pitch"], parameters);

@@ -85,7 +85,8 @@ fn errors_fall_with_the_order_of_the_method() {
         (0..64).for_each(|_| at = stepped("step_rk4", &model, [&at.0, &at.1, &tau], h / 64.0));
         at
     };
-    for (name, order) in [("step_semi_implicit_euler", 1), ("step_implicit_damping", 1), ("step_rk4", 4), ("step_rk4_mujoco", 4)] {
+    for name in ALL {
+        let order = if name.contains("rk4") { 4 } else { 1 };
         let error = |h: f64| apart(&model, &stepped(name, &model, [&q, &v, &tau], h), &reference(h));
         let (coarse, fine) = (error(4e-3), error(2e-3));
         let power = (coarse / fine).log2();
@@ -107,12 +108,65 @@ fn damping_is_implicit() {
         parameters: vec![8.0],
     });
     let model = request.build_robot().unwrap().model;
-    for h in [1e-3, 0.1, 10.0] {
-        let (q, v) = stepped("step_implicit_damping", &model, [&[0.3], &[2.0], &[0.5]], h);
+    for (h, name) in [(1e-3, "step_implicit_damping"), (0.1, "step_implicit_velocity"), (10.0, "step_implicit_damping")] {
+        let (q, v) = stepped(name, &model, [&[0.3], &[2.0], &[0.5]], h);
         let expected = (0.25 * 2.0 + h * 0.5) / (0.25 + h * 8.0);
         assert!((v[0] - expected).abs() < 1e-14 && (q[0] - 0.3 - h * expected).abs() < 1e-13, "{q:?} {v:?} {expected}");
         let explicit = stepped("step_semi_implicit_euler", &model, [&[0.3], &[2.0], &[0.5]], h).1[0];
         assert!((explicit - (2.0 + h * (0.5 - 16.0) / 0.25)).abs() < 1e-11 * explicit.abs());
+    }
+}
+
+/// A ball of mass m in a medium, drag −(c |v| + b) v along each axis and damping d of its free joint:
+/// v₁ − v₀ = −h (c |v₀| + b + d) v₀/(m + h (2 c |v₀| + b + d)), whatever the step.
+#[test]
+fn the_medium_and_the_damping_of_a_free_joint_are_implicit() {
+    let mjcf = "<mujoco><option gravity='0 0 0' density='300' viscosity='40'/><worldbody><body name='ball'>\
+        <joint name='free' type='free' damping='0.7'/><geom size='0.2' mass='3'/></body></worldbody></mujoco>";
+    let mut request = Request::new("ball.xml", mjcf);
+    // The box of a ball's inertia: its sides are r √(12/5).
+    let side = 0.2 * (12.0_f64 / 5.0).sqrt();
+    let (c, b, d) = (0.5 * 300.0 * side * side, 3.0 * std::f64::consts::PI * side * 40.0, 0.7);
+    let world = request.build_robot().unwrap().reading.world;
+    assert_eq!(world.effects.len(), 1);
+    request.options.robot.effects = world.effects.into_iter().map(|(effect, _)| effect).collect();
+    let (on, at) = ("free".to_owned(), Origin::default());
+    request.options.robot.effects.push(Applied { effect: EffectId::damping, on, at, parameters: vec![d] });
+    let model = request.build_robot().unwrap().model;
+    let q = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    for h in [1e-3, 0.3, 20.0] {
+        let v0 = [1.5, -0.5];
+        let (_, v) = stepped("step_implicit_velocity", &model, [&q, &[0.0, 0.0, 0.0, v0[0], v0[1], 0.0], &[0.0; 6]], h);
+        for (k, v0) in v0.into_iter().enumerate() {
+            let expected = v0 - h * (c * f64::abs(v0) + b + d) * v0 / (3.0 + h * (2.0 * c * f64::abs(v0) + b + d));
+            assert!((v[3 + k] - expected).abs() < 1e-14, "{h}: {v:?} {expected}");
+        }
+        // Damping of joints alone
+        let (_, v) = stepped("step_implicit_damping", &model, [&q, &[0.0, 0.0, 0.0, v0[0], v0[1], 0.0], &[0.0; 6]], h);
+        let expected = v0[0] - h * (c * v0[0] + b + d) * v0[0] / (3.0 + h * d);
+        assert!((v[3] - expected).abs() < 1e-13 * expected.abs().max(1.0), "{h}: {v:?} {expected}");
+    }
+}
+
+/// A body that turns alone and without forces: (I + h ∂b/∂ω) Δω = −h ω × I ω, b = ω × I ω.
+#[test]
+fn the_gyroscopic_force_of_a_body_alone_is_implicit() {
+    let urdf = "<robot name='top'><link name='top'><inertial><mass value='2'/>\
+        <inertia ixx='0.3' ixy='0' ixz='0' iyy='0.5' iyz='0' izz='0.7'/></inertial></link></robot>";
+    let model = Case::new("top", read(urdf), Base::Floating).with_gravity([0.0; 3]).model;
+    let (w, i) = ([4.0, -6.0, 9.0], [0.3, 0.5, 0.7]);
+    let q = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    for h in [1e-3, 0.05] {
+        let (_, v) = stepped("step_implicit_velocity", &model, [&q, &[w[0], w[1], w[2], 0.0, 0.0, 0.0], &[0.0; 6]], h);
+        let d = [v[0] - w[0], v[1] - w[1], v[2] - w[2]];
+        for k in 0..3 {
+            let (one, other) = ((k + 1) % 3, (k + 2) % 3);
+            let moment = i[other] - i[one];
+            // b_k = (I_other − I_one) ω_one ω_other, and its slope along Δω.
+            let slope = moment * (d[one] * w[other] + w[one] * d[other]);
+            let rest = i[k] * d[k] + h * slope + h * moment * w[one] * w[other];
+            assert!(rest.abs() < 1e-13, "{h}: {rest:e}");
+        }
     }
 }
 
@@ -136,7 +190,7 @@ fn a_free_body_keeps_its_velocity() {
     }
 }
 
-const ALL: [&str; 4] = ["step_semi_implicit_euler", "step_implicit_damping", "step_rk4", "step_rk4_mujoco"];
+const ALL: [&str; 5] = ["step_semi_implicit_euler", "step_implicit_damping", "step_implicit_velocity", "step_rk4", "step_rk4_mujoco"];
 
 /// Arguments of a step in some states.
 fn given(model: &Model<f64>, count: usize) -> Vec<[Vec<f64>; 4]> {
@@ -158,7 +212,7 @@ fn graphs_and_statements_are_the_library() {
     let generated =
         generate(&request(&["steps", "fixed = step_rk4(h = 0.002)"], Options { batch: vec![Real::F64], ..Options::default() })).unwrap();
     let names: Vec<&str> = generated.ledger.functions.iter().map(|entry| entry.function.as_str()).collect();
-    assert_eq!(names[..4], ALL);
+    assert_eq!(names[..ALL.len()], ALL);
     assert!(generated.ledger.functions.iter().all(|entry| entry.lanes > 1), "limbs are computed side by side");
     let model = &generated.model;
     for (k, name) in names.iter().enumerate() {

@@ -20,4 +20,14 @@ impl FrameForce for Law {
         let against = |x: Vector3<S>, c: &[S], b: S| Vector3::from_fn(|i, _| -((c[i] * x[i].abs() + b) * x[i]));
         Wrench { moment: against(at.twist.angular, &p[3..6], p[7]), force: against(at.twist.linear, &p[..3], p[6]) }
     }
+
+    // 2 C_i |ω_i| + B;  2 c_i |v_i| + b
+    fn damping<S: Scalar>(p: &[S], at: &Station<S>) -> Option<[S; 6]> {
+        let two = S::from_f64(2.0);
+        let slope = |c: S, x: S, b: S| two * c * x.abs() + b;
+        Some(core::array::from_fn(|k| match k {
+            0..3 => slope(p[3 + k], at.twist.angular[k], p[7]),
+            _ => slope(p[k - 3], at.twist.linear[k - 3], p[6]),
+        }))
+    }
 }

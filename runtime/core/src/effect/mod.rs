@@ -16,6 +16,7 @@ mod contact;
 mod damping;
 mod drag;
 mod friction;
+mod gravity_compensation;
 mod limit;
 mod motor;
 mod places;
@@ -316,6 +317,12 @@ trait FrameForce {
     fn energy<S: Scalar>(_p: &[S], _at: &Station<S>) -> S {
         S::zero()
     }
+
+    /// −∂m_i/∂ω_i and −∂f_i/∂v_i along the axes, of a law whose slopes in the twist are diagonal:
+    /// implicit steps have them.
+    fn damping<S: Scalar>(_p: &[S], _at: &Station<S>) -> Option<[S; 6]> {
+        None
+    }
 }
 
 /// How an effect enters the equations. Laws come with their duals, for derivatives.
@@ -338,6 +345,7 @@ pub(crate) enum Law<S: 'static> {
         slope: AtStation<Dual<S>, Wrench<Dual<S>>>,
         energy: AtStation<S, S>,
         rise: AtStation<Dual<S>, Dual<S>>,
+        damping: AtStation<S, Option<[S; 6]>>,
     },
     /// Inertia in a frame, of something that gravity does not act on.
     Added(fn(&[S]) -> ArticulatedInertia<S>),
@@ -389,7 +397,13 @@ macro_rules! law {
         Law::Drive { torque: $file::torque, slope: $file::torque }
     };
     (Wrench $file:ident) => {
-        Law::Wrench { wrench: $file::Law::wrench, slope: $file::Law::wrench, energy: $file::Law::energy, rise: $file::Law::energy }
+        Law::Wrench {
+            wrench: $file::Law::wrench,
+            slope: $file::Law::wrench,
+            energy: $file::Law::energy,
+            rise: $file::Law::energy,
+            damping: $file::Law::damping,
+        }
     };
     (Added $file:ident) => {
         Law::Added($file::inertia)
@@ -448,6 +462,7 @@ effects! {
     Wrench drag false "−c |v| v at a point" "Newton 1687; Batchelor 1967, §5.11";
     Wrench box_drag false "for each axis −c_i |v_i| v_i − b v_i and −C_i |ω_i| ω_i − B ω_i" "Batchelor 1967, §5.11, §4.9";
     Wrench buoyancy true "−ρ V g at the centre of the displaced volume" "Archimedes; Fossen 2011, §4.1";
+    Wrench gravity_compensation true "−m g at a centre of mass: the weight of a mass m is carried" "MuJoCo documentation, gravcomp";
     Added added_mass true "[m; f] += G V̇ + V ×* G V: fluid that is at rest without the link, moved along" "Fossen 2011, §6.3; Lamb 1932, §124";
     Wrench contact false "a sphere on the plane nᵀx = h: k x max(0, 1 + c ẋ + T ẋ/√(x² + T²ẋ²)) along n, and −μ F v_t/√(v_t² + s²)"
         "Hunt & Crossley, J. Appl. Mech. 42, 1975; with T it rests as Kelvin and Voigt's spring and damper";

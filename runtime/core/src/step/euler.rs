@@ -12,14 +12,14 @@ use alloc::vec::Vec;
 
 use super::{End, Start, free};
 use crate::Scalar;
-use crate::algorithm::ltdl::path_to_root;
 use crate::algorithm::{Workspace, effects};
 
 /// v₁ = v₀ + h a(q₀, v₀), q₁ = q₀ ⊕ h v₁.
 pub(super) fn semi_implicit<S: Scalar>(start: &Start<'_, S>, ws: &mut Workspace<S>, end: &mut End<'_, S>) {
     let mut a = vec![S::zero(); start.model.nv];
     start.acceleration(ws, (start.q, start.v, start.act), &mut a);
-    advance(start, &mut a, end);
+    free::of_origins(start.model, start.v, &mut a);
+    advance(start, &a, end);
 }
 
 /// The same with (M + h D) a = τ − h(q₀, v₀), D = −∂f/∂v of the forces f of effects on joints: the
@@ -30,39 +30,20 @@ pub(super) fn implicit_damping<S: Scalar>(start: &Start<'_, S>, ws: &mut Workspa
     ws.diagonal = Vec::new();
 }
 
-/// The same with forces of actuators and tendons: D has the entries that M has too. Those between
-/// branches are left out, as in MuJoCo.
-pub(super) fn implicit_velocity<S: Scalar>(start: &Start<'_, S>, ws: &mut Workspace<S>, end: &mut End<'_, S>) {
-    let mut diagonal = of_joints(start);
-    let inputs = start.inputs(start.act);
-    let mut coupled: Vec<(usize, usize, S)> = Vec::new();
-    start.model.actuators.damping(&inputs, start.q, start.v, |i, j, slope| {
-        let own = start.h * slope;
-        if i == j {
-            put(&mut diagonal[i], own);
-        } else if path_to_root(&ws.parent_dof, i).any(|k| k == j) {
-            coupled.push((i, j, own));
-        }
-    });
-    (ws.diagonal, ws.coupled) = (diagonal, coupled);
-    semi_implicit(start, ws, end);
-    (ws.diagonal, ws.coupled) = (Vec::new(), Vec::new());
-}
-
 /// The diagonal of h D of effects on joints.
-fn of_joints<S: Scalar>(start: &Start<'_, S>) -> Vec<Option<S>> {
+pub(super) fn of_joints<S: Scalar>(start: &Start<'_, S>) -> Vec<Option<S>> {
     let mut diagonal: Vec<Option<S>> = vec![None; start.model.nv];
     effects::damping(start.model, start.q, start.v, |at, slope| put(&mut diagonal[at], start.h * slope));
     diagonal
 }
 
-fn put<S: Scalar>(entry: &mut Option<S>, own: S) {
+pub(super) fn put<S: Scalar>(entry: &mut Option<S>, own: S) {
     *entry = Some(entry.map_or(own, |sum| sum + own));
 }
 
-fn advance<S: Scalar>(start: &Start<'_, S>, a: &mut [S], end: &mut End<'_, S>) {
+/// The end of a step with these accelerations, of the origins of floating joints v̇ + ω × v.
+pub(super) fn advance<S: Scalar>(start: &Start<'_, S>, a: &[S], end: &mut End<'_, S>) {
     let Start { model, q, v, h, .. } = *start;
-    free::of_origins(model, v, a);
     // Sums before turns: v₀ + h (v̇ + ω × v) in axes of the start.
     end.v.iter_mut().zip(v).zip(a).for_each(|((next, v), a)| *next = *v + h * *a);
     let rates = free::to_parent(model, q, end.v);

@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 
 use crate::Scalar;
+use crate::algorithm::Workspace;
 use crate::algorithm::manifold::{Space, placement, put, put_quaternion, quaternion, range, six, three};
 use crate::model::Model;
 use crate::spatial::screw::{Quaternion, right_jacobian_inverse};
@@ -55,6 +56,27 @@ pub(super) fn of_origins<S: Scalar>(model: &Model<S>, v: &[S], a: &mut [S]) {
         let (twist, at) = (six(&v[range(joint.v)]), joint.v.0 + 3);
         let classical = three(&a[at..]) + twist.angular.cross(&twist.linear);
         put(&mut a[at..], &classical);
+    }
+}
+
+/// τ −= h D (ω × v): h D acts on accelerations of origins of floating joints, not on rates v̇ of
+/// their body twists.
+pub(super) fn act_on_origins<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, v: &[S], tau: &mut [S]) {
+    for joint in model.joints.iter().filter(|joint| matches!(Space::of(joint.kind), Space::Placements)) {
+        let (twist, first) = (six(&v[range(joint.v)]), joint.v.0 + 3);
+        let turning = twist.angular.cross(&twist.linear);
+        let is_own = |i: usize| (first..first + 3).contains(&i);
+        for i in (first..first + 3).filter(|i| ws.diagonal.get(*i).is_some_and(Option::is_some)) {
+            tau[i] -= ws.diagonal[i].unwrap_or(S::zero()) * turning[i - first];
+        }
+        for &(i, j, own) in &ws.coupled {
+            if is_own(j) {
+                tau[i] -= own * turning[j - first];
+            }
+            if is_own(i) {
+                tau[j] -= own * turning[i - first];
+            }
+        }
     }
 }
 

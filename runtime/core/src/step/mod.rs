@@ -9,6 +9,7 @@
 
 mod euler;
 mod free;
+mod implicit_velocity;
 mod rk4;
 mod rollout;
 
@@ -73,16 +74,18 @@ impl<S: Scalar> Start<'_, S> {
         }
     }
 
-    /// Accelerations in a state.
+    /// Accelerations in a state: (M + h D) a = τ − h(q, v), with h D as the workspace has it.
     fn acceleration(&self, ws: &mut Workspace<S>, (q, v, act): (&[S], &[S], &[S]), out: &mut [S]) {
-        match self.drive {
-            Drive::Torques(tau) => (self.accelerate)(self.model, ws, q, v, tau, &[], out),
+        let mut tau = match self.drive {
+            Drive::Torques(tau) => tau.to_vec(),
             Drive::Controls(_) => {
                 let mut tau = vec![S::zero(); self.model.nv];
                 self.model.actuators.add_torques(&self.inputs(act), q, v, &mut tau);
-                (self.accelerate)(self.model, ws, q, v, &tau, &[], out);
+                tau
             }
-        }
+        };
+        free::act_on_origins(self.model, ws, v, &mut tau);
+        (self.accelerate)(self.model, ws, q, v, &tau, &[], out);
     }
 
     /// The activations at the end of the step, at these rates.
@@ -130,8 +133,8 @@ fn run<S: Scalar>(
 }
 
 macro_rules! steps {
-    ($list:ident, $group:ident, $takes:ident, $gives:ident, $untied:path, [$($first:ident)?];
-     $($name:ident: $method:path, [$($contains:ident),*], $summary:literal, $source:literal;)*) => {
+    ($list:ident, $group:ident, $takes:ident, $gives:ident, [$($first:ident)?];
+     $($name:ident: $method:path, $applies:path, [$($contains:ident),*], $summary:literal, $source:literal;)*) => {
         #[allow(non_upper_case_globals)]
         impl<S: Scalar> Steps<S> {
             $(const $name: Function<S> = Function {
@@ -151,7 +154,7 @@ macro_rules! steps {
                 ways: &[
                     Variant {
                         name: "ABA",
-                        applies: $untied,
+                        applies: $applies,
                         least: nothing,
                         run: &|model, ws, inputs, out| run($method, articulated_body_with_wrenches, (model, ws), inputs, out),
                     },
@@ -172,47 +175,50 @@ macro_rules! steps {
 
 struct Steps<S>(PhantomData<S>);
 
-steps! { ROWS, Steps, TAKES, GIVES, untied, [];
-    step_semi_implicit_euler: euler::semi_implicit, [forward_dynamics_with_wrenches],
+steps! { ROWS, Steps, TAKES, GIVES, [];
+    step_semi_implicit_euler: euler::semi_implicit, untied, [forward_dynamics_with_wrenches],
         "v + h a, then q with the new velocity; error of order 1",
         "Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, (I.1.9)";
-    step_implicit_damping: euler::implicit_damping, [forward_dynamics_with_wrenches],
+    step_implicit_damping: euler::implicit_damping, untied, [forward_dynamics_with_wrenches],
         "as step_semi_implicit_euler with (M + h D) a = τ − h(q, v), D the slopes of joint forces in the rates: MuJoCo's Euler",
         "Todorov, Erez & Tassa, IEEE/RSJ IROS 2012; MuJoCo documentation, Numerical integration";
-    step_rk4: rk4::on_the_manifold,
+    step_implicit_velocity: implicit_velocity::implicit_velocity, solved_at_once, [forward_dynamics_with_wrenches],
+        "as step_implicit_damping, D with the slopes of box_drag too, and gyroscopic forces of bodies that float alone: MuJoCo's implicitfast",
+        "MuJoCo documentation, Numerical integration";
+    step_rk4: rk4::on_the_manifold, untied,
         [forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches],
         "the classical method of four stages in step vectors of the manifold; error of order 4",
         "Hairer, Nørsett & Wanner 1993, Table II.1.2; Munthe-Kaas, BIT 38, 1998";
-    step_rk4_mujoco: rk4::in_axes_of_the_parent,
+    step_rk4_mujoco: rk4::in_axes_of_the_parent, untied,
         [forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches],
         "as step_rk4, with velocities of floating bases in axes of their parent: RK4 of MuJoCo 4; error of order 4",
         "MuJoCo documentation, Numerical integration; Munthe-Kaas, BIT 38, 1998";
 }
 
-steps! { OF_ACTUATORS, Actuators, ACTUATED_TAKES, ACTUATED_GIVES, without_coupled_rates, [actuator_torques];
-    actuated_step_semi_implicit_euler: euler::semi_implicit, [forward_dynamics_with_wrenches],
+steps! { OF_ACTUATORS, Actuators, ACTUATED_TAKES, ACTUATED_GIVES, [actuator_torques];
+    actuated_step_semi_implicit_euler: euler::semi_implicit, untied, [forward_dynamics_with_wrenches],
         "step_semi_implicit_euler with the forces of actuators, and of springs and dampers of tendons, at held controls",
         "MuJoCo documentation, Actuation model";
-    actuated_step_implicit_damping: euler::implicit_damping, [forward_dynamics_with_wrenches],
+    actuated_step_implicit_damping: euler::implicit_damping, untied, [forward_dynamics_with_wrenches],
         "step_implicit_damping with actuators at held controls: MuJoCo's Euler",
         "MuJoCo documentation, Actuation model; Numerical integration";
-    actuated_step_implicit_velocity: euler::implicit_velocity, [forward_dynamics_with_wrenches],
+    actuated_step_implicit_velocity: implicit_velocity::implicit_velocity, solved_at_once, [forward_dynamics_with_wrenches],
         "as actuated_step_implicit_damping, D with the slopes of actuators and tendons too: MuJoCo's implicitfast",
         "MuJoCo documentation, Actuation model; Numerical integration";
-    actuated_step_rk4: rk4::on_the_manifold,
+    actuated_step_rk4: rk4::on_the_manifold, untied,
         [forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches],
         "step_rk4 with actuators at held controls",
         "MuJoCo documentation, Actuation model; Munthe-Kaas, BIT 38, 1998";
-    actuated_step_rk4_mujoco: rk4::in_axes_of_the_parent,
+    actuated_step_rk4_mujoco: rk4::in_axes_of_the_parent, untied,
         [forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches],
         "step_rk4_mujoco with actuators at held controls: RK4 of MuJoCo 4",
         "MuJoCo documentation, Actuation model; Numerical integration";
 }
 
-/// Whether one branch at a time can be solved: no joint follows another, and no force of an
-/// actuator or a tendon that depends on rates ties branches together.
-fn without_coupled_rates<S: Scalar>(model: &Model<S>) -> bool {
-    untied(model) && !model.actuators.couple_rates()
+/// Whether one branch at a time can be solved: no joint follows another, and D has no entries
+/// between degrees of freedom.
+fn solved_at_once<S: Scalar>(model: &Model<S>) -> bool {
+    untied(model) && !implicit_velocity::has_coupled_rates(model)
 }
 
 #[allow(non_upper_case_globals)]
@@ -268,7 +274,7 @@ pub fn step<S: Scalar>(name: &str) -> Option<&'static Function<S>> {
 pub fn step_of_mujoco(integrator: &str) -> Option<[&'static str; 2]> {
     match integrator {
         "Euler" => Some(["step_implicit_damping", "actuated_step_implicit_damping"]),
-        "implicitfast" => Some(["step_implicit_damping", "actuated_step_implicit_velocity"]),
+        "implicitfast" => Some(["step_implicit_velocity", "actuated_step_implicit_velocity"]),
         "RK4" => Some(["step_rk4_mujoco", "actuated_step_rk4_mujoco"]),
         _ => None,
     }

@@ -162,6 +162,18 @@ fn a_body_as_dense_as_water_floats_and_rights_itself() {
 }
 
 #[test]
+fn a_carried_weight_does_not_fall() {
+    let falls = |mass: f64| moves(&[on(EffectId::gravity_compensation, "ball", &[mass])], 1.0, [0.0; 6]);
+    assert_all_near(&falls(MASS), &[0.0; 6]);
+    assert_all_near(&falls(0.25 * MASS), &[0.0, 0.0, 0.0, 0.0, 0.0, -0.75 * G]);
+    assert_all_near(&falls(1.5 * MASS), &[0.0, 0.0, 0.0, 0.0, 0.0, 0.5 * G]);
+    // T + U is kept: m g z of the body less that of the carried mass.
+    let model = ball().with_effects(&[on(EffectId::gravity_compensation, "ball", &[0.25 * MASS])]).expect("an effect");
+    let energy = |z: f64| call(&model, "potential_energy", &[&[0.0, 0.0, z, 0.0, 0.0, 0.0, 1.0]])[0];
+    assert_near(energy(2.0) - energy(1.0), 0.75 * MASS * G);
+}
+
+#[test]
 fn a_sphere_in_water_falls_as_with_half_the_water_more() {
     let (volume, density) = (0.0011, 1000.0);
     let half = 0.5 * density * volume;

@@ -1,16 +1,18 @@
 //! Effects on frames of bodies.
 
-use super::{LoadCase, any_on_bodies, on_body, station};
+use alloc::vec::Vec;
+
+use super::{LoadCase, any_on_bodies, on_body, places, station, station_in_base};
 use crate::Scalar;
 use crate::algorithm::Workspace;
 use crate::algorithm::common::{Axes, on_the_way, positions};
 use crate::algorithm::wrenches::place_bodies;
-use crate::effect::Law;
+use crate::effect::{EffectId, Law};
 use crate::index::BodyId;
 use crate::joint::with_pose;
 use crate::joint::{JointLaw, Mount};
 use crate::model::Model;
-use crate::spatial::{ArticulatedInertia, Matrix3, Twist, Vector3, Wrench, rotate_back};
+use crate::spatial::{ArticulatedInertia, Matrix3, Twist, Vector3, Wrench, rotate, rotate_back};
 
 /// Twists of all bodies in their own axes, into the common states; poses, origins and angular
 /// velocities are known.
@@ -131,6 +133,43 @@ pub(in crate::algorithm) fn add_inertia<S: Scalar>(model: &Model<S>, ws: &mut Wo
                 let w = inertia.apply(&own);
                 columns(model, ws, i, |l, other| out[l * n + k] += w.power(&other));
             });
+        }
+    }
+}
+
+/// Whether an effect on a body has diagonal slopes in its twist: such a law is [`EffectId::box_drag`].
+pub(crate) fn has_body_damping<S: Scalar>(model: &Model<S>) -> bool {
+    model.bodies.iter().any(|body| body.effects.body.iter().any(|own| own.effect == EffectId::box_drag))
+}
+
+/// Visits D_ij of D = Σ Jᵀ B J, i ≥ j, for the diagonal slopes B = −∂w/∂V of effects in the twists
+/// of their frames.
+pub(crate) fn body_damping<S: Scalar>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    (q, v): (&[S], &[S]),
+    mut visit: impl FnMut(usize, usize, S),
+) {
+    if !has_body_damping(model) {
+        return;
+    }
+    places(model, ws, q, v);
+    for i in model.outward() {
+        for effect in &model.bodies[i].effects.body {
+            let Law::Wrench { damping, .. } = effect.effect.law::<S>() else { continue };
+            let Some(slopes) = damping(&effect.parameters, &station_in_base(model, ws, i, effect)) else { continue };
+            let turn = ws.common[i].rotation;
+            let (axes, offset) = (turn * effect.placement.rotation, rotate(&turn, effect.placement.position));
+            let mut own: Vec<(usize, [S; 6])> = Vec::new();
+            on_the_way(model, ws, i, Vector3::zeros(), |column, d| {
+                let Twist { angular: w, linear: v } = column.axis.at(d).at(offset).turned_back(&axes);
+                own.push((column.at, [w[0], w[1], w[2], v[0], v[1], v[2]]));
+            });
+            for (i, one) in &own {
+                for (j, other) in own.iter().filter(|(j, _)| j <= i) {
+                    visit(*i, *j, (0..6).fold(S::zero(), |sum, k| sum + slopes[k] * one[k] * other[k]));
+                }
+            }
         }
     }
 }
