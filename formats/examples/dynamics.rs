@@ -14,7 +14,7 @@ use std::process::ExitCode;
 
 use articulated_core::actuator::Filter;
 use articulated_core::algorithm::{Workspace, inverse_dynamics, torque_regressor};
-use articulated_core::description::{Base, Description};
+use articulated_core::description::{Base, Description, Origin};
 use articulated_core::model::Model;
 use articulated_formats::world::{Actuator, Keyframe, World};
 use articulated_formats::{Disk, LeaveOut, MOST_BYTES, Options, Reading, read_file, read_with};
@@ -110,6 +110,11 @@ fn by_name(all: &[(String, Vec<f64>)]) -> String {
     list(all, |(name, numbers)| format!("[{name:?}, {numbers:?}]"))
 }
 
+/// The axes of a frame, row by row.
+fn turn(at: &Origin) -> Vec<f64> {
+    at.rotation.matrix::<f64>().transpose().iter().copied().collect()
+}
+
 fn world(world: &World) -> String {
     let actuators = |all: &[Actuator]| {
         list(all, |own| {
@@ -126,8 +131,13 @@ fn world(world: &World) -> String {
                 let (range, early) = (range(own.range), own.is_early);
                 format!("{{\"kind\": {kind:?}, \"time\": {time:?}, \"range\": {range}, \"early\": {early}}}")
             });
+            let site = own.site.as_ref().map_or("null".to_owned(), |own| {
+                let frame = |(link, at): &(String, Origin)| format!("[{link:?}, {:?}, {:?}]", at.xyz, turn(at));
+                let reference = own.reference.as_ref().map_or("null".to_owned(), frame);
+                format!("{{\"at\": {}, \"reference\": {reference}, \"gear\": {:?}}}", frame(&own.at), own.gear)
+            });
             format!(
-                "{{\"name\": {name:?}, \"activation\": {activation}, \"drives\": {drives}, \"gain\": {gain:?}, \"bias\": {bias:?}, \"control_range\": {control}, \"force_range\": {force}}}"
+                "{{\"name\": {name:?}, \"site\": {site}, \"activation\": {activation}, \"drives\": {drives}, \"gain\": {gain:?}, \"bias\": {bias:?}, \"control_range\": {control}, \"force_range\": {force}}}"
             )
         })
     };
@@ -141,8 +151,7 @@ fn world(world: &World) -> String {
         format!("{{\"joint\": {:?}, \"leaders\": {leaders}, \"offset\": {:?}}}", own.joint, own.offset)
     });
     let effects = list(&world.effects, |(own, _)| {
-        let turn: Vec<f64> = own.at.rotation.matrix::<f64>().transpose().iter().copied().collect();
-        let (effect, on, xyz, numbers) = (own.effect.name(), &own.on, own.at.xyz, &own.parameters);
+        let (effect, on, xyz, numbers, turn) = (own.effect.name(), &own.on, own.at.xyz, &own.parameters, turn(&own.at));
         format!("{{\"effect\": {effect:?}, \"on\": {on:?}, \"xyz\": {xyz:?}, \"turn\": {turn:?}, \"numbers\": {numbers:?}}}")
     });
     let fields = [

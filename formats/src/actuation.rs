@@ -1,9 +1,11 @@
 //! The actuators of a file on a model of its robot.
 
-use articulated_core::actuator::{ActuatorLaw, Actuators, Follower, Transmission};
+use articulated_core::actuator::{ActuatorLaw, Actuators, Follower, SiteDrive, SiteFrame, Transmission};
+use articulated_core::description::Origin;
 use articulated_core::model::Model;
+use articulated_core::spatial::{Vector3, Wrench};
 
-use crate::world::{Actuator, World};
+use crate::world::{Actuator, Site, World};
 
 /// An actuator, or a spring or damper of a tendon, on a joint that the model does not have: one
 /// that is locked. It acts on its other joints alone.
@@ -75,10 +77,26 @@ fn law(
     ActuatorLaw {
         name: actuator.name.clone(),
         drives,
+        site: actuator.site.as_ref().and_then(|site| drive(model, site)),
         gain: from(actuator.gain),
         bias: from(actuator.bias),
         control_range: actuator.control_range,
         force_range: actuator.force_range,
         activation: actuator.activation.clone(),
     }
+}
+
+/// A frame of the file on its body. `None`: a model without the link.
+fn drive(model: &Model<f64>, site: &Site) -> Option<SiteDrive> {
+    let frame = |(link, at): &(String, Origin)| {
+        let own = model.frames().iter().find(|frame| frame.name == *link)?;
+        Some(SiteFrame { body: own.body, placement: own.placement.compose(&at.placement()) })
+    };
+    let reference = match &site.reference {
+        Some(reference) => Some(frame(reference)?),
+        None => None,
+    };
+    let [x, y, z, a, b, c] = site.gear;
+    let gear = Wrench { moment: Vector3::new(a, b, c), force: Vector3::new(x, y, z) };
+    Some(SiteDrive { site: frame(&site.at)?, reference, gear })
 }

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use articulated_core::actuator::Activation;
-use articulated_core::description::{Coupling, Description};
+use articulated_core::description::{Coupling, Description, Origin};
 use articulated_core::diagnostic::At;
 use articulated_core::effect::Applied;
 use articulated_core::step::step_of_mujoco;
@@ -115,6 +115,8 @@ pub struct Actuator {
     pub name: String,
     /// The joints that it drives: the name, and a number for each degree of freedom.
     pub drives: Vec<(String, Vec<f64>)>,
+    /// The frame that it pushes, instead of joints.
+    pub site: Option<Site>,
     /// g₀, g₁, g₂: force for each unit of control, of length, and of rate of length.
     pub gain: [f64; 3],
     /// b₀, b₁, b₂: force without control.
@@ -127,6 +129,17 @@ pub struct Actuator {
     pub activation: Option<Activation>,
     /// Place in the file.
     pub place: At,
+}
+
+/// What an actuator pushes at a frame: alone, or against another one.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Site {
+    /// The link, and the frame in the link's frame.
+    pub at: (String, Origin),
+    /// The same of the frame that it moves against, if there is one.
+    pub reference: Option<(String, Origin)>,
+    /// Force, N, and moment, N·m, of a force of one, in axes of the frame, or of the reference.
+    pub gear: [f64; 6],
 }
 
 /// A plane that does not move.

@@ -280,10 +280,10 @@ fn a_mass_that_is_not_known_has_its_reason() {
 fn a_warning_names_what_is_not_read() {
     let rest = "<equality><connect name=\"knee\" body1=\"arm\" body2=\"hub\" anchor=\"0 0 0\"/></equality>
         <tendon><spatial name=\"line\" stiffness=\"1\"><site site=\"a\"/><site site=\"b\"/></spatial></tendon>
-        <actuator><muscle name=\"biceps\" joint=\"one\"/><motor name=\"push\" site=\"a\"/></actuator></mujoco>";
+        <actuator><muscle name=\"biceps\" joint=\"one\"/><motor name=\"push\" cranksite=\"a\" slidersite=\"b\" cranklength=\"1\"/></actuator></mujoco>";
     let text = ARMS.replace("</mujoco>", rest).replace("<body>", "<body name=\"hub\">").replacen("<body pos", "<body name=\"arm\" pos", 1);
     let found = warnings(&accepted(&text));
-    let parts = ["a tendon \"both\"", "tendon with forces \"line\"", "at a point \"knee\"", "<muscle> \"biceps\"", "of a site \"push\""];
+    let parts = ["a tendon \"both\"", "tendon with forces \"line\"", "at a point \"knee\"", "<muscle> \"biceps\"", "of a crank \"push\""];
     for part in parts {
         assert_eq!(found.iter().filter(|warning| warning.contains(part)).count(), 1, "{part}: {found:#?}");
     }

@@ -120,6 +120,25 @@ fn activations_of_first_order_are_read() {
 }
 
 #[test]
+fn an_actuator_may_push_a_site() {
+    let sites = "<site name=\"s\" pos=\"1 2 3\"/></worldbody>";
+    let text = with("", "<actuator><motor site=\"s\" gear=\"1 2 3 4 5 6\"/><motor site=\"s\" refsite=\"own\"/></actuator>")
+        .replace("</worldbody>", sites)
+        .replace("<joint name=\"h\"", "<site name=\"own\" pos=\"0 0 1\"/><joint name=\"h\"");
+    let reading = accepted(&text);
+    let all = &reading.world.actuators;
+    assert!(reading.warnings.is_empty() && all.len() == 2 && all.iter().all(|own| own.drives.is_empty()), "{:?}", reading.warnings);
+    let site = all[0].site.as_ref().expect("a site");
+    assert_eq!(
+        (site.at.0.as_str(), site.at.1.xyz, site.gear, &site.reference),
+        ("world", [1.0, 2.0, 3.0], [1.0, 2.0, 3.0, 4.0, 5.0, 6.0], &None)
+    );
+    let (link, at) = all[1].site.as_ref().and_then(|own| own.reference.as_ref()).expect("a reference");
+    assert_eq!((reading.description.links.iter().any(|own| own.name == *link), at.xyz), (true, [0.0, 0.0, 1.0]));
+    assert_eq!(all[1].site.as_ref().map(|own| own.gear), Some([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]));
+}
+
+#[test]
 fn the_law_comes_from_a_default_of_the_same_kind_or_of_general() {
     let servo = "<position joint=\"h\"/>";
     assert_eq!(law("<position kp=\"5\" kv=\"2\"/>", servo), ([5.0, 0.0, 0.0], [0.0, -5.0, -2.0]));
@@ -298,7 +317,7 @@ fn what_gives_no_force_is_a_warning_with_its_line() {
         "<general joint=\"h\" biastype=\"muscle\"/>",
         "<motor jointinparent=\"b\"/>",
         "<motor joint=\"f\"/>",
-        "<motor site=\"s\"/>",
+        "<motor cranksite=\"s\" slidersite=\"s\" cranklength=\"1\"/>",
         "<motor joint=\"h\" delay=\"0.1\" nsample=\"3\"/>",
         "<motor joint=\"h\" group=\"3\"/>",
     ];

@@ -144,9 +144,9 @@ impl<'a> RobotInWorld<'a> {
             let expected = format!("joints that move, or `without = [{}]`, which leaves it out", quote(&actuator));
             log.error(place, Code::Robot, found, expected);
         }
-        // A motion has no activations: see `warnings`.
-        for law in actuators.laws.iter_mut().filter(|law| law.activation.is_some()) {
-            (law.gain, law.bias, law.activation) = ([0.0; 3], [0.0; 3], None);
+        // A motion has no activations, and torques of joints alone: see `warnings`.
+        for law in actuators.laws.iter_mut().filter(|law| law.activation.is_some() || law.site.is_some()) {
+            (law.gain, law.bias, law.activation, law.site) = ([0.0; 3], [0.0; 3], None, None);
         }
         actuators
     }

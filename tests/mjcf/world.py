@@ -74,6 +74,8 @@ def compare(model, states, robot, differ, count):
         return warned.silent
     own = copy.deepcopy(model)
     reduce(own, read, warned)
+    if own.opt.density or own.opt.viscosity:
+        diagonalize(own, robot)
     data = mujoco.MjData(own)
     for seed, (q, v, *_) in enumerate(states):
         data.qpos[:], data.qvel[:] = q, v
@@ -209,6 +211,8 @@ def obstacle(model, one):
         return "state " + mujoco.mjtDyn(model.actuator_dyntype[one]).name[6:].lower()
     if model.actuator_gaintype[one] > 1 or model.actuator_biastype[one] > 1:
         return "gain " + mujoco.mjtGain(model.actuator_gaintype[one]).name[7:].lower()
+    if kind == mujoco.mjtTrn.mjTRN_SITE:
+        return "delay" if model.actuator_delay[one] else is_off(model, one)
     if kind not in ACTING:
         return "acts on " + mujoco.mjtTrn(kind).name[6:].lower()
     if kind == mujoco.mjtTrn.mjTRN_TENDON:
@@ -218,6 +222,10 @@ def obstacle(model, one):
         return "free or ball joint"
     if model.actuator_delay[one]:
         return "delay"
+    return is_off(model, one)
+
+
+def is_off(model, one):
     disabled = model.opt.disableactuator & (1 << int(model.actuator_group[one])) if 0 <= model.actuator_group[one] < 31 else 0
     return "disabled" if disabled or model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_ACTUATION else None
 
@@ -385,9 +393,52 @@ def length(drives, by_name, data):
     return total, row @ data.qvel, row
 
 
-def law(one, u, data, by_name):
+def place(model, data, frame):
+    """The number of the body of a frame, and its position and axes in the world."""
+    link, xyz, turn = frame
+    body = max(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, link), 0) if not link.startswith("body_") else int(link[5:])
+    axes = data.xmat[body].reshape(3, 3)
+    return body, data.xpos[body] + axes @ xyz, axes @ np.reshape(turn, (3, 3))
+
+
+def length_of_site(site, model, data):
+    """Length, rate and the row of the Jacobian."""
+
+    def jacobian(body, point):
+        along, about = np.zeros((3, model.nv)), np.zeros((3, model.nv))
+        mujoco.mj_jac(model, data, along, about, point, body)
+        return np.concatenate([along, about])
+
+    gear = np.array(site["gear"])
+    body, point, axes = place(model, data, site["at"])
+    own = jacobian(body, point)
+    if site["reference"] is None:
+        row = np.concatenate([axes @ gear[:3], axes @ gear[3:]]) @ own
+        return 0.0, row @ data.qvel, row
+    base, origin, against = place(model, data, site["reference"])
+    other = jacobian(base, origin)
+    # Joints that carry both do not count.
+    both = on_the_way(model, body) & on_the_way(model, base)
+    own[:, list(both)] = other[:, list(both)] = 0
+    quaternion, turn = np.zeros(4), np.zeros(3)
+    mujoco.mju_mat2Quat(quaternion, (against.T @ axes).flatten())
+    mujoco.mju_quat2Vel(turn, quaternion, 1)
+    row = np.concatenate([against @ gear[:3], against @ gear[3:]]) @ (own - other)
+    return gear[:3] @ against.T @ (point - origin) + gear[3:] @ turn, row @ data.qvel, row
+
+
+def on_the_way(model, body):
+    found = set()
+    while body:
+        first = model.body_dofadr[body]
+        found |= set(range(first, first + model.body_dofnum[body])) if first >= 0 else set()
+        body = model.body_parentid[body]
+    return found
+
+
+def law(one, u, model, data, by_name):
     """Force and torques, and how large the terms of the force are."""
-    at, rate, row = length(one["drives"], by_name, data)
+    at, rate, row = length_of_site(one["site"], model, data) if one["site"] else length(one["drives"], by_name, data)
     if one["control_range"] and not one["activation"]:
         u = np.clip(u, *one["control_range"])
     parts = np.array([1, at, rate])
@@ -403,6 +454,8 @@ def law(one, u, data, by_name):
 
 def forces(model, data, robot, read, by_name, random, differ):
     """Forces of actuators with random controls, some beyond their bounds, and of springs and dampers."""
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
     world = robot["world"]
     expected, scale = np.zeros(model.nv), 0.0
     laws = []
@@ -412,12 +465,12 @@ def forces(model, data, robot, read, by_name, random, differ):
         middle, width = ((lower + upper) / 2, upper - lower) if model.actuator_ctrllimited[address] else (0, 2)
         data.ctrl[address] = middle + width * random.uniform(-1, 1)
         # The gain multiplies the activation, if there is one.
-        own, place = (data.act, model.actuator_actadr[number]) if one["activation"] else (data.ctrl, address)
-        own[place] = data.ctrl[address]
-        found = law(one, own[place], data, by_name)
+        own, at = (data.act, model.actuator_actadr[number]) if one["activation"] else (data.ctrl, address)
+        own[at] = data.ctrl[address]
+        found = law(one, own[at], model, data, by_name)
         if found[3]:
-            own[place] = 0.0
-            found = law(one, 0.0, data, by_name)
+            own[at] = 0.0
+            found = law(one, 0.0, model, data, by_name)
         laws.append(found)
     mujoco.mj_forward(model, data)
     for (force, torque, size, _), number in zip(laws, read):
@@ -430,7 +483,7 @@ def forces(model, data, robot, read, by_name, random, differ):
     differ("actuator torque", expected, data.qfrc_actuator, max(scale, 1e-9))
     passive, scale = np.zeros(model.nv), 1e-9
     for one in world["passive"]:
-        force, torque, size, _ = law(one, 0.0, data, by_name)
+        force, torque, size, _ = law(one, 0.0, model, data, by_name)
         passive, scale = passive + torque, max(scale, size)
     for joint in by_name.values():
         if joint.is_scalar:
@@ -448,6 +501,27 @@ def forces(model, data, robot, read, by_name, random, differ):
         own, size = on_link(one, model, data)
         passive, scale = passive + own, max(scale, size)
     differ("passive force", passive, data.qfrc_passive, scale)
+
+
+def diagonalize(model, robot):
+    """Turns MuJoCo's axes of inertia to those of the inertia as read: MuJoCo stops at some 1e-6, and the medium's force is along them."""
+    for link in robot["links"]:
+        body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, link["name"])
+        if body <= 0 or model.body_mass[body] == 0:
+            continue
+        for _ in range(2):
+            axes = np.zeros(9)
+            mujoco.mju_quat2Mat(axes, model.body_iquat[body])
+            axes = axes.reshape(3, 3)
+            inertia = axes.T @ np.reshape(link["inertia"], (3, 3)) @ axes
+            turn, most = np.zeros(3), np.abs(np.diag(inertia)).max()
+            for k, i, j in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+                apart = inertia[j, j] - inertia[i, i]
+                # Axes of equal moments are as good turned.
+                if abs(inertia[i, j]) < 1e-4 * most and abs(apart) > 1e-3 * most:
+                    turn[k] = -inertia[i, j] / apart
+            mujoco.mju_quatIntegrate(model.body_iquat[body], turn, 1.0)
+            model.body_inertia[body] = np.diag(inertia)
 
 
 def on_link(effect, model, data):

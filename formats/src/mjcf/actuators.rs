@@ -19,7 +19,7 @@ use super::settings::Settings;
 use super::simulation::Simulation;
 use super::tendons::Tendon;
 use super::values::Values;
-use crate::world::{Actuator, World};
+use crate::world::{Actuator, Site, World};
 
 const KINDS: [&str; 13] = [
     "general",
@@ -465,6 +465,8 @@ fn of_word<T: Copy>(values: &Values<'_>, name: &str, words: &[(&str, T)], base: 
 /// Target of an actuator.
 struct Target {
     drives: Drives,
+    /// The places of a frame, and of the frame that it moves against, among those of the scope.
+    site: Option<(usize, Option<usize>)>,
     /// Of the coordinate or length, if it has one.
     range: Option<[f64; 2]>,
     is_ball: bool,
@@ -476,7 +478,7 @@ pub(crate) fn actuators(
     scope: &mut Scope<'_>,
     tendons: &[Tendon],
     simulation: &Simulation<'_>,
-    description: &Description,
+    (description, links): (&Description, &[String]),
     world: &mut World,
     log: &mut Diagnostics,
 ) -> (Vec<Control>, Vec<(f64, Drives)>) {
@@ -502,11 +504,14 @@ pub(crate) fn actuators(
             let mut general = General::of(element, of_class.or_insert_with(|| General::defaults(class, &part.settings, log)), log);
             let name = scope.full(index, element).unwrap_or_else(|| format!("actuator_{number}"));
             number += 1;
-            let found = references.first().zip(found.first()).map(|((_, field, _), at)| (*field, *at));
-            let target = match found {
+            let target_of = references.first().zip(found.first()).map(|((_, field, _), at)| (*field, *at));
+            let mut target = match target_of {
                 Some((field, at)) => target(field, at, &general, scope, tendons),
                 None => Err("an actuator that acts on nothing"),
             };
+            if let (Ok(Target { site: Some((_, reference)), .. }), true) = (&mut target, element.attribute("refsite").is_some()) {
+                *reference = found.get(1).copied();
+            }
             let obstacle = general.obstacle(simulation).or(target.as_ref().err().map(|why| (*why).to_owned()));
             if let Ok(target) = &target {
                 if simulation.flags().no_damper {
@@ -531,6 +536,7 @@ pub(crate) fn actuators(
                     world.actuators.push(Actuator {
                         name,
                         drives: names.collect(),
+                        site: target.site.map(|site| pushed(site, &general, links, scope)),
                         gain,
                         bias,
                         control_range: control_range.filter(|_| !simulation.flags().no_clamp),
@@ -589,7 +595,7 @@ fn target(field: &str, index: usize, general: &General, scope: &Scope<'_>, tendo
                 Kind::Free => return Err("an actuator of a free joint"),
             };
             let range = (!is_ball && field == "joint").then_some(joint.range);
-            Ok(Target { drives: vec![(index, gears)], range, is_ball })
+            Ok(Target { drives: vec![(index, gears)], range, is_ball, site: None })
         }
         "tendon" => {
             let tendon = &tendons[index];
@@ -597,12 +603,21 @@ fn target(field: &str, index: usize, general: &General, scope: &Scope<'_>, tendo
                 return Err("an actuator of a spatial tendon");
             }
             let drives = tendon.terms.iter().map(|(joint, factor)| (*joint, vec![gear * factor])).collect();
-            Ok(Target { drives, range: Some(tendon.range), is_ball: false })
+            Ok(Target { drives, range: Some(tendon.range), is_ball: false, site: None })
         }
-        "site" => Err("an actuator of a site"),
+        "site" => Ok(Target { drives: Vec::new(), range: None, is_ball: false, site: Some((index, None)) }),
         "cranksite" => Err("an actuator of a crank"),
         _ => Err("an actuator of the contacts of a body"),
     }
+}
+
+/// A frame, by the link of its body, and what pushes it.
+fn pushed((site, reference): (usize, Option<usize>), general: &General, links: &[String], scope: &Scope<'_>) -> Site {
+    let frame = |index: usize| {
+        let (site, body) = scope.sites[index];
+        (links[body].clone(), site.pose.origin())
+    };
+    Site { at: frame(site), reference: reference.map(frame), gear: general.gear }
 }
 
 /// The damping of an actuator acts without its control: −d gear² on its target.
@@ -619,11 +634,12 @@ fn passive(
     if general.armature != 0.0 {
         scope.warn(element, "armature", ("armature of an actuator", "that of its joint: this one is not read"), log);
     }
-    if [second, third] != [0.0; 2] || (damping != 0.0 && target.is_ball) {
+    let is_of_length = !target.is_ball && target.site.is_none();
+    if [second, third] != [0.0; 2] || (damping != 0.0 && !is_of_length) {
         let expected = "one coefficient, of a hinge, a slide or a fixed tendon: else it is not used";
         scope.warn(element, "damping", ("damping of an actuator", expected), log);
     }
-    if damping != 0.0 && !target.is_ball {
+    if damping != 0.0 && is_of_length {
         let names = target.drives.iter().map(|(joint, gear)| (scope.joints[*joint].name.to_owned(), gear.clone()));
         world.passive.push(Actuator {
             name: name.to_owned(),

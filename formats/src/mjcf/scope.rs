@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use articulated_core::diagnostic::{At, Code, Diagnostics, Subject, quote};
 use articulated_core::suggest::nearest;
 
-use super::bodies::{Extent, Joint, Kind, Part, Tree};
+use super::bodies::{Extent, Joint, Kind, Part, Site, Tree};
 use super::element::Element;
 use crate::pose::{IDENTITY, scalar_last};
 
@@ -51,6 +51,8 @@ pub(crate) struct Scope<'a> {
     pub(crate) tree: &'a Tree<'a>,
     /// In the order of MuJoCo's coordinates.
     pub(crate) joints: Vec<Known<'a>>,
+    /// All sites, each with the index of its body.
+    pub(crate) sites: Vec<(&'a Site<'a>, usize)>,
     /// Indices and parts by full names.
     names: BTreeMap<(Sort, String), (usize, usize)>,
     /// Names as the documents have them.
@@ -73,14 +75,15 @@ impl<'a> Scope<'a> {
         let all = tree.bodies.iter().enumerate().flat_map(|(body, own)| own.joints.iter().map(move |joint| (body, joint)));
         let joints: Vec<Known<'_>> = all.zip(names).map(|((body, joint), name)| Known { joint, name, body }).collect();
         let (names, own, reported) = (BTreeMap::new(), BTreeSet::new(), BTreeSet::new());
-        let mut scope = Self { tree, joints: Vec::new(), names, own, is_complete, reported, looked_up: 0, main };
+        let mut scope = Self { tree, joints: Vec::new(), sites: Vec::new(), names, own, is_complete, reported, looked_up: 0, main };
         for (index, Known { joint, .. }) in joints.iter().enumerate() {
             scope.add(Sort::Joint, joint.element, joint.name.as_ref(), (index, joint.part));
         }
         for (index, body) in tree.bodies.iter().enumerate() {
             scope.add(Sort::Body, body.element, body.name.as_ref(), (index, body.part));
             for site in &body.sites {
-                scope.add(Sort::Site, site.element, site.name.as_ref(), (index, site.part));
+                scope.add(Sort::Site, site.element, site.name.as_ref(), (scope.sites.len(), site.part));
+                scope.sites.push((site, index));
             }
         }
         scope.joints = joints;

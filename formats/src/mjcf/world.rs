@@ -44,7 +44,7 @@ pub(crate) fn world(
     let bounds = scope.joints.iter().filter(|known| matches!(known.joint.kind, Kind::Hinge | Kind::Slide));
     world.joint_forces = bounds.filter_map(|known| Some((known.name.to_owned(), known.joint.force_range?))).collect();
     let tendons = tendons(&mut scope, flags, &mut world.passive, log);
-    let (controls, armatures) = actuators(&mut scope, &tendons, simulation, &lowered.description, &mut world, log);
+    let (controls, armatures) = actuators(&mut scope, &tendons, simulation, (&lowered.description, &lowered.links), &mut world, log);
     let links: Vec<&str> = lowered.links.iter().map(String::as_str).collect();
     world.effects = surroundings::effects(&scope, (tree, inertials), &links, simulation, log);
     world.contact_masks = std::mem::take(&mut lowered.masks);

@@ -7,6 +7,7 @@ use articulated_core::description::{Collision, ContactSphere, JointKind, LinkId,
 use articulated_core::diagnostic::{At, Code, Diagnostic, Place, Subject, Unused};
 use articulated_core::effect::{Applied, EffectId, effects};
 use articulated_core::model::Model;
+use articulated_formats::world::Actuator;
 use articulated_formats::{Reading, beyond_any_mass};
 
 use super::build::Editing;
@@ -92,7 +93,8 @@ impl Editing<'_> {
         }
     }
 
-    /// A scene has no states but those of the robot: actuators with an activation give no force in it.
+    /// A scene has no states but those of the robot, and torques of joints: actuators with an
+    /// activation, and those of sites, give no force in it.
     fn warn_of_activations(&mut self) {
         let Some(control) = self.request.scene.map(|scene| &scene.control) else { return };
         if !matches!(control.drive, Drive::Actuators(_)) {
@@ -100,9 +102,11 @@ impl Editing<'_> {
         }
         let Reading { world, warnings, .. } = &mut self.reading;
         let is_left = |name: &str| control.without.iter().any(|(left, _)| left == name);
-        for actuator in world.actuators.iter().filter(|own| own.activation.is_some() && !is_left(&own.name)) {
+        let is_lost = |own: &&Actuator| (own.activation.is_some() || own.site.is_some()) && !is_left(&own.name);
+        for actuator in world.actuators.iter().filter(is_lost) {
             let place = Place { at: actuator.place, subject: &Subject::Document, field: "actuator" };
-            let found = format!("an activation of the actuator {:?}, which gives no force in a scene", actuator.name);
+            let what = if actuator.site.is_some() { "a site" } else { "an activation" };
+            let found = format!("{what} of the actuator {:?}, which gives no force in a scene", actuator.name);
             let expected = "`articulated simulate FILE --smooth` or `articulated rollout`, which step it, or `without` in [control]";
             warnings.push(warning(self.request.file, &place, Code::LostDynamics, found, expected));
         }

@@ -14,11 +14,17 @@ use articulated_tests::random::Random;
 
 /// Every kind of actuator, joints of one and three degrees, and tendons across branches.
 const ACTUATED: &str = include_str!("../../mjcf/models/actuated.xml");
+/// Actuators at frames, alone and against others.
+const DRONE: &str = include_str!("../../mjcf/models/drone.xml");
 /// q, v, act, ctrl, h.
 type Given = [Vec<f64>; 5];
 
 fn request(functions: &[&str], options: Options) -> Request {
-    let mut request = Request::new("actuated.xml", ACTUATED);
+    of_file("actuated.xml", ACTUATED, functions, options)
+}
+
+fn of_file(file: &str, text: &str, functions: &[&str], options: Options) -> Request {
+    let mut request = Request::new(file, text);
     request.options = options;
     request.options.functions = functions.iter().map(|f| (*f).into()).collect();
     request
@@ -184,6 +190,34 @@ fn graphs_and_statements_are_the_library() {
     assert!(!without.source.contains("NU: usize"));
 }
 
+/// The same of frames that are pushed, and the closed form of a drone: the thrusts are felt at its
+/// centre, R Σ f along its axes.
+#[test]
+fn actuators_of_frames_push_bodies() {
+    let generated =
+        generate(&of_file("drone.xml", DRONE, &["actuators"], Options { batch: vec![Real::F64], ..Options::default() })).unwrap();
+    let model = &generated.model;
+    for (k, row) in of_actuators::<f64>().iter().enumerate() {
+        for given in given(model, 3) {
+            let input = |argument: usize, k: usize| given[argument][k];
+            assert_close(model, row.name, &given, &generated.graphs[k].evaluate(input));
+            for (_, body) in generated.bodies[k].all() {
+                assert_close(model, row.name, &given, &interpret(body, input));
+            }
+        }
+    }
+    let [q, v, act, mut ctrl, h] = given(model, 1).remove(0);
+    let torques = |ctrl: &[f64]| stepped("actuator_torques", model, &[q.clone(), v.clone(), act.clone(), ctrl.to_vec(), h.clone()]);
+    let before = torques(&ctrl);
+    ctrl[1] = 3.0;
+    let lower = torques(&ctrl);
+    ctrl[1] = 4.5;
+    let change: Vec<f64> = torques(&ctrl).iter().zip(&lower).map(|(a, b)| a - b).collect();
+    // The right rotor is at (0.1, −0.1, 0.02) and pushes along z with a moment of 0.02 per newton.
+    let expected = [1.5 * -0.1, 1.5 * -0.1, 1.5 * 0.02, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0, 0.0];
+    assert!(change.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-14), "{change:?} {before:?}");
+}
+
 /// A C program prints results alone and in a batch.
 #[test]
 fn compiled_steps_are_the_library() {
@@ -234,11 +268,12 @@ fn compiled_steps_are_the_library() {
 /// J d by dual numbers, and λᵀ J d from both sides, by state, activations, controls and h.
 #[test]
 fn derivatives_of_a_step_are_those_of_dual_numbers() {
-    for row in of_actuators::<f64>().iter().filter(|row| row.name != "actuator_torques" && !row.name.contains("rk4")) {
-        let name = row.name;
+    let rows = of_actuators::<f64>().iter().filter(|row| row.name != "actuator_torques" && !row.name.contains("rk4"));
+    let of_drone = ("drone.xml", DRONE, "actuated_step_implicit_velocity");
+    for (file, text, name) in rows.map(|row| ("actuated.xml", ACTUATED, row.name)).chain([of_drone]) {
         let functions = ["pull = vjp", "push = jvp"].map(|kind| format!("{kind}({name}, q v act ctrl h)"));
         let functions: Vec<&str> = functions.iter().map(String::as_str).collect();
-        let generated = generate(&request(&functions, Options::default())).unwrap();
+        let generated = generate(&of_file(file, text, &functions, Options::default())).unwrap();
         let model = &generated.model;
         let (nq, nv, exact) = (model.nq(), model.nv(), model.cast::<Dual<f64>>());
         let mut random = Random::new(2);

@@ -10,12 +10,15 @@
 //! Source: MuJoCo documentation, Actuation model.
 
 mod activation;
+mod site;
 mod torques;
 
 use alloc::string::String;
 use alloc::vec::Vec;
 
 pub use activation::{Activation, Filter};
+pub(crate) use site::SiteRow;
+pub use site::{SiteDrive, SiteFrame};
 
 use crate::Scalar;
 
@@ -40,6 +43,8 @@ pub struct ActuatorLaw<S = f64> {
     pub name: String,
     /// The joints that it drives.
     pub drives: Vec<Transmission<S>>,
+    /// The frame that it pushes, instead of joints.
+    pub site: Option<SiteDrive<S>>,
     /// g₀, g₁, g₂: force for each unit of control, of length, and of rate of length.
     pub gain: [S; 3],
     /// b₀, b₁, b₂: force without control.
@@ -85,8 +90,17 @@ impl<S> Default for Actuators<S> {
 
 impl<S: Scalar> Default for ActuatorLaw<S> {
     fn default() -> Self {
-        let (drives, zero) = (Vec::new(), [S::zero(); 3]);
-        Self { name: String::new(), drives, gain: zero, bias: zero, control_range: None, force_range: None, activation: None }
+        let zero = [S::zero(); 3];
+        Self {
+            name: String::new(),
+            drives: Vec::new(),
+            site: None,
+            gain: zero,
+            bias: zero,
+            control_range: None,
+            force_range: None,
+            activation: None,
+        }
     }
 }
 
@@ -136,6 +150,7 @@ impl<S: Scalar> ActuatorLaw<S> {
         ActuatorLaw {
             name: self.name.clone(),
             drives: self.drives.iter().map(drive).collect(),
+            site: self.site.as_ref().map(|site| site.map(f)),
             gain: self.gain.map(f),
             bias: self.bias.map(f),
             control_range: self.control_range.map(|range| range.map(f)),

@@ -2,7 +2,7 @@
 
 use alloc::vec;
 
-use super::{ActuatorLaw, Actuators, Transmission};
+use super::{ActuatorLaw, Actuators, SiteRow, Transmission};
 use crate::Scalar;
 use crate::spatial::screw::Quaternion;
 
@@ -40,21 +40,30 @@ impl<S: Scalar> Transmission<S> {
 impl<S: Scalar> ActuatorLaw<S> {
     /// Its force f with the input w of its gain, N or N·m at the actuator.
     pub fn force(&self, input: S, q: &[S], v: &[S]) -> S {
-        clamp(self.unbounded(input, q, v), self.force_range)
+        let (length, rate) = self.length(q, v);
+        self.bounded(input, length, rate)
     }
 
-    fn unbounded(&self, input: S, q: &[S], v: &[S]) -> S {
-        let parts = self.drives.iter().map(|drive| drive.length(q, v));
-        let (length, rate) = parts.fold((S::zero(), S::zero()), |(l, r), (length, rate)| (l + length, r + rate));
+    /// The force at a length and a rate.
+    pub(super) fn bounded(&self, input: S, length: S, rate: S) -> S {
+        clamp(self.affine(input, length, rate), self.force_range)
+    }
+
+    fn affine(&self, input: S, length: S, rate: S) -> S {
         let affine = |[at_rest, of_length, of_rate]: [S; 3]| at_rest + of_length * length + of_rate * rate;
         affine(self.gain) * input + affine(self.bias)
     }
 
+    /// Its length and the rate of that, by the joints that it drives.
+    fn length(&self, q: &[S], v: &[S]) -> (S, S) {
+        let parts = self.drives.iter().map(|drive| drive.length(q, v));
+        parts.fold((S::zero(), S::zero()), |(l, r), (length, rate)| (l + length, r + rate))
+    }
+
     /// −∂f/∂l̇, zero at a bound of the force.
-    fn damping(&self, input: S, q: &[S], v: &[S]) -> S {
+    fn damping(&self, input: S, (length, rate): (S, S)) -> S {
         let slope = -(self.gain[2] * input + self.bias[2]);
-        let force = self.force_range.map(|_| self.unbounded(input, q, v)).unwrap_or(S::zero());
-        within(force, self.force_range, slope)
+        within(self.affine(input, length, rate), self.force_range, slope)
     }
 
     /// The degree of freedom, if it drives one joint of one degree.
@@ -83,7 +92,8 @@ impl<S: Scalar> ActuatorLaw<S> {
 }
 
 impl<S: Scalar> Actuators<S> {
-    /// Adds their torques to `tau` `[nv]`, N·m or N, which is zero on entry. Missing inputs are 0.
+    /// Adds the torques of those of joints to `tau` `[nv]`, N·m or N, which has those of frames alone
+    /// on entry. Missing inputs are 0.
     ///
     /// inputs: `[nu]`, of [`Actuators::inputs`]; q: `[nq]`; v: `[nv]`.
     pub fn add_torques(&self, inputs: &[S], q: &[S], v: &[S], tau: &mut [S]) {
@@ -110,21 +120,29 @@ impl<S: Scalar> Actuators<S> {
     ///
     /// As in MuJoCo 4, d is zero at a bound of the force, and for an actuator of one joint at a
     /// bound of the torque of that joint.
-    pub(crate) fn damping(&self, inputs: &[S], q: &[S], v: &[S], mut visit: impl FnMut(usize, usize, S)) {
+    pub(crate) fn damping(&self, inputs: &[S], sites: &[SiteRow<S>], (q, v): (&[S], &[S]), mut visit: impl FnMut(usize, usize, S)) {
         let zero = S::zero();
         let laws = self.laws.iter().enumerate().map(|(k, law)| (law, inputs.get(k).copied().unwrap_or(zero)));
         let bound = |law: &ActuatorLaw<S>| law.only_joint().and_then(|own| self.bounds.iter().find(|(k, _)| *k == own));
         let bounded = laws.clone().map(|(law, input)| (law, input, bound(law)));
         let all = bounded.chain(self.passive.iter().map(|law| (law, zero, None)));
         for (law, input, bound) in all.filter(|(law, ..)| law.has_damping(|x| x == zero)) {
-            let mut slope = law.damping(input, q, v);
+            let mut slope = law.damping(input, law.length(q, v));
             if let Some((own, range)) = bound {
                 let mut tau = vec![zero; v.len()];
+                self.add_site_torques(inputs, sites, v, &mut tau);
                 laws.clone().for_each(|(law, input)| law.add_torque(input, q, v, &mut tau));
                 slope = within(tau[*own], Some(*range), slope);
             }
             for (i, a) in law.row() {
                 law.row().filter(|(j, _)| *j <= i).for_each(|(j, b)| visit(i, j, slope * a * b));
+            }
+        }
+        for own in sites {
+            let Some(law) = self.laws.get(own.law).filter(|law| law.has_damping(|x| x == zero)) else { continue };
+            let slope = law.damping(inputs.get(own.law).copied().unwrap_or(zero), (own.length, own.rate(v)));
+            for (i, a) in &own.row {
+                own.row.iter().filter(|(j, _)| j <= i).for_each(|(j, b)| visit(*i, *j, slope * *a * *b));
             }
         }
     }
@@ -134,7 +152,7 @@ impl<S: Scalar> Actuators<S> {
         let all = self.laws.iter().chain(&self.passive);
         all.filter(|law| law.has_damping(|x| x == S::zero())).any(|law| {
             let first = law.row().next();
-            law.row().any(|(k, _)| first.is_some_and(|(first, _)| first != k))
+            law.site.is_some() || law.row().any(|(k, _)| first.is_some_and(|(first, _)| first != k))
         })
     }
 
@@ -156,6 +174,7 @@ mod tests {
         let servo = ActuatorLaw {
             name: "servo".into(),
             drives: vec![drive(0, 2.0), drive(1, -1.0)],
+            site: None,
             gain: [10.0, 1.0, 0.5],
             bias: [1.0, -10.0, -2.0],
             control_range: Some([-1.0, 1.0]),

@@ -20,6 +20,7 @@ pub(crate) mod manifold;
 mod manifold_derivatives;
 mod momentum;
 mod operational_space;
+mod pushed;
 pub(crate) mod registry;
 mod regressor;
 mod rnea;
@@ -55,6 +56,7 @@ pub use momentum::{
     centroidal_momentum_matrix, centroidal_momentum_rate,
 };
 pub use operational_space::{operational_space_inertia, operational_space_inertia_inverse};
+pub(crate) use pushed::Placed;
 pub use registry::{Function, Group, Inputs, Needs, Shape, Variant};
 pub use regressor::{PARAMETERS, kinetic_energy_regressor, potential_energy_regressor, torque_regressor};
 pub use rnea::{inverse_dynamics_with_wrenches, joint_wrenches};

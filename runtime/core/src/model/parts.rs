@@ -99,6 +99,10 @@ impl<S: Scalar> ModelParts<S> {
 
     fn check_actuators(&self, (nq, nv): (usize, usize)) -> Result<(), ModelError> {
         for law in self.actuators.laws.iter().chain(&self.actuators.passive) {
+            let frames = law.site.iter().flat_map(|own| core::iter::once(&own.site).chain(&own.reference));
+            if let Some(frame) = frames.into_iter().find(|frame| frame.body.0 >= self.bodies.len()) {
+                return Err(refused(format!("actuator {:?}", law.name), format!("body {}", frame.body), "a body of the model"));
+            }
             let beyond = law.drives.iter().find(|drive| {
                 let (of_q, of_v) = if drive.gear.len() == 3 { (4, 3) } else { (1, drive.gear.len()) };
                 drive.q.saturating_add(of_q) > nq || drive.v.saturating_add(of_v) > nv

@@ -79,8 +79,8 @@ impl<S: Scalar> Start<'_, S> {
         let mut tau = match self.drive {
             Drive::Torques(tau) => tau.to_vec(),
             Drive::Controls(_) => {
-                let mut tau = vec![S::zero(); self.model.nv];
-                self.model.actuators.add_torques(&self.inputs(act), q, v, &mut tau);
+                let (mut tau, inputs) = (vec![S::zero(); self.model.nv], self.inputs(act));
+                add_torques(self.model, ws, &inputs, (q, v), &mut tau);
                 tau
             }
         };
@@ -237,16 +237,28 @@ impl<S: Scalar> Steps<S> {
         needs: Needs::Nothing,
         regrouped: false,
         contains: &[],
-        ways: &[Variant { name: "direct", applies: always, least: nothing, run: &|model, _, inputs, out| torques(model, inputs, out) }],
+        ways: &[Variant {
+            name: "direct",
+            applies: always,
+            least: nothing,
+            run: &|model, ws, inputs, out| torques(model, ws, inputs, out),
+        }],
         unsolved: None,
     };
 }
 
 /// Activations are those at the state, also of actuators whose force has the next one in a step.
-fn torques<S: Scalar>(model: &Model<S>, inputs: &Inputs<'_, S>, out: &mut [S]) {
+fn torques<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, inputs: &Inputs<'_, S>, out: &mut [S]) {
     let [q, v, act, ctrl] = [Argument::Q, Argument::V, ACT, CTRL].map(|argument| inputs.get(argument));
     out.fill(S::zero());
-    model.actuators.add_torques(&model.actuators.inputs(act, ctrl, None), q, v, out);
+    add_torques(model, ws, &model.actuators.inputs(act, ctrl, None), (q, v), out);
+}
+
+/// Adds the torques of all actuators at these inputs.
+fn add_torques<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, inputs: &[S], (q, v): (&[S], &[S]), out: &mut [S]) {
+    let sites = model.actuators.site_rows(model, ws, q);
+    model.actuators.add_site_torques(inputs, &sites, v, out);
+    model.actuators.add_torques(inputs, q, v, out);
 }
 
 /// All steps with torques, as functions beside those of the table.
