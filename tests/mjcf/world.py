@@ -74,8 +74,6 @@ def compare(model, states, robot, differ, count):
         return warned.silent
     own = copy.deepcopy(model)
     reduce(own, read, warned)
-    if own.opt.density or own.opt.viscosity:
-        diagonalize(own, robot)
     data = mujoco.MjData(own)
     for seed, (q, v, *_) in enumerate(states):
         data.qpos[:], data.qvel[:] = q, v
@@ -501,27 +499,6 @@ def forces(model, data, robot, read, by_name, random, differ):
         own, size = on_link(one, model, data)
         passive, scale = passive + own, max(scale, size)
     differ("passive force", passive, data.qfrc_passive, scale)
-
-
-def diagonalize(model, robot):
-    """Turns MuJoCo's axes of inertia to those of the inertia as read: MuJoCo stops at some 1e-6, and the medium's force is along them."""
-    for link in robot["links"]:
-        body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, link["name"])
-        if body <= 0 or model.body_mass[body] == 0:
-            continue
-        for _ in range(2):
-            axes = np.zeros(9)
-            mujoco.mju_quat2Mat(axes, model.body_iquat[body])
-            axes = axes.reshape(3, 3)
-            inertia = axes.T @ np.reshape(link["inertia"], (3, 3)) @ axes
-            turn, most = np.zeros(3), np.abs(np.diag(inertia)).max()
-            for k, i, j in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-                apart = inertia[j, j] - inertia[i, i]
-                # Axes of equal moments are as good turned.
-                if abs(inertia[i, j]) < 1e-4 * most and abs(apart) > 1e-3 * most:
-                    turn[k] = -inertia[i, j] / apart
-            mujoco.mju_quatIntegrate(model.body_iquat[body], turn, 1.0)
-            model.body_inertia[body] = np.diag(inertia)
 
 
 def on_link(effect, model, data):

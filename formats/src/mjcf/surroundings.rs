@@ -13,12 +13,12 @@ use articulated_core::description::Origin;
 use articulated_core::diagnostic::{At, Code, Diagnostics, Subject};
 use articulated_core::effect::{Applied, EffectId};
 
-use super::axes::principal;
+use super::axes::{in_axes, principal};
 use super::bodies::{Kind, Tree};
 use super::mass::Mass;
 use super::scope::Scope;
 use super::simulation::Simulation;
-use crate::pose::Pose;
+use crate::pose::{IDENTITY, Pose, conjugate, multiply, turned};
 
 /// The effects of all bodies, with their places. `links`: the name of the link of each body.
 pub(crate) fn effects(
@@ -69,15 +69,12 @@ pub(crate) struct Medium {
 impl Medium {
     /// The frame and the parameters of the drag on the box of a body's inertia.
     fn drag(&self, body: &Mass) -> (Pose, Vec<f64>) {
-        let (moments, axes) = body.axes.map_or_else(
-            || principal(body.inertia),
-            |axes| {
-                let [xx, _, _, yy, _, zz] = super::axes::in_axes(axes, body.inertia);
-                ([xx, yy, zz], axes)
-            },
-        );
+        // Axes of the smallest bodies too: precisions of `principal` are absolute.
+        let size = body.inertia.iter().fold(0.0_f64, |most, x| most.max(x.abs())).max(f64::MIN_POSITIVE);
+        let first = body.axes.unwrap_or(IDENTITY);
+        let axes = multiply(first, principal(turned(conjugate(first), body.inertia.map(|x| x / size))).1);
+        let [x, _, _, y, _, z] = in_axes(axes, body.inertia);
         let frame = body.pose.then(&Pose { rotation: axes, ..Pose::default() });
-        let [x, y, z] = moments;
         let side = |own: f64, one: f64, other: f64| (6.0 * (one + other - own).max(LEAST) / body.mass).sqrt();
         let sides = [side(x, y, z), side(y, z, x), side(z, x, y)];
         let diameter = sides.iter().sum::<f64>() / 3.0;

@@ -60,17 +60,28 @@ impl<S: Scalar> Activation<S> {
     }
 }
 
+/// An actuator with its control within its bounds, and its activation if it has one.
+struct Controlled<'a, S> {
+    law: &'a ActuatorLaw<S>,
+    control: S,
+    /// w.
+    state: Option<S>,
+}
+
+impl<'a, S: Scalar> Controlled<'a, S> {
+    /// The activation, w, and its rate.
+    fn moving(&self) -> Option<(&'a Activation<S>, S, S)> {
+        let (activation, w) = (self.law.activation.as_ref()?, self.state?);
+        Some((activation, w, activation.rate(w, self.control)))
+    }
+}
+
 impl<S: Scalar> Actuators<S> {
-    /// Each actuator with its control, and with its activation if it has one.
-    fn with_states<'a>(
-        &'a self,
-        act: &'a [S],
-        ctrl: &'a [S],
-    ) -> impl Iterator<Item = (&'a ActuatorLaw<S>, S, Option<(&'a Activation<S>, S)>)> {
+    fn controlled<'a>(&'a self, act: &'a [S], ctrl: &'a [S]) -> impl Iterator<Item = Controlled<'a, S>> {
         let mut next = act.iter();
         self.laws.iter().zip(ctrl).map(move |(law, u)| {
-            let state = law.activation.as_ref().and_then(|activation| Some((activation, *next.next()?)));
-            (law, clamp(*u, law.control_range), state)
+            let state = law.activation.as_ref().and_then(|_| next.next().copied());
+            Controlled { law, control: clamp(*u, law.control_range), state }
         })
     }
 
@@ -79,17 +90,17 @@ impl<S: Scalar> Actuators<S> {
     ///
     /// act: `[na]`; ctrl: `[nu]`; h: s, or none for the activations as they are.
     pub fn inputs(&self, act: &[S], ctrl: &[S], h: Option<S>) -> Vec<S> {
-        let input = |(_, u, state): (&ActuatorLaw<S>, S, Option<(&Activation<S>, S)>)| match (state, h) {
-            (None, _) => u,
-            (Some((activation, w)), Some(h)) if activation.is_early => activation.next(w, activation.rate(w, u), h),
-            (Some((_, w)), _) => w,
+        let input = |own: Controlled<'_, S>| match (own.moving(), h) {
+            (None, _) => own.control,
+            (Some((activation, w, rate)), Some(h)) if activation.is_early => activation.next(w, rate, h),
+            (Some((_, w, _)), _) => w,
         };
-        self.with_states(act, ctrl).map(input).collect()
+        self.controlled(act, ctrl).map(input).collect()
     }
 
     /// Rates of the activations, `[na]`, 1/s. act: `[na]`; ctrl: `[nu]`.
     pub fn activation_rates(&self, act: &[S], ctrl: &[S]) -> Vec<S> {
-        self.with_states(act, ctrl).filter_map(|(_, u, state)| state.map(|(activation, w)| activation.rate(w, u))).collect()
+        self.controlled(act, ctrl).filter_map(|own| own.moving().map(|(_, _, rate)| rate)).collect()
     }
 
     /// Activations `[na]` after h seconds at these rates, within their bounds.

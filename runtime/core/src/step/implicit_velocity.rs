@@ -77,7 +77,7 @@ fn gyroscopic<S: Scalar>(start: &Start<'_, S>, ws: &Workspace<S>, body: BodyId, 
     for k in 0..6 {
         let (angular, linear) = if k < 3 { (unit(k), Vector3::zeros()) } else { (Vector3::zeros(), unit(k - 3)) };
         let column = six(inertia.apply(&Twist { angular, linear }));
-        (0..6).for_each(|i| implicit[i][k] = column[i]);
+        implicit.iter_mut().zip(column).for_each(|(row, x)| row[k] = x);
     }
     let mut damp = |i: usize, j: usize, x: S| implicit[i][j] += x;
     (0..6).for_each(|k| damp(k, k, ws.diagonal.get(at + k).copied().flatten().unwrap_or(zero)));
@@ -91,7 +91,7 @@ fn gyroscopic<S: Scalar>(start: &Start<'_, S>, ws: &Workspace<S>, body: BodyId, 
     for k in 0..3 {
         let turned = cross(unit(k)) * cross(omega) + cross(omega) * cross(unit(k));
         let slope = six(own.inertia.wrench(Vector3::zeros(), &turned));
-        (0..6).for_each(|i| implicit[i][k] += start.h * slope[i]);
+        implicit.iter_mut().zip(slope).for_each(|(row, x)| row[k] += start.h * x);
     }
     eliminate(&mut implicit, &mut right);
     a[at..at + 6].copy_from_slice(&right);
