@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, Variant, divide_by_length};
 use articulated_core::model::Model;
+use articulated_core::step::CTRL;
 use num_traits::Zero;
 
 use crate::differentiate::Steps;
@@ -89,11 +90,12 @@ pub(crate) fn units(part: &FunctionTerm, strategy: &Strategy, model: &Model<f64>
     units
 }
 
-/// Whether a function is independent of the axes and units of bodies: neither it nor an effect
-/// depends on their poses.
+/// Whether a function is independent of the axes and units of bodies: neither it nor an effect or
+/// an actuator depends on their poses.
 fn indifferent(part: &FunctionTerm, model: &Model<f64>) -> bool {
     let free = part.function.regrouped && !part.function.asks_for_frames() && part.function.takes.contains(&Argument::Q);
-    free && model.bodies().iter().all(|b| b.effects.body.is_empty())
+    let pushes = part.function.takes.contains(&CTRL) && model.actuators().has_sites();
+    free && !pushes && model.bodies().iter().all(|b| b.effects.body.is_empty())
 }
 
 /// The model after all passes.

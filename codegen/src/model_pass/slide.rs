@@ -34,6 +34,7 @@ pub fn slide<S: Scalar>(view: View<S>) -> View<S> {
         for frame in &mut parts.frames {
             frame.placement.position -= shifts[frame.body];
         }
+        parts.actuators.frames_mut().for_each(|own| own.placement.position -= shifts[own.body]);
     });
     // A prismatic body that was shifted has Σ again.
     View { model: regroup(model), formulation }

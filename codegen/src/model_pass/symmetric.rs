@@ -20,6 +20,7 @@ pub fn drop_symmetric_rotation<S: Scalar>(view: View<S>) -> View<S> {
     let mut carries = ById::<BodyId, _>::from(vec![false; model.bodies().len()]);
     model.outward().for_each(|i| carries[model.bodies()[i].parent] = true);
     model.frames().iter().for_each(|frame| carries[frame.body] = true);
+    model.actuators().frames().for_each(|frame| carries[frame.body] = true);
     let model = model.changed(|parts| {
         for (i, body) in parts.bodies.with_ids_mut().skip(1).filter(|(i, _)| !carries[*i]) {
             if body.joint.is_rotation_about_axis() && body.effects.body.is_empty() && made_axisymmetric(body) {

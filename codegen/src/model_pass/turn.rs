@@ -117,6 +117,7 @@ fn turn_body<S: Scalar>(parts: &mut ModelParts<S>, i: BodyId, angle: &Angle<S>, 
     hanging.bodies.iter().for_each(|&k| turn(&mut parts.bodies[k].placement));
     hanging.frames.iter().for_each(|&k| turn(&mut parts.frames[k].placement));
     parts.bodies[i].effects.body.iter_mut().for_each(|e| turn(&mut e.placement));
+    parts.actuators.frames_mut().filter(|own| own.body == i).for_each(|own| turn(&mut own.placement));
 }
 
 /// Replaces the fixed rotation of body `i` by the plain one about the same axis, and counts the

@@ -209,13 +209,47 @@ fn actuators_of_frames_push_bodies() {
     let [q, v, act, mut ctrl, h] = given(model, 1).remove(0);
     let torques = |ctrl: &[f64]| stepped("actuator_torques", model, &[q.clone(), v.clone(), act.clone(), ctrl.to_vec(), h.clone()]);
     let before = torques(&ctrl);
-    ctrl[1] = 3.0;
+    ctrl[3] = 3.0;
     let lower = torques(&ctrl);
-    ctrl[1] = 4.5;
+    ctrl[3] = 4.5;
     let change: Vec<f64> = torques(&ctrl).iter().zip(&lower).map(|(a, b)| a - b).collect();
     // The right rotor is at (0.1, −0.1, 0.02) and pushes along z with a moment of 0.02 per newton.
-    let expected = [1.5 * -0.1, 1.5 * -0.1, 1.5 * 0.02, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0, 0.0];
-    assert!(change.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-14), "{change:?} {before:?}");
+    let expected = [1.5 * -0.1, 1.5 * -0.1, 1.5 * 0.02, 0.0, 0.0, 1.5];
+    assert!(change.iter().zip(expected.into_iter().chain([0.0; 7])).all(|(a, b)| (a - b).abs() < 1e-14), "{change:?} {before:?}");
+}
+
+/// Four legs, computed side by side: their actuators have laws of their own, and two feet are pushed.
+#[test]
+fn limbs_in_lanes_have_their_own_actuators() {
+    let (mut legs, mut drives) = (String::new(), String::new());
+    for (k, (x, y)) in [(0.3, 0.2), (0.3, -0.2), (-0.3, 0.2), (-0.3, -0.2)].into_iter().enumerate() {
+        legs += &format!(
+            "<body pos='{x} {y} 0'><joint name='hip{k}' axis='0 1 0' damping='0.1'/><inertial pos='0 0 -0.1' mass='0.6' diaginertia='0.004 0.004 0.001'/>\
+             <body pos='0 0 -0.2'><joint name='knee{k}' axis='0 1 0'/><inertial pos='0 0 -0.1' mass='0.3' diaginertia='0.002 0.002 0.0005'/>\
+             <site name='foot{k}' pos='0 0 -0.2'/></body></body>"
+        );
+        let gain = 10.0 + 3.0 * k as f64;
+        drives += &format!(
+            "<position joint='hip{k}' kp='{gain}' kv='0.4' timeconst='0.1'/><position joint='knee{k}' kp='8' kv='{}'/>",
+            0.1 * k as f64
+        );
+    }
+    let text = format!(
+        "<mujoco><worldbody><body name='trunk'><freejoint/><inertial pos='0 0 0' mass='5' diaginertia='0.1 0.2 0.25'/>{legs}</body></worldbody>\
+         <actuator>{drives}<motor site='foot1' gear='0 0 1 0 0 0'/><motor site='foot2' gear='1 0 0 0 0 0'/></actuator></mujoco>"
+    );
+    let generated = generate(&of_file("legs.xml", &text, &["actuators"], Options::default())).unwrap();
+    let model = &generated.model;
+    assert!(generated.ledger.functions.iter().any(|entry| entry.lanes > 1), "limbs are computed side by side");
+    for (k, row) in of_actuators::<f64>().iter().enumerate() {
+        for given in given(model, 3) {
+            let input = |argument: usize, k: usize| given[argument][k];
+            assert_close(model, row.name, &given, &generated.graphs[k].evaluate(input));
+            for (_, body) in generated.bodies[k].all() {
+                assert_close(model, row.name, &given, &interpret(body, input));
+            }
+        }
+    }
 }
 
 /// A C program prints results alone and in a batch.

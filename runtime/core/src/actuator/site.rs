@@ -90,6 +90,17 @@ impl<S: Scalar> Actuators<S> {
         self.laws.iter().any(|law| law.site.is_some())
     }
 
+    /// The frames that actuators push, with those that they move against.
+    pub fn frames(&self) -> impl Iterator<Item = &SiteFrame<S>> {
+        self.laws.iter().filter_map(|law| law.site.as_ref()).flat_map(|own| core::iter::once(&own.site).chain(&own.reference))
+    }
+
+    /// The same, to be changed: where the frame of a body is moved in it.
+    pub fn frames_mut(&mut self) -> impl Iterator<Item = &mut SiteFrame<S>> {
+        let all = self.laws.iter_mut().filter_map(|law| law.site.as_mut());
+        all.flat_map(|own| core::iter::once(&mut own.site).chain(&mut own.reference))
+    }
+
     /// The actuators of frames in a state.
     pub(crate) fn site_rows(&self, model: &Model<S>, ws: &mut Workspace<S>, q: &[S]) -> Vec<SiteRow<S>> {
         if !self.has_sites() {
