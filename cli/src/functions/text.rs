@@ -7,6 +7,7 @@ use crate::shape;
 use crate::table::{Table, freedom, plain};
 use articulated_codegen::function_groups::Group;
 use articulated_core::algorithm::Argument;
+use articulated_core::step::{ACT, CTRL, H};
 
 pub(super) fn text(report: &Report) -> String {
     let mut out =
@@ -61,13 +62,14 @@ pub(super) fn markdown(report: &Report) -> String {
         let _ = writeln!(out, "* {}: {} base, {}; tips {}", r.robot, r.base, freedom(r.degrees_of_freedom), frames.join(", "));
     }
     out += ARGUMENTS;
-    for argument in Argument::ALL.into_iter().chain([Argument::SinCos]) {
+    for argument in Argument::ALL.into_iter().chain([H, ACT, CTRL, Argument::SinCos]) {
         let asked = if argument == Argument::SinCos {
             "; behind the others and before `parameters`, where a function is asked for with `q = sin_cos`"
         } else {
             ""
         };
-        let _ = writeln!(out, "| `{}` | `{}` {}{asked} |", argument.name(), shape::dims(argument.dims()), cell(argument.unit()));
+        let dims = if argument.dims().is_empty() { "one number,".to_owned() } else { format!("`{}`", shape::dims(argument.dims())) };
+        let _ = writeln!(out, "| `{}` | {dims} {}{asked} |", argument.name(), cell(argument.unit()));
     }
     let mut footnotes = Footnotes::default();
     for group in Group::ALL.into_iter().chain([Group::Steps, Group::Actuators]) {

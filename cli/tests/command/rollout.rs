@@ -32,7 +32,10 @@ fn what_is_wrong_is_told() {
         (answer.status, answer.err)
     };
     let (status, text) = told(&["--method", "rk5"]);
-    assert!(status == 2 && text.contains("expected one of step_semi_implicit_euler, step_implicit_damping, step_implicit_velocity"), "{status} {text}");
+    assert!(
+        status == 2 && text.contains("expected one of step_semi_implicit_euler, step_implicit_damping, step_implicit_velocity"),
+        "{status} {text}"
+    );
     assert!(told(&["--time-step=-1"]).1.contains("expected a positive number of seconds"));
     let states = File::new("states.json", br#"{"states": [{"q": [0.5]}, {"q": [1, 2], "v": [0]}]}"#);
     let (status, text) = told(&["--states", states.name()]);
