@@ -25,7 +25,8 @@ QUICK = ("check", "eval", "functions", "generate", "effects", "simulate", "new")
 SLOW = ("--time", "--generated", "--against", "--all", "--package")
 
 MODEL = """<mujoco><compiler angle="radian"/><option gravity="0 0 -9.81"/><worldbody><body name="arm"><joint name="hinge" type="hinge" axis="0 1 0"/>
-<geom type="capsule" size="0.05 0.3" pos="0 0 -0.3"/></body></worldbody></mujoco>"""
+<geom type="capsule" size="0.05 0.3" pos="0 0 -0.3"/></body></worldbody><actuator><motor name="lift" joint="hinge"/></actuator>
+<keyframe><key name="stand" qpos="0.3" ctrl="0.2"/></keyframe></mujoco>"""
 SDF = """<sdf version="1.9"><model name="arm"><link name="base"/><link name="fore"><inertial><mass>1</mass></inertial></link>
 <joint name="hinge" type="revolute"><parent>base</parent><child>fore</child><axis><xyz>0 1 0</xyz></axis></joint></model></sdf>"""
 SCENE = """robot = "panda_like"
