@@ -119,6 +119,18 @@ fn activations_of_first_order_are_read() {
     assert_eq!(actuator("<motor joint=\"h\"/>").activation, None);
 }
 
+/// Armature of an actuator on one joint is that of the joint: I gear².
+#[test]
+fn armature_of_an_actuator_is_that_of_its_joint() {
+    let text = with("", "<actuator><motor joint=\"h\" gear=\"3\" armature=\"0.5\"/><motor joint=\"h\" armature=\"2\"/></actuator>");
+    let reading = accepted(&text);
+    let joint = reading.description.joints.iter().find(|joint| joint.name == "h").expect("the hinge");
+    let without = accepted(&with("", "")).description;
+    let before = without.joints.iter().find(|joint| joint.name == "h").and_then(|joint| joint.dynamics.armature).unwrap_or(0.0);
+    assert_eq!(joint.dynamics.armature, Some(before + 0.5 * 9.0 + 2.0));
+    assert!(reading.warnings.is_empty(), "{:?}", reading.warnings);
+}
+
 #[test]
 fn an_actuator_may_push_a_site() {
     let sites = "<site name=\"s\" pos=\"1 2 3\"/></worldbody>";
@@ -348,7 +360,7 @@ fn what_gives_no_force_is_a_warning_with_its_line() {
         tendon("damping=\"1 2\"", "fixed"),
         tendon("actuatorfrcrange=\"-1 1\"", "fixed"),
         tendon("stiffness=\"1\"", "spatial"),
-        "<actuator>\n<motor joint=\"x\" armature=\"1\"/></actuator>".to_owned(),
+        "<actuator>\n<motor joint=\"b\" armature=\"1\"/></actuator>".to_owned(),
         "<actuator>\n<position joint=\"b\"/></actuator>".to_owned(),
     ];
     for tag in tendons {

@@ -226,6 +226,10 @@ def compare(path, generated=False):
         return "refused by MuJoCo: " + without_folders(str(error).splitlines()[0], path)[:120], {}, {}
     data = mujoco.MjData(model)
     armature = model.dof_armature.copy()
+    for one in np.flatnonzero(getattr(model, "actuator_armature", np.zeros(0))):
+        found = world.of_one_joint(model, one)
+        if found:
+            armature[found[0]] += model.actuator_armature[one] * found[1] ** 2
     if model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY:
         model.opt.gravity[:] = 0
     states = [state(model, np.random.default_rng(seed)) for seed in range(STATES)]

@@ -265,6 +265,17 @@ def is_spatial(model, tendon):
 SPATIAL = "a spatial tendon with forces"
 
 
+def of_one_joint(model, one):
+    """The degree of freedom of an actuator of one hinge or slide, and d(length)/d(coordinate)."""
+    kind, target, gear = int(model.actuator_trntype[one]), model.actuator_trnid[one, 0], model.actuator_gear[model.actuator_outadr[one], 0]
+    if kind == int(mujoco.mjtTrn.mjTRN_TENDON) and not is_spatial(model, target) and model.tendon_num[target] == 1:
+        wrap = model.tendon_adr[target]
+        target, gear = model.wrap_objid[wrap], gear * model.wrap_prm[wrap]
+    elif kind not in (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT)):
+        return None
+    return (model.jnt_dofadr[target], gear) if model.jnt_type[target] in (SLIDE, HINGE) else None
+
+
 def reduce_armature(model, warned):
     """Takes all armature out of the model: that of hinges, slides and balls is compared by itself."""
     for joint in range(model.njnt):
@@ -274,7 +285,8 @@ def reduce_armature(model, warned):
             phrase = SPATIAL if is_spatial(model, tendon) else "armature of a tendon"
             warned.demand("armature of the tendon", name_of(model, "TENDON", tendon), phrase)
     for one in np.flatnonzero(getattr(model, "actuator_armature", np.zeros(0))):
-        warned.demand("armature of the actuator", name_of(model, "ACTUATOR", one), "armature of an actuator", "an actuator")
+        if of_one_joint(model, one) is None:
+            warned.demand("armature of the actuator", name_of(model, "ACTUATOR", one), "armature of an actuator", "an actuator")
     model.dof_armature[:] = 0
     if model.ntendon:
         model.tendon_armature[:] = 0

@@ -620,6 +620,13 @@ fn pushed((site, reference): (usize, Option<usize>), general: &General, links: &
     Site { at: frame(site), reference: reference.map(frame), gear: general.gear }
 }
 
+/// The one joint of one degree that is driven, and the gear.
+pub(crate) fn on_one_joint(drives: &Drives, scope: &Scope<'_>) -> Option<(usize, f64)> {
+    let [(joint, gear)] = drives.as_slice() else { return None };
+    let is_scalar = matches!(scope.joints[*joint].joint.kind, Kind::Hinge | Kind::Slide);
+    gear.first().filter(|_| is_scalar).map(|gear| (*joint, *gear))
+}
+
 /// The damping of an actuator acts without its control: −d gear² on its target.
 fn passive(
     name: &str,
@@ -631,8 +638,9 @@ fn passive(
     log: &mut Diagnostics,
 ) {
     let [damping, second, third] = general.damping;
-    if general.armature != 0.0 {
-        scope.warn(element, "armature", ("armature of an actuator", "that of its joint: this one is not read"), log);
+    if general.armature != 0.0 && on_one_joint(&target.drives, scope).is_none() {
+        let expected = "that of a hinge or a slide: this one is not read";
+        scope.warn(element, "armature", ("armature of an actuator", expected), log);
     }
     let is_of_length = !target.is_ball && target.site.is_none();
     if [second, third] != [0.0; 2] || (damping != 0.0 && !is_of_length) {

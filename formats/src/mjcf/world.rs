@@ -1,8 +1,9 @@
 //! The rest of a document besides its bodies, as a [`World`].
 
+use articulated_core::description::Description;
 use articulated_core::diagnostic::{Code, Diagnostics};
 
-use super::actuators::actuators;
+use super::actuators::{actuators, on_one_joint};
 use super::bodies::{Kind, Tree};
 use super::documents::Documents;
 use super::element::Element;
@@ -10,7 +11,7 @@ use super::equalities::equalities;
 use super::grammar::subject;
 use super::lower::Lowered;
 use super::mass::Mass;
-use super::reflected::spring_dampers;
+use super::reflected::{Drives, spring_dampers};
 use super::scope::Scope;
 use super::simulation::Simulation;
 use super::states;
@@ -49,9 +50,21 @@ pub(crate) fn world(
     world.effects = surroundings::effects(&scope, (tree, inertials), &links, simulation, log);
     world.contact_masks = std::mem::take(&mut lowered.masks);
     spring_dampers(&scope, flags, &mut lowered.description, &armatures, log);
+    add_armatures(&scope, &mut lowered.description, armatures.get(tendons.len()..).unwrap_or_default());
     equalities(&mut scope, &tendons, flags.no_equality, &mut world, log);
     states::keyframes(&mut scope, &controls, has_unread_joints, &mut world, log);
     world
+}
+
+/// Armatures of actuators on one joint of one degree are that of the joint: I gear².
+fn add_armatures(scope: &Scope<'_>, description: &mut Description, armatures: &[(f64, Drives)]) {
+    for (armature, drives) in armatures.iter().filter(|(armature, _)| *armature != 0.0) {
+        let Some((joint, gear)) = on_one_joint(drives, scope) else { continue };
+        let name = scope.joints[joint].name;
+        if let Some(own) = description.joints.iter_mut().find(|own| own.name == name) {
+            own.dynamics.armature = Some(own.dynamics.armature.unwrap_or(0.0) + armature * gear * gear);
+        }
+    }
 }
 
 /// Whether a document has joints that MuJoCo makes for deformable bodies.
