@@ -55,7 +55,8 @@ pub struct World {
     /// For links with collision geometry, the contact mask of each piece, in the order of their
     /// lists. A link that is missing here makes contact with everything.
     pub contact_masks: BTreeMap<String, Vec<ContactMask>>,
-    /// Effects of the file on links, with their places: of weight that is compensated, of the medium.
+    /// Effects of the file on links, with their places: of weight that is compensated, and of the
+    /// medium.
     pub effects: Vec<(Applied, At)>,
     /// Equations of the file that close loops, or are not linear: they are not applied.
     pub loops: Vec<Loop>,

@@ -13,9 +13,9 @@ pub(crate) struct SimulateArguments {
     /// or SDF), whose smooth motion is simulated
     #[arg(value_name = "SCENE", required_unless_present = "all")]
     pub(crate) scene: Option<PathBuf>,
-    /// The smooth motion that a robot's file describes, without contacts, limits and dry friction: its
-    /// method, step and actuators, from its keyframe `home` or its initial state. As MuJoCo's with
-    /// constraints off
+    /// The smooth motion that a robot's file describes, without contacts, limits and dry friction:
+    /// its method, step and actuators, from its keyframe `home` or its initial state. As MuJoCo's
+    /// with constraints off
     #[arg(long, conflicts_with_all = ["print_scene", "all", "generated", "against", "integrator", "rtol", "atol"])]
     pub(crate) smooth: bool,
     /// Start with this keyframe of the file, and its controls, instead of `home`

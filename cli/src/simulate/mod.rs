@@ -7,6 +7,7 @@ mod files;
 pub mod in_process;
 mod label;
 mod mcap;
+mod method;
 mod monitor;
 pub(crate) mod motion;
 mod page;

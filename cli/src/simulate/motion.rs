@@ -9,9 +9,9 @@ use articulated::simulate::{Balance, Counts, Recording as Run, Settings};
 use articulated_lab::session::{Code, Session};
 use articulated_motion::{Creep, Ending, InitialState, Occurrence, Outcome, Slide};
 
+use super::method::Method;
 use super::monitor::RunMonitor;
 use super::recording::{EventRecord, Recording};
-use super::summary::Method;
 use crate::console::{self, Progress};
 use crate::failure::Failure;
 use crate::named_scene;

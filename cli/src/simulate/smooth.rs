@@ -10,10 +10,10 @@ use articulated_core::step::{self, CTRL, rollout};
 use articulated_lab::session::Session;
 use articulated_motion::Ending;
 
+use super::method::Method;
 use super::monitor::RunMonitor;
 use super::motion::Motion;
 use super::recording::Recording;
-use super::summary::Method;
 use crate::console::{self, Progress};
 use crate::failure::Failure;
 use crate::file_motion::{STEP, Start, step_of_file};

@@ -6,6 +6,7 @@ use articulated_core::effect::EffectId;
 use articulated_motion::{Creep, Slide};
 use serde::Serialize;
 
+use super::method::Method;
 use super::motion::Motion;
 use super::recording::{EventRecord, Recording};
 use crate::effects::sorts;
@@ -83,16 +84,6 @@ pub(super) struct Unit {
     pub(super) column: String,
     /// Empty for a number without one.
     pub(super) unit: String,
-}
-
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct Method {
-    pub(super) name: &'static str,
-    pub(super) order: u32,
-    /// Fixed steps of this length.
-    pub(super) step_s: Option<f64>,
-    pub(super) rtol: f64,
-    pub(super) atol: f64,
 }
 
 /// J.

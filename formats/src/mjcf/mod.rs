@@ -37,6 +37,7 @@ mod inertia;
 mod left_out;
 mod lower;
 mod mass;
+mod medium;
 mod mesh;
 mod reflected;
 mod scope;

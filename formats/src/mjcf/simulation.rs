@@ -6,7 +6,7 @@ use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
 use super::documents::Documents;
 use super::element::Element;
-use super::surroundings::Medium;
+use super::medium::Medium;
 use super::values::Values;
 use crate::world::Stepping;
 

@@ -218,7 +218,8 @@ fn actuators_of_frames_push_bodies() {
     assert!(change.iter().zip(expected.into_iter().chain([0.0; 7])).all(|(a, b)| (a - b).abs() < 1e-14), "{change:?} {before:?}");
 }
 
-/// Four legs, computed side by side: their actuators have laws of their own, and two feet are pushed.
+/// Four legs, computed side by side: their actuators have laws of their own, and two feet are
+/// pushed.
 #[test]
 fn limbs_in_lanes_have_their_own_actuators() {
     let (mut legs, mut drives) = (String::new(), String::new());

@@ -1,8 +1,9 @@
 //! Actuators that push at a frame of a body, and others that pull two frames to each other.
 //!
 //! ```text
-//! without a reference:   l = 0,   l̇ = gᵀ V                       V: twist of the frame in its axes
-//! with a reference:      l = g_fᵀ R_rᵀ (p − p_r) + g_mᵀ log(R_rᵀ R),   l̇ = gᵀ (V − V_r) in axes of r
+//! without a reference:   l = 0,   l̇ = gᵀ V               V: twist of the frame in its axes
+//! with a reference:      l = g_fᵀ R_rᵀ (p − p_r) + g_mᵀ log(R_rᵀ R),
+//!                        l̇ = gᵀ (V − V_r)              in axes of the reference
 //! ```
 //!
 //! A rotor of a drone is the first. Joints that carry both frames do not count. Source: MuJoCo

@@ -92,8 +92,8 @@ impl<S: Scalar> ActuatorLaw<S> {
 }
 
 impl<S: Scalar> Actuators<S> {
-    /// Adds the torques of those of joints to `tau` `[nv]`, N·m or N, which has those of frames alone
-    /// on entry. Missing inputs are 0.
+    /// Adds the torques of those of joints to `tau` `[nv]`, N·m or N, which has those of frames
+    /// alone on entry. Missing inputs are 0.
     ///
     /// inputs: `[nu]`, of [`Actuators::inputs`]; q: `[nq]`; v: `[nv]`.
     pub fn add_torques(&self, inputs: &[S], q: &[S], v: &[S], tau: &mut [S]) {

@@ -137,7 +137,7 @@ pub(in crate::algorithm) fn add_inertia<S: Scalar>(model: &Model<S>, ws: &mut Wo
     }
 }
 
-/// Whether an effect on a body has diagonal slopes in its twist: such a law is [`EffectId::box_drag`].
+/// Whether an effect on a body has diagonal slopes in its twist: [`EffectId::box_drag`] has.
 pub(crate) fn has_body_damping<S: Scalar>(model: &Model<S>) -> bool {
     model.bodies.iter().any(|body| body.effects.body.iter().any(|own| own.effect == EffectId::box_drag))
 }
