@@ -122,7 +122,7 @@ pub struct Robot;
 impl ::articulated::Dynamics<f64> for Robot {
     type Workspace = ();
     fn workspace(&self) {}
-    fn shape(&self) -> ::articulated::Shape { ::articulated::Shape { nq: NQ, nv: NV, frames: FRAMES, links: LINKS, ..::articulated::Shape::default() } }
+    fn shape(&self) -> ::articulated::Shape { ::articulated::Shape { nq: NQ, nv: NV, frames: FRAMES, links: LINKS, ..::core::default::Default::default() } }
     fn name(&self) -> &str { NAME }
     fn frame_name(&self, frame: usize) -> ::core::option::Option<&str> { FRAME_NAMES.get(frame).copied() }
     fn joint(&self, index: usize) -> ::core::option::Option<::articulated::JointRow<'_>> {

@@ -218,7 +218,7 @@ fn robot(out: &mut String, (path, real): (&str, &str), model: &Model<f64>, funct
     let _ = writeln!(out, "    type Workspace = ();\n    fn workspace(&self) {{}}");
     let _ = writeln!(
         out,
-        "    fn shape(&self) -> {path}::Shape {{ {path}::Shape {{ nq: NQ, nv: NV, frames: FRAMES, links: LINKS, ..{path}::Shape::default() }} }}"
+        "    fn shape(&self) -> {path}::Shape {{ {path}::Shape {{ nq: NQ, nv: NV, frames: FRAMES, links: LINKS, ..::core::default::Default::default() }} }}"
     );
     let _ = writeln!(out, "    fn name(&self) -> &str {{ NAME }}");
     names_by_number(out, path, model);
