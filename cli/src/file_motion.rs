@@ -1,15 +1,17 @@
 //! The motion that a robot's file describes: its state, controls, method and step.
 
 use articulated_core::actuator::Actuators;
+use articulated_core::diagnostic::{At, Diagnostics};
 use articulated_core::model::Model;
 use articulated_core::step::State;
 use articulated_formats::world::{Keyframe, Stepping, World};
+use articulated_scene::RobotInWorld;
 
 use crate::console;
 use crate::failure::Failure;
 
 /// The step of a file that has none, s.
-pub(crate) const STEP: f64 = 1e-3;
+const STEP: f64 = 1e-3;
 /// The keyframe with which a motion starts, if the file has it.
 const HOME: &str = "home";
 
@@ -30,18 +32,20 @@ impl Start {
     /// # Errors
     /// A name that no keyframe has.
     pub(crate) fn of_file(file: &str, world: &World, model: &Model<f64>, keyframe: Option<&str>) -> Result<Self, Failure> {
-        let named = |name: &str| world.keyframes.iter().find(|keyframe| keyframe.name == name);
-        let found = named(keyframe.unwrap_or(HOME));
-        if let (Some(name), None) = (keyframe, found) {
-            let names: Vec<&str> = world.keyframes.iter().map(|keyframe| keyframe.name.as_str()).collect();
-            let known =
-                if names.is_empty() { "no --keyframe: the file has none".to_owned() } else { format!("one of {}", names.join(", ")) };
-            return Err(Failure::input([format!("{file}: --keyframe: found {name:?}, expected {known}")]));
-        }
+        let robot = RobotInWorld { model, world };
+        let found = match keyframe {
+            Some(name) => {
+                let mut log = Diagnostics::new(file);
+                let found = robot.keyframe(name, (At::Nowhere, "--keyframe"), &mut log);
+                log.result(found)?
+            }
+            None => world.keyframes.iter().find(|keyframe| keyframe.name == HOME),
+        };
         let mut state = State::neutral(model);
         let mut ctrl = vec![0.0; model.actuators().laws.len()];
         for keyframe in world.home.iter().chain(found) {
-            put(model, keyframe, &mut state);
+            robot.put(&keyframe.q, false, &mut state.q);
+            robot.put(&keyframe.v, true, &mut state.v);
         }
         if let Some(keyframe) = found {
             put_controls(model.actuators(), keyframe, &mut state, &mut ctrl);
@@ -56,24 +60,15 @@ impl Start {
     }
 }
 
-/// Writes the coordinates and rates of a state of the file. Joints that the robot no longer has are
-/// left out.
-fn put(model: &Model<f64>, keyframe: &Keyframe, state: &mut State) {
-    for (numbers, is_rates) in [(&keyframe.q, false), (&keyframe.v, true)] {
-        for (name, values) in numbers {
-            let Some(joint) = model.joints().iter().find(|joint| joint.name == *name) else { continue };
-            let (into, (first, count)) = if is_rates { (&mut state.v, joint.v) } else { (&mut state.q, joint.q) };
-            if values.len() == count {
-                into[first..first + count].copy_from_slice(values);
-            }
-        }
-    }
-}
-
 fn put_controls(actuators: &Actuators, keyframe: &Keyframe, state: &mut State, ctrl: &mut [f64]) {
     ctrl.iter_mut().zip(&keyframe.control).for_each(|(u, value)| *u = *value);
     let own = actuators.laws.iter().zip(&keyframe.activation).filter(|(law, _)| law.activation.is_some());
     state.act.iter_mut().zip(own).for_each(|(w, (_, value))| *w = *value);
+}
+
+/// The length of a step, s: the given one, or that of the file.
+pub(crate) fn step_length(given: Option<f64>, world: &World) -> f64 {
+    given.or(world.time_step()).unwrap_or(STEP)
 }
 
 /// The names of the function of a step that a file requests, with torques and with actuators. A

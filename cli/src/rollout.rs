@@ -6,15 +6,15 @@ use std::time::Instant;
 
 use articulated_core::algorithm::{Argument, Function, Workspace};
 use articulated_core::model::Model;
-use articulated_core::step::{self, ACT, CTRL, beside_the_table, rollout, step_of_mujoco};
-use articulated_formats::world::{Stepping, World};
+use articulated_core::step::{self, ACT, CTRL, beside_the_table, rollout};
+use articulated_formats::world::{Stepping, World, step_of_integrator};
 use clap::Args;
 use serde::Serialize;
 
 use crate::arguments::{Format, RobotArguments};
 use crate::console;
 use crate::failure::{Failure, OK};
-use crate::file_motion::{STEP, Start, step_of_file};
+use crate::file_motion::{Start, step_length, step_of_file};
 use crate::robot::{Robot, read_bytes};
 use crate::states::{self, State};
 use crate::table::counted;
@@ -103,7 +103,7 @@ pub(crate) fn run(arguments: &RolloutArguments, format: Format) -> Result<u8, Fa
         }
     }
     source.iter().for_each(|source| console::note(&format!("starts with {source}")));
-    let h = arguments.time_step.or(world.stepping.as_ref().map(|stepping| stepping.step)).or(world.step).unwrap_or(STEP);
+    let h = step_length(arguments.time_step, world);
     let begin = Instant::now();
     let ends = parallel::map(&starts, |state| stepped(&model, method, state, h, arguments.steps));
     let seconds = begin.elapsed().as_secs_f64();
@@ -150,7 +150,7 @@ fn method(arguments: &RolloutArguments, of_file: Option<&Stepping>, is_actuated:
     };
     let prefix = if is_actuated { "actuated_step_" } else { "step_" };
     let row = beside_the_table::<f64>().filter(is_step).find(|row| row.name == name || row.name.strip_prefix(prefix) == Some(name));
-    row.or_else(|| step::step(of(step_of_mujoco(name)?))).ok_or_else(|| {
+    row.or_else(|| step::step(of(step_of_integrator(name)?))).ok_or_else(|| {
         let all: Vec<&str> = beside_the_table::<f64>().filter(is_step).map(|row| row.name).collect();
         Failure::usage(format!("--method: found {name:?}, expected one of {}, Euler, implicitfast, RK4", all.join(", ")))
     })

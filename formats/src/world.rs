@@ -10,7 +10,6 @@ use articulated_core::actuator::Activation;
 use articulated_core::description::{Coupling, Description, Origin};
 use articulated_core::diagnostic::At;
 use articulated_core::effect::Applied;
-use articulated_core::step::step_of_mujoco;
 
 /// A robot and its world, as read by a format.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -80,7 +79,25 @@ impl Stepping {
         if self.integrator == "Euler" && self.is_explicit_in_damping {
             return Some(["step_semi_implicit_euler", "actuated_step_semi_implicit_euler"]);
         }
-        step_of_mujoco(&self.integrator)
+        step_of_integrator(&self.integrator)
+    }
+}
+
+/// The functions of a step that move as this integrator of MuJoCo does, by its name in an MJCF:
+/// with torques, and with actuators. `None`: there is none.
+pub fn step_of_integrator(name: &str) -> Option<[&'static str; 2]> {
+    match name {
+        "Euler" => Some(["step_implicit_damping", "actuated_step_implicit_damping"]),
+        "implicitfast" => Some(["step_implicit_velocity", "actuated_step_implicit_velocity"]),
+        "RK4" => Some(["step_rk4_mujoco", "actuated_step_rk4_mujoco"]),
+        _ => None,
+    }
+}
+
+impl World {
+    /// The time step of the file, s, or the default of its simulator, if that is known.
+    pub fn time_step(&self) -> Option<f64> {
+        self.stepping.as_ref().map(|stepping| stepping.step).or(self.step)
     }
 }
 
@@ -116,7 +133,7 @@ pub struct Actuator {
     pub name: String,
     /// The joints that it drives: the name, and a number for each degree of freedom.
     pub drives: Vec<(String, Vec<f64>)>,
-    /// The frame that it pushes, instead of joints.
+    /// The frame on which it acts, in place of joints.
     pub site: Option<Site>,
     /// g₀, g₁, g₂: force for each unit of control, of length, and of rate of length.
     pub gain: [f64; 3],
@@ -132,12 +149,12 @@ pub struct Actuator {
     pub place: At,
 }
 
-/// What an actuator pushes at a frame: alone, or against another one.
+/// The frame on which an actuator acts, and its reference frame, if it has one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Site {
     /// The link, and the frame in the link's frame.
     pub at: (String, Origin),
-    /// The same of the frame that it moves against, if there is one.
+    /// The same of the reference frame, if there is one.
     pub reference: Option<(String, Origin)>,
     /// Force, N, and moment, N·m, of a force of one, in axes of the frame, or of the reference.
     pub gear: [f64; 6],

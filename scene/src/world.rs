@@ -52,8 +52,8 @@ impl Scene {
 }
 
 impl<'a> RobotInWorld<'a> {
-    /// The state of the file with this name.
-    pub(crate) fn keyframe(self, name: &str, place: (At, &str), log: &mut Diagnostics) -> Option<&'a Keyframe> {
+    /// The keyframe of the file with this name. An unknown name is an error at this place.
+    pub fn keyframe(self, name: &str, place: (At, &str), log: &mut Diagnostics) -> Option<&'a Keyframe> {
         let found = self.world.keyframes.iter().find(|keyframe| keyframe.name == name);
         if found.is_none() {
             let names = || self.world.keyframes.iter().map(|keyframe| keyframe.name.as_str());
@@ -67,9 +67,9 @@ impl<'a> RobotInWorld<'a> {
         found
     }
 
-    /// Writes the numbers of joints, as a file has them, into a vector of the robot. Joints that
-    /// the scene locked, or that follow others, have no numbers.
-    pub(crate) fn put(self, numbers: &[(String, Vec<f64>)], is_rates: bool, into: &mut [f64]) {
+    /// Writes the numbers of joints, as a file has them, into a vector of the robot, `[nq]` or
+    /// `[nv]`. Joints that the scene locked, or that follow others, have no numbers.
+    pub fn put(self, numbers: &[(String, Vec<f64>)], is_rates: bool, into: &mut [f64]) {
         for (name, values) in numbers {
             let Some(joint) = self.model.joints().iter().find(|joint| joint.name == *name) else { continue };
             let (first, count) = if is_rates { joint.v } else { joint.q };

@@ -16,7 +16,7 @@ use super::motion::Motion;
 use super::recording::Recording;
 use crate::console::{self, Progress};
 use crate::failure::Failure;
-use crate::file_motion::{STEP, Start, step_of_file};
+use crate::file_motion::{Start, step_length, step_of_file};
 
 /// How a file's motion is stepped.
 pub(super) struct Smooth {
@@ -37,23 +37,23 @@ impl Smooth {
         let name = if model.actuators().is_empty() { plain } else { actuated };
         let method = step::step(name).ok_or_else(|| Failure::usage(format!("--smooth: found no step {name}")))?;
         let start = Start::of_file(&session.scene.file, world, model, keyframe)?;
-        let step = step.or(world.stepping.as_ref().map(|stepping| stepping.step)).or(world.step).unwrap_or(STEP);
+        let step = step_length(step, world);
         console::note(&format!("steps of {step} s by {name}, starts with {}", start.source));
         settings.step = Some(step);
         Ok(Self { method, step, start })
     }
 
-    /// What the report says of it.
+    /// The method in the report.
     fn method(&self) -> Method {
-        let order = if self.method.name.contains("rk4") { 4 } else { 1 };
-        Method { name: self.method.name, order, step_s: Some(self.step), rtol: 0.0, atol: 0.0 }
+        Method { name: self.method.name, order: step::order(self.method), step_s: Some(self.step), rtol: 0.0, atol: 0.0 }
     }
 
     /// Steps to the end, in whole steps. A state that is not finite ends the motion.
     pub(super) fn run(&self, session: &Session, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
         let model = &session.model;
         let length = (settings.end - settings.start) / self.step;
-        let count = (length - ROUNDING).ceil().max(1.0).min(settings.max_steps as f64) as usize;
+        let needed = (length - ROUNDING).ceil().max(1.0);
+        let count = needed.min(settings.max_steps as f64) as usize;
         let held = if self.method.takes.contains(&CTRL) { self.start.ctrl.clone() } else { vec![0.0; model.nv()] };
         let mut own = Own { smooth: self, model, ws: Workspace::new(model), torques: vec![0.0; model.nv()] };
         let mut recording = Recording::of(model);
@@ -79,6 +79,10 @@ impl Smooth {
                 own.record(t, &state, &energy, &mut recording)?;
             }
             monitor.look(t, &counts);
+        }
+        if error.is_none() && needed > count as f64 {
+            let most = settings.max_steps;
+            error = Some(format!("{needed:.1e} steps to the end, of which {most} are made: expected longer steps, or an earlier end"));
         }
         counts.evaluations = counts.steps * self.method.contains.len() as u64;
         (counts.largest_step, counts.smallest_step) = (self.step, self.step);

@@ -24,7 +24,8 @@ pub(super) struct Summary {
     /// `generated` or `generic`.
     pub(super) code: &'static str,
     pub(super) integrator: Method,
-    /// Whether these are the steps of a robot's file: they are what was asked for, at any error.
+    /// Whether the steps are those of a robot's file. A large imbalance of energy is then a
+    /// warning, and the status stays `ok`.
     #[serde(skip)]
     pub(super) is_of_file: bool,
     pub(super) start_s: f64,

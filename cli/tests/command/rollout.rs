@@ -117,6 +117,11 @@ fn a_smooth_motion_is_of_a_file() {
     assert!(told(&[file.name(), "--smooth", "--integrator", "rk4"]).contains("cannot be used with"));
     // A scene has no activations.
     assert!(told(&[file.name()]).contains("the actuator \"servo\", which gives no force in a scene"), "{}", told(&[file.name()]));
-    let long = run(&["simulate", file.name(), "--smooth", "--step", "100", "--end", "100000"]);
-    assert!(long.err.contains("cart.xml"), "{}", long.err);
+    // A step that is too long for its motion is a warning, and a motion without a bound an error.
+    let stiff = SERVO.replace("implicitfast", "Euler").replace("kp=\"40\"", "kp=\"4e4\"");
+    let stiff = File::new("stiff.xml", stiff.as_bytes());
+    let long = run(&["simulate", stiff.name(), "--smooth", "--step", "0.0141", "--end", "0.3"]);
+    assert!(long.status == 0 && long.err.contains("the steps of the file are long for this motion"), "{} {}", long.status, long.err);
+    let lost = run(&["simulate", stiff.name(), "--smooth", "--step", "1", "--end", "500"]);
+    assert!(lost.status == 1 && lost.err.contains("is not finite"), "{} {}", lost.status, lost.err);
 }

@@ -465,7 +465,7 @@ fn of_word<T: Copy>(values: &Values<'_>, name: &str, words: &[(&str, T)], base: 
 /// Target of an actuator.
 struct Target {
     drives: Drives,
-    /// The places of a frame, and of the frame that it moves against, among those of the scope.
+    /// The indices of the site and of its reference in the scope.
     site: Option<(usize, Option<usize>)>,
     /// Of the coordinate or length, if it has one.
     range: Option<[f64; 2]>,
@@ -611,7 +611,7 @@ fn target(field: &str, index: usize, general: &General, scope: &Scope<'_>, tendo
     }
 }
 
-/// A frame, by the link of its body, and what pushes it.
+/// The frame of an actuator, and its reference, by the links of their bodies.
 fn pushed((site, reference): (usize, Option<usize>), general: &General, links: &[String], scope: &Scope<'_>) -> Site {
     let frame = |index: usize| {
         let (site, body) = scope.sites[index];

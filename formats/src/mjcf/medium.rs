@@ -26,7 +26,7 @@ pub(crate) struct Medium {
 impl Medium {
     /// The frame and the parameters of the drag on the box of a body's inertia.
     pub(crate) fn drag(&self, body: &Mass) -> (Pose, Vec<f64>) {
-        // Axes of the smallest bodies too: precisions of `principal` are absolute.
+        // `principal` has absolute thresholds: the inertia is scaled to one for small bodies.
         let size = body.inertia.iter().fold(0.0_f64, |most, x| most.max(x.abs())).max(f64::MIN_POSITIVE);
         let first = body.axes.unwrap_or(IDENTITY);
         let axes = multiply(first, principal(turned(conjugate(first), body.inertia.map(|x| x / size))).1);

@@ -2,12 +2,12 @@
 //! against the library's, and their derivatives.
 
 use articulated_codegen::lir::interpret::interpret;
-use articulated_codegen::{COptions, Options, Real, Request, Target, generate};
+use articulated_codegen::{COptions, Generated, Options, Real, Request, Target, generate};
 use articulated_core::actuator::{Activation, ActuatorLaw, Actuators, Filter, Transmission};
 use articulated_core::algorithm::{Workspace, difference, function, integrate};
 use articulated_core::dual::Dual;
 use articulated_core::model::Model;
-use articulated_core::step::{of_actuators, step};
+use articulated_core::step::{of_actuators, order, step};
 use articulated_tests::c_program;
 use articulated_tests::case::cast;
 use articulated_tests::random::Random;
@@ -68,6 +68,20 @@ fn assert_close(model: &Model<f64>, name: &str, given: &Given, found: &[f64]) {
     let scale = expected.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
     let far = apart(model, found, &expected);
     assert!(found.len() == expected.len() && far <= 1e-11 * scale, "{name}: {far:e} of {scale:e}");
+}
+
+/// Graphs and statements of generated functions against the library's functions of these names.
+fn assert_generated(generated: &Generated, names: &[&str], states: usize) {
+    let model = &generated.model;
+    for (k, name) in names.iter().enumerate() {
+        for given in given(model, states) {
+            let input = |argument: usize, k: usize| given[argument][k];
+            assert_close(model, name, &given, &generated.graphs[k].evaluate(input));
+            for (_, body) in generated.bodies[k].all() {
+                assert_close(model, name, &given, &interpret(body, input));
+            }
+        }
+    }
 }
 
 /// A wheel on an axle with an inertia of 0.25 kg·m².
@@ -152,7 +166,7 @@ fn errors_fall_with_the_order_of_the_method() {
         at[..3].concat()
     };
     for row in of_actuators::<f64>().iter().filter(|row| row.name != "actuator_torques") {
-        let order = if row.name.contains("rk4") { 4 } else { 1 };
+        let order = order(row);
         let error = |h: f64| apart(&model, &after(row.name, h, 1), &after("actuated_step_rk4", h, 64));
         // Servos of a light joint are fast: h is small beside the time in which they act.
         let (coarse, fine) = (error(2e-4), error(1e-4));
@@ -171,17 +185,8 @@ fn graphs_and_statements_are_the_library() {
     let names: Vec<&str> = generated.ledger.functions.iter().map(|entry| entry.function.as_str()).collect();
     let all: Vec<&str> = of_actuators::<f64>().iter().map(|row| row.name).collect();
     assert_eq!(names[..all.len()], all);
-    let model = &generated.model;
-    for (k, name) in names.iter().enumerate() {
-        let twin = if *name == "fixed" { "actuated_step_rk4" } else { name };
-        for given in given(model, 6) {
-            let input = |argument: usize, k: usize| given[argument][k];
-            assert_close(model, twin, &given, &generated.graphs[k].evaluate(input));
-            for (_, body) in generated.bodies[k].all() {
-                assert_close(model, twin, &given, &interpret(body, input));
-            }
-        }
-    }
+    let twins: Vec<&str> = names.iter().map(|name| if *name == "fixed" { "actuated_step_rk4" } else { name }).collect();
+    assert_generated(&generated, &twins, 6);
     // Constants of the controls, and without them none.
     for part in ["pub const NU: usize = 12;", "pub const NA: usize = 6;", "\"servo\"", "pub act_next: [f64; NA],"] {
         assert!(generated.source.contains(part), "{part}");
@@ -197,15 +202,8 @@ fn actuators_of_frames_push_bodies() {
     let generated =
         generate(&of_file("drone.xml", DRONE, &["actuators"], Options { batch: vec![Real::F64], ..Options::default() })).unwrap();
     let model = &generated.model;
-    for (k, row) in of_actuators::<f64>().iter().enumerate() {
-        for given in given(model, 3) {
-            let input = |argument: usize, k: usize| given[argument][k];
-            assert_close(model, row.name, &given, &generated.graphs[k].evaluate(input));
-            for (_, body) in generated.bodies[k].all() {
-                assert_close(model, row.name, &given, &interpret(body, input));
-            }
-        }
-    }
+    let names: Vec<&str> = of_actuators::<f64>().iter().map(|row| row.name).collect();
+    assert_generated(&generated, &names, 3);
     let [q, v, act, mut ctrl, h] = given(model, 1).remove(0);
     let torques = |ctrl: &[f64]| stepped("actuator_torques", model, &[q.clone(), v.clone(), act.clone(), ctrl.to_vec(), h.clone()]);
     let before = torques(&ctrl);
@@ -240,17 +238,9 @@ fn limbs_in_lanes_have_their_own_actuators() {
          <actuator>{drives}<motor site='foot1' gear='0 0 1 0 0 0'/><motor site='foot2' gear='1 0 0 0 0 0'/></actuator></mujoco>"
     );
     let generated = generate(&of_file("legs.xml", &text, &["actuators"], Options::default())).unwrap();
-    let model = &generated.model;
     assert!(generated.ledger.functions.iter().any(|entry| entry.lanes > 1), "limbs are computed side by side");
-    for (k, row) in of_actuators::<f64>().iter().enumerate() {
-        for given in given(model, 3) {
-            let input = |argument: usize, k: usize| given[argument][k];
-            assert_close(model, row.name, &given, &generated.graphs[k].evaluate(input));
-            for (_, body) in generated.bodies[k].all() {
-                assert_close(model, row.name, &given, &interpret(body, input));
-            }
-        }
-    }
+    let names: Vec<&str> = of_actuators::<f64>().iter().map(|row| row.name).collect();
+    assert_generated(&generated, &names, 3);
 }
 
 /// A C program prints results alone and in a batch.

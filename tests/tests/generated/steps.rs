@@ -9,7 +9,7 @@ use articulated_core::description::{Base, Origin};
 use articulated_core::dual::Dual;
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
-use articulated_core::step::{step, steps};
+use articulated_core::step::{order, step, steps};
 use articulated_core::user_function;
 use articulated_tests::c_program;
 use articulated_tests::case::{Case, State, cast, read};
@@ -86,7 +86,7 @@ fn errors_fall_with_the_order_of_the_method() {
         at
     };
     for name in ALL {
-        let order = if name.contains("rk4") { 4 } else { 1 };
+        let order = order(step::<f64>(name).unwrap());
         let error = |h: f64| apart(&model, &stepped(name, &model, [&q, &v, &tau], h), &reference(h));
         let (coarse, fine) = (error(4e-3), error(2e-3));
         let power = (coarse / fine).log2();

@@ -6,8 +6,8 @@
 //!                        l̇ = gᵀ (V − V_r)              in axes of the reference
 //! ```
 //!
-//! A rotor of a drone is the first. Joints that carry both frames do not count. Source: MuJoCo
-//! documentation, Actuation model (site transmission).
+//! A rotor of a drone has no reference. Joints that move both frames have no entry in ∂l/∂q.
+//! Source: MuJoCo documentation, Actuation model (site transmission).
 
 use alloc::vec::Vec;
 
@@ -19,12 +19,12 @@ use crate::model::Model;
 use crate::spatial::screw::log_rotation;
 use crate::spatial::{Placement, Wrench, rotate_back};
 
-/// What an actuator of a frame pushes.
+/// Transmission of an actuator on a frame of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SiteDrive<S = f64> {
     /// The frame.
     pub site: SiteFrame<S>,
-    /// The frame that the other one moves against, if there is one.
+    /// The reference frame, if there is one.
     pub reference: Option<SiteFrame<S>>,
     /// g: the wrench of a force of one, in axes of the frame, or of the reference.
     pub gear: Wrench<S>,
@@ -39,7 +39,7 @@ pub struct SiteFrame<S = f64> {
     pub placement: Placement<S>,
 }
 
-/// An actuator of a frame in a state.
+/// Length and Jacobian row of an actuator on a frame, in a state.
 #[derive(Clone, Debug)]
 pub(crate) struct SiteRow<S> {
     /// The place of its law.
@@ -96,7 +96,7 @@ impl<S: Scalar> Actuators<S> {
         self.laws.iter().filter_map(|law| law.site.as_ref()).flat_map(|own| core::iter::once(&own.site).chain(&own.reference))
     }
 
-    /// The same, to be changed: where the frame of a body is moved in it.
+    /// The same, mutable: for changes of the frames of bodies.
     pub fn frames_mut(&mut self) -> impl Iterator<Item = &mut SiteFrame<S>> {
         let all = self.laws.iter_mut().filter_map(|law| law.site.as_mut());
         all.flat_map(|own| core::iter::once(&mut own.site).chain(&mut own.reference))

@@ -1,4 +1,4 @@
-//! Frames of bodies that something outside of the table pushes.
+//! Placements of frames, and torques of wrenches on them, for code outside of the table.
 
 use alloc::vec::Vec;
 

@@ -21,13 +21,15 @@ impl FrameForce for Law {
         Wrench { moment: against(at.twist.angular, &p[3..6], p[7]), force: against(at.twist.linear, &p[..3], p[6]) }
     }
 
+    const HAS_DAMPING: bool = true;
+
     // 2 C_i |ω_i| + B;  2 c_i |v_i| + b
-    fn damping<S: Scalar>(p: &[S], at: &Station<S>) -> Option<[S; 6]> {
+    fn damping<S: Scalar>(p: &[S], at: &Station<S>) -> [S; 6] {
         let two = S::from_f64(2.0);
         let slope = |c: S, x: S, b: S| two * c * x.abs() + b;
-        Some(core::array::from_fn(|k| match k {
+        core::array::from_fn(|k| match k {
             0..3 => slope(p[3 + k], at.twist.angular[k], p[7]),
             _ => slope(p[k - 3], at.twist.linear[k - 3], p[6]),
-        }))
+        })
     }
 }

@@ -318,10 +318,13 @@ trait FrameForce {
         S::zero()
     }
 
-    /// −∂m_i/∂ω_i and −∂f_i/∂v_i along the axes, of a law whose slopes in the twist are diagonal:
-    /// implicit steps have them.
-    fn damping<S: Scalar>(_p: &[S], _at: &Station<S>) -> Option<[S; 6]> {
-        None
+    /// Whether the slopes of the wrench in the twist are diagonal: steps implicit in velocity use
+    /// [`FrameForce::damping`] then.
+    const HAS_DAMPING: bool = false;
+
+    /// −∂m_i/∂ω_i, N·m·s, and −∂f_i/∂v_i, N·s/m, along the axes.
+    fn damping<S: Scalar>(_p: &[S], _at: &Station<S>) -> [S; 6] {
+        [S::zero(); 6]
     }
 }
 
@@ -345,7 +348,7 @@ pub(crate) enum Law<S: 'static> {
         slope: AtStation<Dual<S>, Wrench<Dual<S>>>,
         energy: AtStation<S, S>,
         rise: AtStation<Dual<S>, Dual<S>>,
-        damping: AtStation<S, Option<[S; 6]>>,
+        damping: Option<AtStation<S, [S; 6]>>,
     },
     /// Inertia in a frame, of something that gravity does not act on.
     Added(fn(&[S]) -> ArticulatedInertia<S>),
@@ -402,7 +405,7 @@ macro_rules! law {
             slope: $file::Law::wrench,
             energy: $file::Law::energy,
             rise: $file::Law::energy,
-            damping: $file::Law::damping,
+            damping: if $file::Law::HAS_DAMPING { Some($file::Law::damping) } else { None },
         }
     };
     (Added $file:ident) => {

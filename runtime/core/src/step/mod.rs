@@ -45,7 +45,7 @@ const V_NEXT: Port = Port::new("v_next", &[Dim::Nv], "rad/s|m/s, after the step"
 /// Forward dynamics with wrenches: one of its ways.
 type Accelerate<S> = fn(&Model<S>, &mut Workspace<S>, &[S], &[S], &[S], &[S], &mut [S]);
 
-/// What a step starts from.
+/// Initial state and inputs of a step.
 struct Start<'a, S: 'static> {
     model: &'a Model<S>,
     q: &'a [S],
@@ -57,7 +57,7 @@ struct Start<'a, S: 'static> {
     accelerate: Accelerate<S>,
 }
 
-/// What drives the joints during a step: it is held.
+/// Inputs, constant during a step.
 enum Drive<'a, S> {
     /// Torques.
     Torques(&'a [S]),
@@ -66,7 +66,7 @@ enum Drive<'a, S> {
 }
 
 impl<S: Scalar> Start<'_, S> {
-    /// What gains of actuators multiply at these activations.
+    /// Inputs of the gains of actuators at these activations; none with torques.
     fn inputs(&self, act: &[S]) -> Vec<S> {
         match self.drive {
             Drive::Torques(_) => Vec::new(),
@@ -102,7 +102,7 @@ impl<S: Scalar> Start<'_, S> {
     }
 }
 
-/// Where a step ends.
+/// Final state of a step.
 struct End<'a, S> {
     q: &'a mut [S],
     v: &'a mut [S],
@@ -281,13 +281,8 @@ pub fn step<S: Scalar>(name: &str) -> Option<&'static Function<S>> {
     beside_the_table().find(|row| row.name == name)
 }
 
-/// The step that moves as an integrator of MuJoCo does, by its name in files: with torques, and
-/// with actuators.
-pub fn step_of_mujoco(integrator: &str) -> Option<[&'static str; 2]> {
-    match integrator {
-        "Euler" => Some(["step_implicit_damping", "actuated_step_implicit_damping"]),
-        "implicitfast" => Some(["step_implicit_velocity", "actuated_step_implicit_velocity"]),
-        "RK4" => Some(["step_rk4_mujoco", "actuated_step_rk4_mujoco"]),
-        _ => None,
-    }
+/// The order of a step: its error after a fixed time falls as this power of h.
+pub fn order<S: Scalar>(step: &Function<S>) -> u32 {
+    // Methods of one stage have order 1, those of four stages order 4.
+    step.contains.len() as u32
 }

@@ -7,7 +7,7 @@ use crate::Scalar;
 use crate::algorithm::Workspace;
 use crate::algorithm::common::{Axes, on_the_way, positions};
 use crate::algorithm::wrenches::place_bodies;
-use crate::effect::{EffectId, Law};
+use crate::effect::{BodyEffect, Law};
 use crate::index::BodyId;
 use crate::joint::with_pose;
 use crate::joint::{JointLaw, Mount};
@@ -137,9 +137,10 @@ pub(in crate::algorithm) fn add_inertia<S: Scalar>(model: &Model<S>, ws: &mut Wo
     }
 }
 
-/// Whether an effect on a body has diagonal slopes in its twist: [`EffectId::box_drag`] has.
+/// Whether the law of an effect on a body has damping.
 pub(crate) fn has_body_damping<S: Scalar>(model: &Model<S>) -> bool {
-    model.bodies.iter().any(|body| body.effects.body.iter().any(|own| own.effect == EffectId::box_drag))
+    let has_damping = |own: &BodyEffect<S>| matches!(own.effect.law::<S>(), Law::Wrench { damping: Some(_), .. });
+    model.bodies.iter().any(|body| body.effects.body.iter().any(has_damping))
 }
 
 /// Visits D_ij of D = Σ Jᵀ B J, i ≥ j, for the diagonal slopes B = −∂w/∂V of effects in the twists
@@ -156,8 +157,8 @@ pub(crate) fn body_damping<S: Scalar>(
     places(model, ws, q, v);
     for i in model.outward() {
         for effect in &model.bodies[i].effects.body {
-            let Law::Wrench { damping, .. } = effect.effect.law::<S>() else { continue };
-            let Some(slopes) = damping(&effect.parameters, &station_in_base(model, ws, i, effect)) else { continue };
+            let Law::Wrench { damping: Some(damping), .. } = effect.effect.law::<S>() else { continue };
+            let slopes = damping(&effect.parameters, &station_in_base(model, ws, i, effect));
             let turn = ws.common[i].rotation;
             let (axes, offset) = (turn * effect.placement.rotation, rotate(&turn, effect.placement.position));
             let mut own: Vec<(usize, [S; 6])> = Vec::new();
