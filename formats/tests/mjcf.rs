@@ -199,6 +199,7 @@ fn dynamics_that_are_not_read_are_warnings() {
         joint("stiffness=\"1 2\""),
         joint("stiffness=\"1\" springyield=\"0.1\""),
         joint("type=\"free\" frictionloss=\"1\""),
+        joint("actuatorgravcomp=\"true\" actuatorfrcrange=\"-1 1\""),
         joint("type=\"free\" stiffness=\"1\""),
     ];
     for text in texts {

@@ -32,6 +32,7 @@ MODEL = """<mujoco model="walker"><option gravity="0.3 -0.2 -9.7"><flag contact=
 # Rows without a check here, and why.
 ELSEWHERE = {
     "sensor `accelerometer`": "a recipe, whose code runs with the documentation",
+    "`qfrc_actuator`": "tests/mjcf/oracle.py compares torques of actuators",
     "`qfrc_passive` (springs, dampers, fluid)": "tests/mjcf/simulate.py compares forces of effects",
     "`mjd_inverseFD` (finite differences)": "finite differences, not numbers of the same kind",
     "`mjd_transitionFD` (of a step)": "finite differences of a step",

@@ -3,7 +3,7 @@
 
     python3 tests/mjcf/steps.py                   the dozen files of oracle.py, from the pinned packages
     python3 tests/mjcf/steps.py --file F.xml …    these files
-    python3 tests/mjcf/steps.py --all             every file of the packages: a row for each that differs, and what became of the others
+    python3 tests/mjcf/steps.py --all             every file of the packages: a row for each that differs, and the counts of all verdicts
 
 Contacts, limits, dry friction and equality constraints are off in MuJoCo, and so are actuators that are not read ("off": how
 many). A file with other actuators has random controls and activations, any other file random forces on its joints.

@@ -304,6 +304,8 @@ def reduce(model, read, warned):
         model.actuator_forcelimited[one] = 0
     no_spring, no_damper = disabled(model, "SPRING"), disabled(model, "DAMPER")
     has_passive = not (no_spring and no_damper)
+    for joint in np.flatnonzero(model.jnt_actgravcomp & model.jnt_actfrclimited):
+        warned.demand("actuatorgravcomp of the joint", name_of(model, "JOINT", joint), "actuatorgravcomp beside bounds")
     model.jnt_actgravcomp[:] = 0
     if has_passive and (model.opt.density or model.opt.viscosity):
         if model.opt.wind.any():

@@ -141,7 +141,8 @@ struct Energies {
 impl Own<'_> {
     fn call(&mut self, name: &str, inputs: &[&[f64]], out: &mut [f64]) -> Result<(), Failure> {
         let row = function::<f64>(name).or_else(|| step::step(name));
-        row.map_or(Ok(()), |row| row.call(self.model, &mut self.ws, inputs, out)).map_err(of_function)
+        let row = row.ok_or_else(|| Failure::tool(&format!("no function {name}")))?;
+        row.call(self.model, &mut self.ws, inputs, out).map_err(of_function)
     }
 
     fn energies(&mut self, state: &step::State) -> Result<Energies, Failure> {
@@ -151,7 +152,7 @@ impl Own<'_> {
             self.call(name, inputs, &mut out).map(|()| out[0])
         };
         let (kinetic, potential) = (one("kinetic_energy", &[q, v])?, one("potential_energy", &[q])?);
-        let loss = self.lost(q, v);
+        let loss = one("dissipation", &[q, v])?;
         let mut tau = vec![0.0; v.len()];
         if self.smooth.method.takes.contains(&CTRL) {
             let ctrl = self.smooth.start.ctrl.clone();
@@ -160,12 +161,6 @@ impl Own<'_> {
         let power = tau.iter().zip(v).map(|(tau, v)| tau * v).sum();
         self.torques = tau;
         Ok(Energies { kinetic, potential, power, loss })
-    }
-
-    /// Power of effects; 0 of effects without loss.
-    fn lost(&mut self, q: &[f64], v: &[f64]) -> f64 {
-        let mut out = [0.0];
-        self.call("dissipation", &[q, v], &mut out).map_or(0.0, |()| out[0])
     }
 
     /// Adds a record. The torques are those of the last energies.

@@ -519,6 +519,10 @@ fn joint<'a>(name: Option<String>, values: &Values<'a>, context: &Context<'a>, f
     let (is_limited, limit, force_range) = limits(values, kind, context, flags, log);
     // A number that does not exist for the kind is not parsed.
     let scalar = |name: &str, log: &mut Diagnostics| if is_scalar { values.number(name, log).map_or(0.0, angle) } else { 0.0 };
+    if force_range.is_some() && values.yes("actuatorgravcomp", log) == Some(true) {
+        let expected = "none: the bounds are those of the actuators alone, without the weight that is compensated";
+        values.element.warning((&values.subject, "actuatorgravcomp"), Code::LostDynamics, "actuatorgravcomp beside bounds", expected, log);
+    }
     // Errors in these are reported above and below.
     let mut reported = log.apart();
     Some(Joint {

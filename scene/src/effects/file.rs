@@ -28,7 +28,7 @@ pub(super) fn source(word: &str) -> &str {
 
 /// The words for the possible sources of an effect's numbers in the robot's file.
 pub(crate) fn sources(row: &Effect) -> impl Iterator<Item = &'static str> {
-    let urdf = Some("urdf").filter(|_| offers(row));
+    let urdf = Some(if of_link(row.id).is_some() { "file" } else { "urdf" }).filter(|_| offers(row));
     let collision = Some(collision::WORD).filter(|_| collision::offers(row));
     urdf.into_iter().chain(collision)
 }
