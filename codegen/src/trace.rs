@@ -73,9 +73,10 @@ fn passed<S: Scalar>(part: &FunctionTerm, strategy: &Strategy, model: &Model<S>)
 }
 
 /// The rotations that may be folded into constants after all passes, for functions independent of
-/// body poses.
+/// body poses: the constants are those at the argument q.
 pub(crate) fn foldable_rotations(part: &FunctionTerm, model: &Model<f64>) -> Vec<FoldedRotations> {
-    if indifferent(part, model) { finished(part, model).foldable_rotations() } else { Vec::new() }
+    let fits = indifferent(part, model) && part.function.is_at_one_configuration();
+    if fits { finished(part, model).foldable_rotations() } else { Vec::new() }
 }
 
 /// Units of other sizes, m, are not tried: constants would be far from one.
@@ -212,6 +213,7 @@ mod tests {
     use articulated_core::algorithm::{Needs, functions};
     use articulated_core::description::Origin;
     use articulated_core::effect::{Applied, EffectId};
+    use articulated_core::step::steps;
 
     use super::*;
     use crate::Request;
@@ -270,12 +272,17 @@ mod tests {
         functions::<Sym>().iter().filter(|f| f.needs != Needs::FreeFrames).map(FunctionSpec::plain)
     }
 
+    /// These, and steps.
+    fn all_and_steps() -> impl Iterator<Item = FunctionSpec> {
+        all().chain(steps::<Sym>().iter().map(FunctionSpec::plain))
+    }
+
     #[test]
     fn whatever_is_chosen_the_values_are_the_same() {
         let mut seen = 0;
         for (model, turns) in [(arm("", false), false), (arm("", true), false), (arm(FOLLOWER, false), false), (turning(FOLLOWER), true)] {
             assert_eq!(no_joint_moves_origin(&model), turns);
-            for spec in all() {
+            for spec in all_and_steps() {
                 let part = &spec.parts[0];
                 let all = ways(part, &model);
                 let values = |strategy| trace(&spec, &[strategy], &model, &[]).evaluate(input);

@@ -227,6 +227,25 @@ fn graphs_and_statements_are_the_library() {
     }
 }
 
+/// Parallel joints, floating bases, balls: every strategy that a bundled robot has.
+#[test]
+fn steps_of_bundled_robots_are_the_library() {
+    for robot in articulated_models::ROBOTS {
+        let mut request = Request::new(format!("{}.urdf", robot.name), robot.urdf);
+        request.options.robot.base = robot.base;
+        request.options.functions = vec!["step_implicit_damping".into(), "step_rk4".into(), "step_rk4_mujoco".into()];
+        let generated = generate(&request).unwrap();
+        let model = &generated.model;
+        for (k, graph) in generated.graphs.iter().enumerate() {
+            let name = generated.ledger.functions[k].function.as_str();
+            for given in given(model, 2) {
+                let input = |argument: usize, k: usize| given[argument][k];
+                assert_steps(model, name, &given, &graph.evaluate(input), 1e-10);
+            }
+        }
+    }
+}
+
 /// Results are a struct in Rust, and arrays in C, where a program prints them.
 #[test]
 fn compiled_steps_are_the_library() {

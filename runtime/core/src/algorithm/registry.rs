@@ -255,6 +255,12 @@ impl<S: Scalar> Function<S> {
         matches!(self.needs, Needs::MassMatrix | Needs::FreeFrames)
     }
 
+    /// Whether it places the robot at its argument q alone. A step of several stages places it at
+    /// others too.
+    pub fn is_at_one_configuration(&self) -> bool {
+        self.contains.len() <= 1
+    }
+
     /// Whether it takes or returns something for each frame.
     pub fn asks_for_frames(&self) -> bool {
         let of_frames = |dims: &[Dim]| dims.contains(&Dim::Frames);
