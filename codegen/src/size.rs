@@ -10,7 +10,7 @@ use articulated_core::index::{BodyId, ById};
 use articulated_core::model::Model;
 
 use crate::function_spec::{Derivative, FunctionSpec, FunctionTerm};
-use crate::limbs::IsomorphicLimbs;
+use crate::limbs::{self, IsomorphicLimbs};
 use crate::{Options, Request, program};
 
 /// Default limit of generated source, megabytes (10⁶ bytes). For more, a compiler takes minutes and
@@ -125,7 +125,8 @@ fn megabytes(spec: &FunctionSpec, model: &Model<f64>, tree: &Tree, options: &Opt
     let times = tree.times(spec, model.shape());
     let instructions = |columns| times * spec.parts.iter().map(|part| tree.instructions(part, columns)).sum::<f64>();
     let has_limbs = options.limbs && can.vectors && options.parameters.is_empty();
-    let has_limbs = has_limbs && [4, 2].into_iter().any(|width| IsomorphicLimbs::of(model, width).is_some());
+    let has_limbs = has_limbs
+        && [4, 2].into_iter().any(|width| IsomorphicLimbs::of(limbs::completed(model, width).as_ref().unwrap_or(model), width).is_some());
     let single = bytes.single + if has_limbs { bytes.limbs } else { 0.0 };
     let [all, each] = bytes.states;
     let states = if can.states { all + each * options.batch.len() as f64 } else { 0.0 };

@@ -1,6 +1,6 @@
 //! Isomorphic branches: the legs of a quadruped are one program with four sets of constants.
 
-use articulated_core::effect::EffectId;
+use articulated_core::effect::{EffectId, JointEffect, Zeros, effects};
 use articulated_core::index::{BodyId, ById};
 use articulated_core::joint::Joint;
 use articulated_core::model::Model;
@@ -44,6 +44,51 @@ type Branch = (BodyId, Option<Vec<Kind>>);
 ///
 /// No branch is in two sets: fingers of isomorphic arms belong to the arms.
 pub(crate) fn isomorphic_branches(model: &Model, width: usize) -> Vec<Limbs> {
+    branches(model, width, true)
+}
+
+/// The same robot with effects of no strength on joints of a branch whose counterparts in other
+/// branches have these effects, as the spring of one knee alone. `None` if there are none.
+pub(crate) fn completed(model: &Model, width: usize) -> Option<Model> {
+    let mut missing: Vec<(BodyId, JointEffect<f64>)> = Vec::new();
+    for limbs in branches(model, width, false) {
+        for bodies in (0..limbs.bodies).map(|k| limbs.aligned(k)) {
+            let of = |body: BodyId| &model.bodies()[body].effects.joint;
+            for own in bodies.iter().flat_map(|&body| of(body)) {
+                let is_same = |other: &JointEffect<f64>| (other.effect, other.freedom) == (own.effect, own.freedom);
+                let lacks = |body: &BodyId| !of(*body).iter().any(is_same) && !missing.iter().any(|(b, other)| b == body && is_same(other));
+                let lacking: Vec<BodyId> = bodies.iter().copied().filter(lacks).collect();
+                missing.extend(lacking.into_iter().filter_map(|body| Some((body, without_strength(own)?))));
+            }
+        }
+    }
+    let place = |own: &JointEffect<f64>| (effects().iter().position(|row| row.id == own.effect), own.freedom);
+    (!missing.is_empty()).then(|| {
+        model.clone().changed(|parts| {
+            for (body, own) in missing {
+                let all = &mut parts.bodies[body].effects.joint;
+                all.push(own);
+                all.sort_by_key(place);
+            }
+        })
+    })
+}
+
+/// The effect with zeros for the numbers without which it vanishes; `None` if there are none.
+fn without_strength(own: &JointEffect<f64>) -> Option<JointEffect<f64>> {
+    let (mut parameters, mut at, row) = (own.parameters.clone(), 0, own.effect.row());
+    for field in row.fields_of(own.parameters.len()) {
+        let numbers = parameters.iter_mut().skip(at).take(field.len);
+        at += field.len;
+        if field.zeros == Zeros::Nothing {
+            numbers.for_each(|x| *x = 0.0);
+        }
+    }
+    row.is_nothing(&parameters).then(|| JointEffect { parameters, ..own.clone() })
+}
+
+/// As [`isomorphic_branches`]; `with_effects`: effects on joints must be the same.
+fn branches(model: &Model, width: usize, with_effects: bool) -> Vec<Limbs> {
     let sizes = branch_sizes(model);
     let mut found = Vec::new();
     let mut open = vec![BodyId::BASE];
@@ -52,7 +97,7 @@ pub(crate) fn isomorphic_branches(model: &Model, width: usize) -> Vec<Limbs> {
     while let Some(body) = open.pop() {
         let mut branches: Vec<Branch> = children[body].iter().map(|&i| (i, None)).collect();
         if branches.len() >= width {
-            branches.iter_mut().for_each(|(i, kinds)| *kinds = branch_kinds(model, *i, sizes[*i]));
+            branches.iter_mut().for_each(|(i, kinds)| *kinds = branch_kinds(model, *i, sizes[*i], with_effects));
         }
         while let Some((first, kinds)) = branches.first() {
             let alike = |(_, others): &&Branch| kinds.is_some() && others == kinds;
@@ -81,7 +126,7 @@ fn branch_sizes(model: &Model) -> ById<BodyId, usize> {
 
 /// The kinds of the bodies of a branch; `None` if one follows a joint outside of it, or is followed
 /// from there.
-fn branch_kinds(model: &Model, root: BodyId, size: usize) -> Option<Vec<Kind>> {
+fn branch_kinds(model: &Model, root: BodyId, size: usize, with_effects: bool) -> Option<Vec<Kind>> {
     let places = root.0..root.0 + size;
     let branch = places.clone().map(BodyId);
     let (first, last) = (&model.bodies()[root].coordinates, &model.bodies()[BodyId(root.0 + size - 1)]);
@@ -100,7 +145,7 @@ fn branch_kinds(model: &Model, root: BodyId, size: usize) -> Option<Vec<Kind>> {
             at,
             follows: body.coordinates.mimic.is_some(),
             is_link: body.link.is_some(),
-            effects: body.effects.kinds(),
+            effects: if with_effects { body.effects.kinds() } else { body.effects.body.iter().map(|own| (own.effect, 0)).collect() },
         })
     };
     branch.clone().map(kind).collect()
@@ -184,6 +229,24 @@ mod tests {
         assert_eq!((damped(&[3]), damped(&[3, 5])), (vec![], vec![(vec![2, 4], 2)]));
         let followed = |follows: &[(usize, usize)]| roots(tree(&LEGS, follows), 2);
         assert_eq!((followed(&[(3, 2)]), followed(&[(3, 2), (5, 4)])), (vec![], vec![(vec![2, 4], 2)]));
+    }
+
+    #[test]
+    fn a_spring_of_one_limb_alone_has_no_strength_in_the_others() {
+        let mut parts = tree(&LEGS, &[]);
+        let [damping, spring] = [(EffectId::damping, vec![0.3]), (EffectId::spring, vec![2.0, 0.1])]
+            .map(|(effect, parameters)| JointEffect { effect, freedom: 0, parameters });
+        parts.bodies[BodyId(3)].effects.joint = vec![damping.clone(), spring.clone()];
+        parts.bodies[BodyId(5)].effects.joint = vec![damping];
+        let model = Model::from_parts(parts).unwrap();
+        assert_eq!(isomorphic_branches(&model, 2), []);
+        let whole = completed(&model, 2).unwrap();
+        assert_eq!(isomorphic_branches(&whole, 2).len(), 1);
+        let kinds = |k: usize| whole.bodies()[BodyId(k)].effects.kinds();
+        assert_eq!(kinds(3), kinds(5));
+        let added = whole.bodies()[BodyId(5)].effects.joint.iter().find(|own| own.effect == EffectId::spring).unwrap();
+        assert_eq!(added.parameters, [0.0, 0.1]);
+        assert!(completed(&whole, 2).is_none());
     }
 
     #[test]

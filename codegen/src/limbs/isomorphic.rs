@@ -1,9 +1,11 @@
 //! Isomorphic limbs of a robot: their indices, and their constants as symbols.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
+use std::mem::{Discriminant, discriminant};
 
 use articulated_core::Scalar;
+use articulated_core::actuator::{ActuatorLaw, Actuators, Filter, Transmission};
 use articulated_core::algorithm::{Argument, Dim};
 use articulated_core::index::{BodyId, FrameId};
 use articulated_core::model::Model;
@@ -20,6 +22,18 @@ pub(crate) struct IsomorphicLimbs {
     q: Indices,
     v: Indices,
     frames: Indices,
+    controls: Indices,
+    activations: Indices,
+    actuators: Drives,
+}
+
+/// The parts of the actuators that correspond, one per lane, by their places in the lists of
+/// [`Actuators`]. Those of several joints, of sites and of followers are outside limbs.
+#[derive(Default)]
+struct Drives {
+    laws: Vec<Vec<usize>>,
+    bounds: Vec<Vec<usize>>,
+    passive: Vec<Vec<usize>>,
 }
 
 /// For each index of a vector that belongs to a limb, the corresponding indices, one per lane.
@@ -32,7 +46,17 @@ impl IsomorphicLimbs {
         if limbs.is_empty() {
             return None;
         }
-        let mut alike = Self { width, limbs, q: Indices::new(), v: Indices::new(), frames: Indices::new() };
+        let empty = Indices::new;
+        let mut alike = Self {
+            width,
+            limbs,
+            q: empty(),
+            v: empty(),
+            frames: empty(),
+            controls: empty(),
+            activations: empty(),
+            actuators: Drives::default(),
+        };
         for bodies in alike.bodies() {
             let first = &model.bodies()[bodies[0]].joint;
             let start = |at: fn(&Model<f64>, BodyId) -> usize| bodies.iter().map(|&i| at(model, i)).collect::<Vec<_>>();
@@ -43,7 +67,26 @@ impl IsomorphicLimbs {
                 align(&mut alike.frames, &frames.iter().map(|f| f[k].0).collect::<Vec<_>>(), 1);
             }
         }
+        alike.align_actuators(model.actuators());
         Some(alike)
+    }
+
+    /// Finds the actuators that correspond: as many on each of the corresponding joints.
+    fn align_actuators(&mut self, all: &Actuators<f64>) {
+        let sets: BTreeSet<&Vec<usize>> = self.v.values().collect();
+        for freedoms in sets {
+            let of = |laws: &[ActuatorLaw<f64>]| alike(freedoms, |v| places(laws, |law| drives_only(law, v)), |k| Shape::of(&laws[k]));
+            self.actuators.laws.extend(of(&all.laws));
+            self.actuators.passive.extend(of(&all.passive));
+            self.actuators.bounds.extend(alike(freedoms, |v| places(&all.bounds, |(k, _)| *k == v), |_| ()));
+        }
+        let activation = |k: usize| all.laws[..k].iter().filter(|law| law.activation.is_some()).count();
+        for laws in &self.actuators.laws {
+            align(&mut self.controls, laws, 1);
+            if all.laws[laws[0]].activation.is_some() {
+                align(&mut self.activations, &laws.iter().map(|&k| activation(k)).collect::<Vec<_>>(), 1);
+            }
+        }
     }
 
     /// The corresponding bodies.
@@ -57,6 +100,8 @@ impl IsomorphicLimbs {
             [Dim::Nq] => (&self.q, 1),
             [Dim::Nq, Dim::Of(width)] => (&self.q, *width),
             [Dim::Nv] => (&self.v, 1),
+            [Dim::Controls] => (&self.controls, 1),
+            [Dim::Activations] => (&self.activations, 1),
             [Dim::Frames, Dim::Of(width)] => (&self.frames, *width),
             _ => return None,
         };
@@ -85,9 +130,54 @@ impl IsomorphicLimbs {
                     }
                 }
             }
+            let (all, symbolic) = (model.actuators(), &mut parts.actuators);
+            constants.put(&self.actuators.laws, &all.laws, &mut symbolic.laws, |law, f| law.map(f));
+            constants.put(&self.actuators.passive, &all.passive, &mut symbolic.passive, |law, f| law.map(f));
+            constants.put(&self.actuators.bounds, &all.bounds, &mut symbolic.bounds, |(k, range), f| (*k, range.map(f)));
         });
         View { model: symbolic, formulation }
     }
+}
+
+/// Properties that corresponding actuators share; numbers may differ.
+#[derive(PartialEq, Eq)]
+struct Shape {
+    freedoms: usize,
+    has_no_torque: bool,
+    has_bounds: (bool, bool),
+    activation: Option<(Discriminant<Filter<f64>>, bool, bool)>,
+}
+
+impl Shape {
+    fn of(law: &ActuatorLaw<f64>) -> Self {
+        let drive = &law.drives[0];
+        let activation = law.activation.as_ref().map(|own| (discriminant(&own.filter), own.range.is_some(), own.is_early));
+        Self {
+            freedoms: drive.gear.len(),
+            has_no_torque: drive.has_no_torque,
+            has_bounds: (law.control_range.is_some(), law.force_range.is_some()),
+            activation,
+        }
+    }
+}
+
+/// Whether an actuator drives the joint with this first degree of freedom, and nothing else.
+fn drives_only(law: &ActuatorLaw<f64>, v: usize) -> bool {
+    law.site.is_none() && matches!(&law.drives[..], [Transmission { v: own, .. }] if *own == v)
+}
+
+/// The places of the items of which `is` holds.
+fn places<T>(items: &[T], is: impl Fn(&T) -> bool) -> Vec<usize> {
+    (0..items.len()).filter(|&k| is(&items[k])).collect()
+}
+
+/// The first, second, … place of each degree of freedom, together; none if they are not as many,
+/// or not of one shape.
+fn alike<T: PartialEq>(freedoms: &[usize], places: impl Fn(usize) -> Vec<usize>, shape: impl Fn(usize) -> T) -> Vec<Vec<usize>> {
+    let lanes: Vec<Vec<usize>> = freedoms.iter().map(|&v| places(v)).collect();
+    let first: Vec<T> = lanes[0].iter().map(|&k| shape(k)).collect();
+    let are_alike = lanes.iter().all(|lane| lane.len() == first.len() && lane.iter().zip(&first).all(|(&k, first)| shape(k) == *first));
+    if are_alike { (0..first.len()).map(|k| lanes.iter().map(|lane| lane[k]).collect()).collect() } else { Vec::new() }
 }
 
 /// The frames of each of these bodies; empty if their numbers differ: then each frame is computed
@@ -137,6 +227,17 @@ impl Constants {
     /// The numbers and the lane behind element `index` of the argument.
     pub(crate) fn behind(&self, index: usize) -> (Value, usize) {
         (self.numbers[index / MOST], index % MOST)
+    }
+
+    /// Puts symbols in the place of the constants of the items that correspond.
+    fn put<T, U>(&mut self, sets: &[Vec<usize>], items: &[T], symbolic: &mut [U], map: impl Fn(&T, &dyn Fn(f64) -> Sym) -> U) {
+        for set in sets {
+            let numbers: Vec<Vec<f64>> = set.iter().map(|&k| recorded(|f| drop(map(&items[k], &|x| Sym::from_f64(f(x)))))).collect();
+            for (lane, &k) in set.iter().enumerate() {
+                let symbols = self.symbols(&numbers, lane);
+                symbolic[k] = map(&items[k], &|_| next(&symbols));
+            }
+        }
     }
 
     /// Symbols for the numbers of one lane, `numbers[lane]` all of them.

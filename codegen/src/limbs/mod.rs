@@ -13,6 +13,7 @@ mod branches;
 mod isomorphic;
 mod vectorize;
 
+pub(crate) use branches::completed;
 pub(crate) use isomorphic::{Constants, IsomorphicLimbs};
 pub(crate) use vectorize::pack;
 
@@ -21,9 +22,12 @@ mod tests {
     use std::fmt::Write;
 
     use articulated_core::Scalar;
+    use articulated_core::actuator::{Activation, ActuatorLaw, Actuators, Filter, Transmission};
     use articulated_core::algorithm::{Argument, Needs, functions};
     use articulated_core::description::Base;
+    use articulated_core::index::BodyId;
     use articulated_core::model::Model;
+    use articulated_core::step;
     use num_traits::One;
 
     use super::*;
@@ -130,6 +134,67 @@ mod tests {
         let [plain, lanes] = [trace(&spec, &strategy, &model, &[]), trace_in_lanes(&spec, &strategy, &model, &alike)];
         for (a, b) in plain.evaluate(input).into_iter().zip(lanes.evaluate(input)) {
             assert!((a - b).abs() <= 1e-12 * (1.0 + a.abs()), "{a} {b}");
+        }
+    }
+
+    /// Actuators on each leg with numbers of its own: a servo on the hip, with bounds and an
+    /// activation, a motor on the knee whose torque is bounded, and a damper.
+    fn actuated(model: Model<f64>, seed: &mut u64) -> Model<f64> {
+        let legs = branches::isomorphic_branches(&model, 4)[0].roots.clone();
+        let drive = |body: BodyId, gear: f64| {
+            let at = &model.bodies()[body].coordinates;
+            vec![Transmission { q: at.q, v: at.v, gear: vec![gear], has_no_torque: false }]
+        };
+        let mut all = Actuators::default();
+        for &hip in &legs {
+            let knee = BodyId(hip.0 + 1);
+            all.laws.push(ActuatorLaw {
+                drives: drive(hip, 2.0 + number(seed)),
+                gain: [10.0 + number(seed), 0.0, 0.0],
+                bias: [0.0, -10.0 + number(seed), -1.0 + 0.5 * number(seed)],
+                control_range: Some([-0.2 + 0.1 * number(seed), 0.3]),
+                force_range: Some([-3.0 + number(seed), 3.0 + number(seed)]),
+                activation: Some(Activation { filter: Filter::Euler(0.05 + 0.01 * number(seed)), range: None, is_early: false }),
+                ..ActuatorLaw::default()
+            });
+            all.laws.push(ActuatorLaw { drives: drive(knee, number(seed)), gain: [5.0, 0.0, 0.0], ..ActuatorLaw::default() });
+            all.bounds.push((model.bodies()[knee].coordinates.v, [-0.3 + 0.1 * number(seed), 0.3]));
+            all.passive.push(ActuatorLaw {
+                drives: drive(knee, 1.0),
+                bias: [0.0, 0.0, -0.7 + 0.1 * number(seed)],
+                ..ActuatorLaw::default()
+            });
+        }
+        model.changed(|parts| parts.actuators = all)
+    }
+
+    #[test]
+    fn actuators_of_limbs_are_in_lanes() {
+        let model = actuated(walker(4, &mut 7), &mut 11);
+        // One leg has a motor more: then those on hips are by themselves.
+        let first = model.actuators().laws[0].clone();
+        let odd = model.clone().changed(|parts| parts.actuators.laws.push(first));
+        for (model, has_one_more) in [(&model, false), (&odd, true)] {
+            let alike = IsomorphicLimbs::of(model, 4).unwrap();
+            let hips: Vec<usize> = (0..4).map(|leg| 2 * leg).collect();
+            assert_eq!(alike.lanes(step::CTRL, 2), (!has_one_more).then_some((hips, 1)));
+            assert_eq!(alike.lanes(step::ACT, 3), (!has_one_more).then(|| (vec![0, 1, 2, 3], 3)));
+            assert_eq!(alike.lanes(step::CTRL, 3), Some((vec![1, 3, 5, 7], 1)));
+            for name in ["actuator_torques", "actuated_step_implicit_damping", "actuated_step_implicit_velocity", "actuated_step_rk4"] {
+                let spec = FunctionSpec::parse(name).unwrap();
+                for (way, _) in ways(&spec.parts[0], model) {
+                    let strategy = [Strategy::plain(way, usize::MAX)];
+                    let plain = passed(trace(&spec, &strategy, model, &[]));
+                    let lanes = passed(trace_in_lanes(&spec, &strategy, model, &alike));
+                    lanes.verify().unwrap();
+                    let of = |argument, k| if argument == 4 { 2e-3 } else { input(argument, k) };
+                    for (k, (a, b)) in plain.evaluate(of).into_iter().zip(lanes.evaluate(of)).enumerate() {
+                        assert!((a - b).abs() <= 1e-9 * (1.0 + a.abs()), "{name} {}, output {k}: {a} {b}", way.name);
+                    }
+                    let [plain, lanes] = [plain, lanes].map(|graph| graph.counts().instructions());
+                    assert!(has_one_more || lanes * 2 < plain + 50, "{name} {}: {lanes} {plain}", way.name);
+                }
+            }
         }
     }
 

@@ -12,7 +12,7 @@ use crate::capabilities::Capabilities;
 use crate::function_spec::FunctionSpec;
 use crate::graph::{Graph, Op};
 use crate::ledger::Entry;
-use crate::limbs::IsomorphicLimbs;
+use crate::limbs::{self, IsomorphicLimbs};
 use crate::parameters::Parameter;
 use crate::pass;
 use candidate::Candidate;
@@ -55,8 +55,10 @@ pub(crate) fn program(spec: FunctionSpec, model: &Model<f64>, parameters: &[Para
     // masks of regions are those of a whole state.
     if options.limbs && can.vectors && parameters.is_empty() && !best.0.has_regions() {
         for width in [4, 2] {
+            let completed = limbs::completed(model, width);
+            let model = completed.as_ref().unwrap_or(model);
             let Some(alike) = IsomorphicLimbs::of(model, width) else { continue };
-            let other = Candidate { alike: Some(alike), ..candidate }.build(&reduced, unsolved);
+            let other = Candidate { model, alike: Some(alike), ..candidate }.build(&reduced, unsolved);
             if price(&other.0) * MIN_GAIN < price(&best.0) {
                 best = other;
             }
