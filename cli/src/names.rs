@@ -1,9 +1,9 @@
 //! Lists of functions on the command line.
 
+use articulated_codegen::function_groups::{ACTUATORS, ALL, Group, MOTION, STEPS, functions_of};
 use articulated_codegen::{FunctionSpec, resolve_synonym};
-use articulated_core::algorithm::{function, functions};
-
-use articulated_codegen::function_groups::{ALL, Group, MOTION, functions_of};
+use articulated_core::algorithm::{Function, function, functions};
+use articulated_core::step::{beside_the_table, step};
 
 /// The functions that one word of the command line names.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -11,17 +11,18 @@ pub(crate) struct Names(Vec<String>);
 
 /// Functions of the table and groups of them, with commas between.
 pub(crate) fn known(text: &str) -> Result<Names, String> {
-    each(text, &known_one)
+    each(text, &of_table)
 }
 
-/// As [`known`], with the generator's syntax: `name = first + second(a = 0)`, and `motion` of a
-/// scene.
+/// As [`known`], with steps and functions of actuators, and the generator's syntax:
+/// `name = first + second(a = 0)`, and `motion` of a scene.
 pub(crate) fn requested(text: &str) -> Result<Names, String> {
     each(text, &|entry| match entry.contains(['=', '+', '(']) {
         true => FunctionSpec::parse(entry).map(|_| vec![entry.to_owned()]).map_err(|e| e.to_string()),
         // A group may have functions that the robot lacks: it stays one word.
         false if entry == MOTION || functions_of(entry).is_some() => Ok(vec![entry.to_owned()]),
-        false => known_one(entry),
+        false if step::<f64>(entry).is_some() || function::<f64>(entry).is_some() => Ok(vec![entry.to_owned()]),
+        false => Err(unknown(entry, beside_the_table(), &[STEPS, ACTUATORS])),
     })
 }
 
@@ -51,17 +52,25 @@ fn entries(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-fn known_one(name: &str) -> Result<Vec<String>, String> {
+fn of_table(name: &str) -> Result<Vec<String>, String> {
     if function::<f64>(name).is_some() {
         return Ok(vec![name.to_owned()]);
     }
-    if let Some(functions) = functions_of(name) {
-        return Ok(functions);
+    if [STEPS, ACTUATORS].contains(&name) || step::<f64>(name).is_some() {
+        return Err("steps and functions of actuators are not in this table: `articulated rollout` runs them, `articulated generate` \
+                    generates them"
+            .to_owned());
     }
-    let all = || functions::<f64>().iter().map(|f| f.name).chain(Group::ALL.map(Group::name)).chain([ALL]);
-    let near = resolve_synonym(name, all()).map(|n| format!("did you mean {n}? ")).unwrap_or_default();
-    let groups = Group::ALL.map(Group::name).join(", ");
-    Err(format!("{near}there are the groups {groups} and {ALL}, and the functions that `articulated functions` lists"))
+    functions_of(name).ok_or_else(|| unknown(name, [].into_iter(), &[]))
+}
+
+/// The error about a name, with these functions and groups beside those of the table.
+fn unknown(name: &str, beside: impl Iterator<Item = &'static Function<f64>>, groups: &[&'static str]) -> String {
+    let groups: Vec<&str> = Group::ALL.map(Group::name).iter().chain(groups).copied().collect();
+    let all = functions::<f64>().iter().chain(beside).map(|f| f.name).chain(groups.iter().copied()).chain([ALL]);
+    let near = resolve_synonym(name, all).map(|n| format!("did you mean {n}? ")).unwrap_or_default();
+    let groups = groups.join(", ");
+    format!("{near}there are the groups {groups} and {ALL}, and the functions that `articulated functions` lists")
 }
 
 #[cfg(test)]
@@ -79,6 +88,16 @@ mod tests {
         assert!(known("rnea").unwrap_err().starts_with("did you mean inverse_dynamics?"));
         assert!(known("inverse_kinematics").unwrap_err().starts_with("there are the groups"));
         assert!(known("x = mass_matrix").is_err() && requested("x = mass_matrx").is_err());
+    }
+
+    #[test]
+    fn steps_are_requested_and_not_evaluated() {
+        for name in ["step_rk4", "actuated_step_rk4", "actuator_torques", "steps", "actuators"] {
+            assert_eq!(requested(name), list(&[name]));
+            assert!(known(name).unwrap_err().contains("articulated rollout"), "{name}");
+        }
+        assert!(requested("step_rk").unwrap_err().contains("did you mean step_rk4?"));
+        assert!(requested("step").unwrap_err().contains("steps"));
     }
 
     #[test]
