@@ -76,6 +76,10 @@ pub(crate) struct RobotArguments {
     /// scene's]
     #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub(crate) max_code_size: Option<u64>,
+    /// The word `file`: the smooth effects of the robot's file act (damping, springs, armature,
+    /// compensated weight, the medium) [default: none, or the scene's]
+    #[arg(long, value_name = "file", value_parser = ["file"], hide_possible_values = true)]
+    pub(crate) effects: Option<String>,
     #[command(flatten)]
     pub(crate) edits: Edits,
 }
@@ -123,6 +127,7 @@ impl RobotArguments {
             package: Vec::new(),
             rename: Vec::new(),
             max_code_size: None,
+            effects: None,
             edits: Edits::default(),
         }
     }

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use articulated_codegen::scene::Scene;
 use articulated_codegen::{Appended, MOST_FREEDOMS, Options, Request, TrigAccuracy, nearest};
 use articulated_core::description::Base;
-use articulated_core::diagnostic::{Diagnostic, Diagnostics, summary, values};
+use articulated_core::diagnostic::{At, Diagnostic, Diagnostics, summary, values};
 use articulated_core::model::Model;
 use articulated_formats::{Environment, Included, MOST_BYTES, nearest_file, read_at_most};
 use articulated_scene::{BuiltRobot, RobotOptions};
@@ -72,7 +72,8 @@ impl Robot {
         options.robot.included = included(&file, &document, &options.robot);
         edit(&mut options, &arguments.edits)?;
         let files = files(path.iter().cloned(), &arguments.edits, &options);
-        Ok(Self { file, scene: None, document, options, effects: None, path, bundled: bundled.is_some(), files })
+        let effects = arguments.effects.is_some().then(|| Scene::of_file_effects(&file));
+        Ok(Self { file, scene: None, document, options, effects, path, bundled: bundled.is_some(), files })
     }
 
     /// The robot of a scene: a file, or a bundled one. Arguments replace the values of the scene;
@@ -101,7 +102,10 @@ impl Robot {
         options.max_code_size = arguments.max_code_size.unwrap_or(options.max_code_size);
         edit(options, &arguments.edits)?;
         // The scene's effects on all joints apply to the edited robot.
-        let Request { document, file, options, scene } = request;
+        let Request { document, file, options, mut scene } = request;
+        if arguments.effects.is_some() {
+            scene.get_or_insert_with(|| Scene::of_file_effects(&file)).add_file_effects("--effects", At::default());
+        }
         let files = files(prepared.files.into_iter(), &arguments.edits, &options);
         Ok(Self { file, scene: Some(name.display().to_string()), document, options, effects: scene, path: None, bundled, files })
     }

@@ -8,7 +8,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use articulated_core::algorithm::UserFunction;
 use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Span, Spanned, summary};
 use articulated_formats::LeaveOut;
-use articulated_scene::{Loader, Robot, beside};
+use articulated_scene::{Loader, Robot, Scene, beside};
 
 use crate::cache::Cache;
 use crate::{Appended, Base, Coupling, Generated, Origin, Payload, Real, Reference, Request, RobotOptions, Target, generate, scene};
@@ -273,6 +273,15 @@ impl Build {
     #[must_use]
     pub fn file_coupling(mut self) -> Self {
         self.request.options.robot.file_coupling = true;
+        self
+    }
+
+    /// Lets the smooth effects of the robot's file act: damping, springs and armature of joints,
+    /// compensated weight, the medium. Those that the scene names are the scene's.
+    #[must_use]
+    pub fn file_effects(mut self) -> Self {
+        let scene = self.request.scene.get_or_insert_with(|| Scene { file: self.request.file.clone(), ..Scene::default() });
+        scene.add_file_effects("Build::file_effects", At::default());
         self
     }
 

@@ -5,11 +5,13 @@ use std::collections::BTreeMap;
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Function, Group, Needs, functions};
+use articulated_core::description::Joint;
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Spanned, quote};
+use articulated_core::effect::{Effect, EffectId, effects};
 use articulated_core::model::Model;
 use articulated_formats::OnLockedJoint;
 use articulated_formats::world::World;
-use articulated_scene::BuiltRobot;
+use articulated_scene::{BuiltRobot, Why};
 
 use crate::function_spec::{FunctionSpec, wrong_entry};
 use crate::language::refuses_port;
@@ -58,7 +60,8 @@ pub(crate) fn plan(request: &Request, members: &BTreeMap<String, String>, log: &
     robot.reading.warnings.extend(without);
     if entries.iter().any(|(_, function)| function.parts.iter().any(|part| part.function.group == Group::Actuators)) {
         let warnings = locked_actuators(&request.file, &robot.reading.world, &robot.model);
-        robot.reading.warnings.extend(warnings);
+        let of_file = forces_of_the_file(&request.file, &robot);
+        robot.reading.warnings.extend(warnings.into_iter().chain(of_file));
     }
     let names: Vec<String> = entries.iter().map(|(_, function)| function.name.clone()).collect();
     let derived = |(k, function): Entry| options.target.with_derivatives(function, &names).into_iter().map(move |f| (k, f));
@@ -77,6 +80,31 @@ pub fn locked_actuators(file: &str, world: &World, model: &Model<f64>) -> Vec<Di
         Diagnostic::error(file, (Default::default(), "actuator"), Code::LostDynamics, found, expected).into_warning()
     };
     world.actuators_of(model).1.into_iter().map(warning).collect()
+}
+
+/// A warning of smooth forces of the file that do not act, although its actuators do.
+fn forces_of_the_file(file: &str, robot: &BuiltRobot) -> Option<Diagnostic> {
+    let (joints, world) = (&robot.reading.description.joints, &robot.reading.world);
+    let is_in_file = |row: &Effect| {
+        let of_joint = |joint: &Joint| match row.id {
+            EffectId::damping => joint.dynamics.damping,
+            EffectId::spring => joint.dynamics.stiffness,
+            EffectId::armature => joint.dynamics.armature,
+            _ => None,
+        };
+        joints.iter().filter_map(of_joint).any(|number| number != 0.0) || world.effects.iter().any(|(own, _)| own.effect == row.id)
+    };
+    let off = &robot.resolved.report.off;
+    let is_chosen = |row: &Effect| {
+        robot.effects.iter().any(|own| own.effect == row.id) || off.iter().any(|own| own.effect == row.name && own.why != Why::NotAsked)
+    };
+    let names: Vec<&str> = effects().iter().filter(|row| is_in_file(row) && !is_chosen(row)).map(|row| row.name).collect();
+    (!names.is_empty()).then(|| {
+        let found = format!("{} in the file, turned off, beside its actuators", names.join(", "));
+        let expected =
+            "`--effects file` (key `effects = \"file\"`, method `Build::file_effects`), which turns them on, or \"off\" in a scene";
+        Diagnostic::error(file, (Default::default(), "effects"), Code::LostDynamics, found, expected).into_warning()
+    })
 }
 
 /// What is wrong with the names of a user's function and of its ports.

@@ -508,9 +508,9 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
     Row {
         name: "effects",
         required: false,
-        value: "table: effect = …",
+        value: "table: effect = …, or \"file\"",
         default: "none",
-        what: "what acts beside rigid bodies and gravity, see below",
+        what: "what acts beside rigid bodies and gravity, see below; \"file\": the smooth effects of the robot's file",
         read: effects::read,
     },
     Row {

@@ -316,6 +316,29 @@ fn effects_of_the_file_on_links_are_taken_where_the_scene_says_so() {
     assert!(unused.iter().any(|line| line.contains("box_drag: 2 links: used in scenes with effects.box_drag = \"file\"")), "{unused:#?}");
 }
 
+/// All smooth effects of the file by one word, but for those that the scene names itself.
+#[test]
+fn one_word_takes_the_smooth_effects_of_the_file() {
+    use articulated_core::effect::EffectId::{box_drag, damping, gravity_compensation};
+    let built = |text: &str| articulated_scene::Opened::new(scene(text), "m.xml", SWIMMER.into(), Base::Fixed, vec![]).build().unwrap();
+    let effects =
+        |text: &str| -> Vec<_> { built(text).effects.iter().map(|own| (own.effect, own.on.clone(), own.parameters[0])).collect() };
+    let each = "effects = { damping = \"file\", box_drag = \"file\", gravity_compensation = \"file\" }";
+    for all in ["effects = \"file\"", "[effects]\n\"*\" = \"file\""] {
+        assert_eq!(effects(all), effects(each), "{all}");
+        // It has no springs, and that is no warning.
+        assert!(built(all).resolved.warnings.is_empty());
+    }
+    let kinds = |text: &str| effects(text).iter().map(|(effect, ..)| *effect).collect::<Vec<_>>();
+    assert_eq!(kinds("effects = \"file\""), [damping, box_drag, box_drag, gravity_compensation]);
+    assert_eq!(kinds("effects = { \"*\" = \"file\", box_drag = \"off\" }"), [damping, gravity_compensation]);
+    let own = effects("effects = { \"*\" = \"file\", damping = { j = 7.0 } }");
+    assert_eq!(own.iter().find(|(effect, ..)| *effect == damping), Some(&(damping, "j".into(), 7.0)));
+    let wrong = |text: &str| Scene::read("s.toml", text).unwrap_err().to_string();
+    assert!(wrong("effects = \"all\"").contains("expected a table of effects, or \"file\""));
+    assert!(wrong("effects = { \"*\" = 0.1 }").contains("expected \"file\""));
+}
+
 /// A scene has no activations: an actuator with one gives no force, and a warning says so.
 #[test]
 fn an_actuator_with_an_activation_is_a_warning_in_a_scene() {

@@ -99,6 +99,37 @@ fn each_choice_arrives_in_the_request() {
     fs::remove_dir_all(folder).unwrap();
 }
 
+const CART: &str = r#"<mujoco model="cart"><worldbody><body name="cart"><joint name="x" type="slide" damping="0.3" armature="0.1"/>
+    <geom type="sphere" size="0.1"/></body></worldbody><actuator><motor name="push" joint="x"/></actuator></mujoco>"#;
+
+/// A step with the actuators of a file warns of its smooth forces that do not act.
+#[test]
+fn forces_of_the_file_beside_its_actuators_act_or_are_a_warning() {
+    let folder = folder("forces");
+    fs::write(folder.join("cart.xml"), CART).unwrap();
+    let build = Build::new(folder.join("cart.xml")).functions(["actuated_step_rk4"]);
+    let generated = |build: &Build| {
+        let generated = build.generate().unwrap();
+        let warnings: Vec<String> = generated.warnings.iter().map(ToString::to_string).filter(|line| line.contains("effects")).collect();
+        (generated.model.bodies().iter().map(|body| body.effects.joint.len()).sum::<usize>(), warnings)
+    };
+    let (effects, warnings) = generated(&build);
+    assert!(effects == 0 && warnings.len() == 1 && warnings[0].contains("found armature, damping in the file"), "{warnings:?}");
+    assert_eq!(generated(&build.clone().file_effects()), (2, vec![]));
+    let of_scene = |effects: &str| {
+        let text = format!("file = \"cart.xml\"\nfunctions = [\"actuated_step_rk4\"]\neffects = {effects}");
+        fs::write(folder.join("cart.toml"), text).unwrap();
+        generated(&Build::scene(folder.join("cart.toml")))
+    };
+    assert_eq!(of_scene("\"file\""), (2, vec![]));
+    assert_eq!(of_scene("{ damping = 0.5, armature = \"off\" }"), (1, vec![]));
+    let (effects, warnings) = of_scene("{ damping = 0.5 }");
+    assert!(effects == 1 && warnings.len() == 1 && warnings[0].contains("found armature in the file"), "{warnings:?}");
+    // Without controls, a scene chooses what acts.
+    assert_eq!(generated(&Build::new(folder.join("cart.xml")).functions(["forward_dynamics"])).1, [""; 0]);
+    fs::remove_dir_all(folder).unwrap();
+}
+
 #[test]
 fn each_name_is_a_file_of_its_own() {
     let folder = folder("names");

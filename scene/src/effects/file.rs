@@ -11,6 +11,14 @@ use super::resolve::Filled;
 const ON_LINKS: [(EffectId, &str); 3] =
     [(EffectId::gravity_compensation, "gravcomp"), (EffectId::box_drag, "medium"), (EffectId::added_mass, "armature of the free joint")];
 
+/// Effects on joints that `effects."*" = "file"` requests too.
+const ON_JOINTS: [EffectId; 3] = [EffectId::damping, EffectId::spring, EffectId::armature];
+
+/// Whether a file's numbers for this effect are of a smooth force, or of an inertia.
+pub(super) fn is_smooth(effect: EffectId) -> bool {
+    ON_JOINTS.contains(&effect) || of_link(effect).is_some()
+}
+
 /// What has an effect on links in the file.
 pub(super) fn of_link(effect: EffectId) -> Option<&'static str> {
     ON_LINKS.iter().find(|(id, _)| *id == effect).map(|(_, name)| *name)

@@ -68,6 +68,8 @@ pub struct Numbers {
     pub from_collision: bool,
     /// The planes are those of the robot's file.
     pub from_file_planes: bool,
+    /// The file may have no such numbers: there is no warning then.
+    pub if_any: bool,
     /// The effect's frame, in the frame of its link or in a frame of the robot.
     pub at: Option<Origin>,
     /// One for each of the effect's fields.
@@ -84,15 +86,56 @@ const ALL: &str = "*";
 /// Reads the table `effects` into the scene.
 pub(crate) fn read(scene: &mut Scene, spot: &Cursor<'_>, log: &mut Diagnostics) {
     (scene.effects, scene.shafts) = (Vec::new(), Vec::new());
-    for entry in spot.entries(log, "a table of effects") {
+    if is_file(spot) {
+        scene.add_file_effects(&spot.key, spot.at);
+        return;
+    }
+    let mut of_file = None;
+    for entry in spot.entries(log, "a table of effects, or \"file\"") {
         let value = spot.of(entry);
         if entry.name == shaft::NAME {
             scene.shafts = shaft::read(&value, log);
+        } else if entry.name == ALL {
+            match is_file(&value) {
+                true => of_file = Some((value.key.clone(), value.at)),
+                false => value.wrong(log, "\"file\": the smooth effects of the robot's file that have no entry of their own"),
+            }
         } else if let Some(row) = effect(&entry.name) {
             scene.effects.extend(requests(row, &value, log));
         } else {
-            value.unknown_key(log, effects().iter().map(|e| e.name).chain([shaft::NAME]));
+            value.unknown_key(log, effects().iter().map(|e| e.name).chain([shaft::NAME, ALL]));
         }
+    }
+    if let Some((key, place)) = of_file {
+        scene.add_file_effects(&key, place);
+    }
+}
+
+fn is_file(spot: &Cursor<'_>) -> bool {
+    matches!(&spot.node.value, Value::Text(word) if word == "file")
+}
+
+impl Scene {
+    /// A scene of the smooth effects of a robot's file, and nothing else.
+    pub fn of_file_effects(file: &str) -> Self {
+        let mut scene = Self { file: file.to_owned(), ..Self::default() };
+        scene.add_file_effects("effects", At::default());
+        scene
+    }
+
+    /// Requests the smooth effects of the robot's file that the scene does not name: damping,
+    /// springs and armature of joints, and all effects on links. As `effects."*" = "file"`.
+    pub fn add_file_effects(&mut self, key: &str, place: At) {
+        let named = |row: &Effect| self.effects.iter().any(|one| one.effect == row.id);
+        let request = |row: &'static Effect| EffectRequest {
+            effect: row.id,
+            on: Selector::All,
+            says: Some(Numbers { from_urdf: true, if_any: true, ..empty(row) }),
+            key: key.to_owned(),
+            place,
+        };
+        let missing: Vec<EffectRequest> = effects().iter().filter(|row| file::is_smooth(row.id) && !named(row)).map(request).collect();
+        self.effects.extend(missing);
     }
 }
 

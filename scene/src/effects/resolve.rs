@@ -285,7 +285,9 @@ impl<'a> Resolving<'a> {
     /// Warns if the numbers of all joints are requested from the robot's file, which has them for
     /// no joint, not even a locked one, or has zeros.
     fn warn_of_no_numbers(&mut self, row: &'static Effect, asked: &[&EffectRequest]) {
-        let Some((one, says)) = for_all(asked).and_then(|one| Some((one, one.says.as_ref()?))).filter(|(_, says)| says.from_urdf) else {
+        let Some((one, says)) =
+            for_all(asked).and_then(|one| Some((one, one.says.as_ref()?))).filter(|(_, says)| says.from_urdf && !says.if_any)
+        else {
             return;
         };
         if row.on == On::Link {

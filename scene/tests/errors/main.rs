@@ -23,7 +23,7 @@ fn an_unknown_key_is_told_with_the_nearest() {
                     forbid_unsafe, max_code_size, effects, simulation, initial, control, impact; did you mean \"gravity\"?";
     assert_eq!(one("gravty = [0, 0, -9.81]"), expected);
     let expected = "s.toml:2: effects.dampign: found a key that is not known, expected one of armature, damping, friction, spring, limit, motor, \
-                    drag, box_drag, buoyancy, gravity_compensation, added_mass, contact, shaft; did you mean \"damping\"?";
+                    drag, box_drag, buoyancy, gravity_compensation, added_mass, contact, shaft, *; did you mean \"damping\"?";
     assert_eq!(one("\n[effects.dampign]\nelbow = 1"), expected);
     let expected = "s.toml:3: effects.spring.elbow.stifness: found a key that is not known, expected one of stiffness, rest, from; did you mean \"stiffness\"?";
     assert_eq!(one("[effects.spring]\n\nelbow = { stifness = 1 }"), expected);
@@ -49,7 +49,7 @@ fn a_value_of_another_type_is_told() {
         one("[effects.drag]\nelbow = \"urdf\""),
         "s.toml:2: effects.drag.elbow: found \"urdf\", which has no numbers for it, expected a number (coefficient, N·s²/m²), a table with coefficient or \"off\""
     );
-    assert_eq!(one("effects = 1979-05-27"), "s.toml:1: effects: found the date 1979-05-27, expected a table of effects");
+    assert_eq!(one("effects = 1979-05-27"), "s.toml:1: effects: found the date 1979-05-27, expected a table of effects, or \"file\"");
 }
 
 #[test]
