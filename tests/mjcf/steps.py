@@ -26,6 +26,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import warnings
 from pathlib import Path
 
 from oracle import BALL, HELPER, PLACE, build_command, environment, models, packages
@@ -91,13 +92,13 @@ def every_file():
                 yield path
 
 
-def measure(path, integrator):
-    """nv, nu, na and actuators that are off; difference of one step, and of many over that of two rollouts of MuJoCo."""
+def smooth(path, integrator):
+    """The model of MuJoCo without constraints, the names of the actuators that are read, and the places of their controls and activations."""
     import mujoco
-    import numpy as np
 
-    # Motions without a bound are left out below.
+    # Motions without a bound are left out by measure.
     mujoco.set_mju_user_warning(lambda _: None)
+    warnings.filterwarnings("ignore", message="compiler attribute")
     try:
         spec = mujoco.MjSpec.from_file(str(path))
         for body in spec.bodies:
@@ -122,11 +123,18 @@ def measure(path, integrator):
     controls = [model.actuator_ctrladr[names.index(name)] for name in own]
     states = [model.actuator_actadr[names.index(name)] for name in own if model.actuator_actnum[names.index(name)] > 0]
     model.opt.integrator = getattr(mujoco.mjtIntegrator, {"Euler": "mjINT_EULER", "implicitfast": "mjINT_IMPLICITFAST", "RK4": "mjINT_RK4"}[integrator])
-    data, random = mujoco.MjData(model), np.random.default_rng(7)
-    starts = []
-    for _ in range(20):
+    return model, own, controls, states
+
+
+def random_starts(prepared, random, count, spread=1.0):
+    """Of each start (qpos, qvel, qfrc_applied, act, ctrl): positions, rates, and controls, or forces without actuators."""
+    import mujoco
+    import numpy as np
+
+    model, own, controls, states = prepared
+    for _ in range(count):
         q = np.array(model.qpos0)
-        mujoco.mj_integratePos(model, q, random.uniform(-1, 1, model.nv), 1.0)
+        mujoco.mj_integratePos(model, q, spread * random.uniform(-1, 1, model.nv), 1.0)
         force = 0.1 * random.uniform(-1, 1, model.nv)
         for kind, _, at, _ in parts(model):
             # A held force on the origin of a free body is in world axes there, and in body axes here.
@@ -134,9 +142,23 @@ def measure(path, integrator):
         ctrl, act = np.zeros(model.nu), np.zeros(model.na)
         if own:
             force *= 0
-            ctrl[controls] = random.uniform(-1, 1, len(controls))
-            act[states] = random.uniform(-1, 1, len(states))
-        starts.append((q, random.uniform(-1, 1, model.nv), force, act, ctrl))
+            ctrl[controls] = spread * random.uniform(-1, 1, len(controls))
+            act[states] = spread * random.uniform(-1, 1, len(states))
+        yield q, spread * random.uniform(-1, 1, model.nv), force, act, ctrl
+
+
+def measure(path, integrator):
+    """nv, nu, na and actuators that are off; difference of one step, and of many over that of two rollouts of MuJoCo."""
+    import mujoco
+    import numpy as np
+
+    prepared = smooth(path, integrator)
+    if prepared is None:
+        return None
+    model, own, controls, states = prepared
+    disable = mujoco.mjtDisableBit
+    data, random = mujoco.MjData(model), np.random.default_rng(7)
+    starts = list(random_starts(prepared, random, 20))
 
     def ended(start, steps):
         mujoco.mj_resetData(model, data)

@@ -1,0 +1,285 @@
+#!/usr/bin/env python3
+"""Times generated steps beside MuJoCo's mj_step: one process, one core, the same states and controls, without constraints.
+
+    python3 tests/mjcf/speed.py                        the models of MODELS, from the pinned packages
+    python3 tests/mjcf/speed.py --file F.xml …         these files
+    python3 tests/mjcf/speed.py --accuracy [F.xml]     error and time of each method at several steps
+    python3 tests/mjcf/speed.py --write                the tables of docs/steps.md, and a record beside those of docs/speed
+
+speed.rs is compiled for this processor with the generated code of each model, and linked with the library of MuJoCo's wheel. It rolls
+STATES random states by STEPS steps with mj_step, with the step alone, and with the step in vectors of f64 and of f32, in turns; a number
+is the median of the rounds, ns a step. `mujoco.batch` of Python, on one thread, is timed afterwards.
+
+The ends are compared: f64 to 1e-9, f32 to 1e-2 of 1 and the largest rate. Exit status: 0 if all agree, else 1.
+"""
+
+import argparse
+import datetime
+import json
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from oracle import HERE, PLACE, build_command, environment, packages
+from programs import COMMAND, REPOSITORY, build_example
+from simulate import order
+from steps import from_own, random_starts, smooth, to_own
+
+# A package and a file of it, and the method of the file.
+MODELS = [
+    ("gymnasium", "half_cheetah.xml", "Euler"),
+    ("gymnasium", "walker2d_v5.xml", "RK4"),
+    ("gymnasium", "ant.xml", "RK4"),
+    ("gymnasium", "humanoid.xml", "RK4"),
+    ("gymnasium", "humanoid.xml", "Euler"),
+    ("openarm-mujoco", "openarm_bimanual.xml", "implicitfast"),
+    ("robosuite", "robots/panda/robot.xml", "Euler"),
+    ("robosuite", "robots/ur5e/robot.xml", "Euler"),
+    ("envpool", "unitree_g1/g1_mjx.xml", "Euler"),
+]
+METHODS = {"Euler": "implicit_damping", "implicitfast": "implicit_velocity", "RK4": "rk4_mujoco"}
+STATES, STEPS, ROUNDS = 64, 20, 31
+F64, F32 = 1e-9, 1e-2
+# Of --accuracy: the motion, s, and the steps in it.
+MOTION, COUNTS, BESIDE = 0.5, [50, 100, 250, 1000], 32
+WAYS = [("semi_implicit_euler", None), ("implicit_damping", "Euler"), ("implicit_velocity", "implicitfast"), ("rk4", None), ("rk4_mujoco", "RK4")]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--file", nargs="+", help="only these files, by the method that they name")
+    parser.add_argument("--accuracy", nargs="?", const="", metavar="FILE", help="error against time, of this file [default: Gymnasium's half_cheetah]")
+    parser.add_argument("--write", action="store_true", help="write both tables")
+    arguments = parser.parse_args()
+    python = environment()
+    if "MJCF_ORACLE" not in os.environ:
+        build_command()
+        build_example("dynamics")
+        words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in sys.argv]
+        sys.exit(subprocess.run([str(python), *words], cwd=PLACE, env={**os.environ, "MJCF_ORACLE": "1"}).returncode)
+    agree = True
+    if arguments.accuracy is None or arguments.write:
+        rows = []
+        wanted = [(Path(file), None) for file in arguments.file] if arguments.file else ours()
+        print(HEADER, flush=True)
+        for path, integrator in wanted:
+            row = timed(path, integrator)
+            agree &= row["f64 differs"] < F64 and row["f32 differs"] < F32
+            rows.append(row)
+            print(line(row), flush=True)
+    if arguments.accuracy is not None or arguments.write:
+        path = Path(arguments.accuracy) if arguments.accuracy else next(ours())[0]
+        curves = accuracy(path)
+        print(table(curves))
+    if arguments.write:
+        write(rows, curves)
+    sys.exit(not agree)
+
+
+HEADER = """| model | freedoms, actuators | method | `mj_step` | `mujoco.batch` | alone | vectors f64 | vectors f32 |
+|---|--:|---|--:|--:|--:|--:|--:|"""
+
+
+def line(row):
+    mujoco, batch, single, f64, f32 = row["ns"]
+    ratio = lambda own: f"{own:.3g} ({mujoco / own:.0f})"  # noqa: E731
+    return f"| {row['model']} | {row['nv']}, {row['nu']} | {row['method']} | {mujoco:.0f} | {batch:.0f} | {ratio(single)} | {ratio(f64)} | {ratio(f32)} |"
+
+
+def ours():
+    """Paths of MODELS, and methods."""
+    found = {name: folder for name, folder in packages(argparse.Namespace(sample=False, only=""))}
+    for package, name, integrator in MODELS:
+        (folder,) = (folder for full, folder in found.items() if full.partition("==")[0].startswith(package) and (package == "envpool" or full.startswith(package + "==")))
+        yield next(path for path in sorted(folder.rglob(Path(name).name)) if str(path).endswith(name)), integrator
+
+
+def own_method(path):
+    """The method that a file names."""
+    import mujoco
+
+    kinds = {mujoco.mjtIntegrator.mjINT_RK4: "RK4", mujoco.mjtIntegrator.mjINT_IMPLICITFAST: "implicitfast"}
+    return kinds.get(mujoco.MjSpec.from_file(str(path)).option.integrator, "Euler")
+
+
+class Program:
+    """speed.rs with the step of a robot."""
+
+    def __init__(self, path, method, folder):
+        import mujoco
+
+        shared = next(Path(mujoco.__file__).parent.glob("libmujoco.so*"))
+        code, self.file = folder / "generated.rs", folder / "speed"
+        actuated = json.loads(run(COMMAND, "rollout", path, "--steps", "1", "--format", "json")).get("actuators", [])
+        if not actuated:
+            raise RuntimeError(f"{path.name}: found no actuators, expected one at least")
+        run(COMMAND, "generate", path, "--effects", "file", "--functions", f"step = actuated_step_{method}", "--batch", "f64,f32", "-o", code)
+        run(
+            "rustc", "--edition", "2024", "-C", "opt-level=3", "-C", "codegen-units=1", "-C", "target-cpu=native", HERE / "speed.rs", "-o", self.file,
+            "-C", f"link-arg={shared}", "-C", f"link-arg=-Wl,-rpath,{shared.parent}", env={**os.environ, "GENERATED": str(code)},
+        )
+        self.folder = folder
+
+    def rolled(self, prepared, starts, steps, rounds, h):
+        """Medians, ns a step, and the ends (qpos, qvel, act) of MuJoCo, of the step alone, and of vectors of f64 and f32."""
+        import mujoco
+        import numpy as np
+
+        model, _, controls, states = prepared
+        model.opt.timestep = h
+        mujoco.mj_saveModel(model, str(self.folder / "model.mjb"), None)
+        contents = [getattr(mujoco.mjtState, f"mjSTATE_{name}") for name in ("QPOS", "QVEL", "ACT", "CTRL")]
+        parts = sum(map(int, contents))
+        places, numbers = order(model), []
+        for q, v, _, act, ctrl in starts:
+            numbers += [q, v, act, ctrl, q[places], to_own(model, q, v), act[states], ctrl[controls]]
+        (self.folder / "starts").write_bytes(np.concatenate(numbers).astype("<f8").tobytes())
+        words = ["model.mjb", "starts", "ends", len(starts), steps, rounds, repr(float(h)), parts]
+        medians = json.loads(run(self.file, *words, cwd=self.folder))
+        numbers, ends, at = np.fromfile(self.folder / "ends", "<f8"), [], 0
+
+        def take(count):
+            nonlocal at
+            at += count
+            return numbers[at - count : at]
+
+        theirs = []
+        for _ in starts:
+            theirs.append((take(model.nq), take(model.nv), take(model.na)))
+            take(model.nu)
+        ends.append(theirs)
+        for _ in range(3):
+            own = []
+            for _ in starts:
+                q, act = np.zeros(model.nq), np.zeros(model.na)
+                q[places] = take(len(places))
+                v = from_own(model, q, take(model.nv))
+                act[states] = take(len(states))
+                own.append((q, v, act))
+            ends.append(own)
+        return medians, ends
+
+
+def run(*words, **options):
+    done = subprocess.run(list(map(str, words)), capture_output=True, text=True, **options)
+    if done.returncode:
+        raise RuntimeError(f"{Path(str(words[0])).name}: {done.stderr[-2000:]}")
+    return done.stdout
+
+
+def apart(model, states, one, other):
+    """The largest difference over 1 and the largest rate."""
+    import mujoco
+    import numpy as np
+
+    way = np.zeros(model.nv)
+    mujoco.mj_differentiatePos(model, way, 1.0, one[0], other[0])
+    parts = np.concatenate([way, one[1] - other[1], (one[2] - other[2])[states]])
+    return float(np.abs(parts).max()) / (1 + float(np.abs(other[1]).max()))
+
+
+def timed(path, integrator):
+    """A row of the table."""
+    import numpy as np
+
+    prepared = smooth(path, integrator or own_method(path))
+    integrator = integrator or own_method(path)
+    model, own, controls, states = prepared
+    starts = list(random_starts(prepared, np.random.default_rng(7), STATES, 0.3))
+    h = model.opt.timestep
+    with tempfile.TemporaryDirectory() as folder:
+        medians, (theirs, *ours) = Program(path, METHODS[integrator], Path(folder)).rolled(prepared, starts, STEPS, ROUNDS, h)
+    differs = [max(apart(model, states, a, b) for a, b in zip(own, theirs)) for own in ours]
+    return {
+        "model": path.stem if path.stem != "robot" else path.parent.name, "nv": model.nv, "nu": len(own), "method": integrator, "step": h,
+        "ns": [medians[0], batch(model, starts), *medians[1:]], "f64 differs": max(differs[:2]), "f32 differs": differs[2],
+    }
+
+
+def batch(model, starts):
+    """The median time of a step of mujoco.batch on one thread, ns."""
+    import mujoco.batch
+    import numpy as np
+
+    simulations, times = mujoco.batch.Batch(model, len(starts), nthread=1, persistent=True), []
+    for _ in range(ROUNDS):
+        simulations.reset()
+        simulations.qpos[:], simulations.qvel[:], simulations.ctrl[:] = (np.array([start[k] for start in starts]) for k in (0, 1, 4))
+        clock = time.perf_counter()
+        simulations.step(nstep=STEPS)
+        times.append((time.perf_counter() - clock) * 1e9 / (STEPS * len(starts)))
+    return float(np.median(times))
+
+
+def accuracy(path):
+    """Rows (method, steps a second, errors and ns of a simulated second of ours, in f64 and f32, and of MuJoCo)."""
+    import numpy as np
+
+    prepared = smooth(path, "RK4")
+    model, _, _, states = prepared
+    starts, rows = list(random_starts(prepared, np.random.default_rng(7), BESIDE, 0.3)), []
+
+    def errors(ends, reference):
+        return float(np.median([apart(model, states, a, b) for a, b in zip(ends, reference)]))
+
+    with tempfile.TemporaryDirectory() as folder:
+        programs = {}
+        for method, _ in WAYS:
+            place = Path(folder, method)
+            place.mkdir()
+            programs[method] = Program(path, method, place)
+        many = 20 * COUNTS[-1]
+        _, (theirs, reference, *_) = programs["rk4_mujoco"].rolled(prepared, starts, many, 1, MOTION / many)
+        print(f"{path.stem}: {MOTION} s; MuJoCo's RK4 and ours at {many} steps differ by {errors(theirs, reference):.1e}", flush=True)
+        for method, integrator in WAYS:
+            prepared = smooth(path, integrator or "RK4")
+            for count in COUNTS:
+                h = MOTION / count
+                medians, ends = programs[method].rolled(prepared, starts, count, 5, h)
+                found = [errors(one, reference) for one in ends]
+                rows.append({
+                    "method": method, "steps": round(count / MOTION), "errors": [found[1], found[3]], "ns": [medians[1] / h, medians[2] / h, medians[3] / h],
+                    **({"mujoco": integrator, "mujoco error": found[0], "mujoco ns": medians[0] / h} if integrator else {}),
+                })
+    return {"model": path.stem, "motion": MOTION, "rows": rows}
+
+
+def table(curves):
+    lines = [
+        "| method | steps a second | error f64 | f32 | alone, µs | vectors f64 | vectors f32 | `mj_step`: error | µs |",
+        "|---|--:|--:|--:|--:|--:|--:|--:|--:|",
+    ]
+    for row in curves["rows"]:
+        theirs = f"{row['mujoco error']:.1e} | {row['mujoco ns'] / 1e3:.0f}" if "mujoco" in row else "|"
+        times = " | ".join(f"{ns / 1e3:.3g}" for ns in row["ns"])
+        lines.append(f"| `step_{row['method']}` | {row['steps']} | {row['errors'][0]:.1e} | {row['errors'][1]:.1e} | {times} | {theirs} |")
+    return "\n".join(lines)
+
+
+def write(rows, curves):
+    """The tables of docs/steps.md, between their marks, and the record."""
+    import mujoco
+
+    names = [line for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")] if Path("/proc/cpuinfo").exists() else []
+    processor = names[0].partition(":")[2].strip() if names else platform.processor()
+    date = datetime.date.today().isoformat()
+    record = {"date": date, "processor": processor, "mujoco": mujoco.__version__, "rustc": run("rustc", "--version").strip(), "speed": rows, "accuracy": curves}
+    name = f"steps-{date}-{'-'.join(processor.lower().split()[:2])}.json"
+    (REPOSITORY / "docs" / "speed" / name).write_text(json.dumps(record, indent=1) + "\n")
+    page = REPOSITORY / "docs" / "steps.md"
+    text = page.read_text()
+    for mark, lines in (("steps", "\n".join([HEADER, *map(line, rows)])), ("accuracy", table(curves))):
+        before, start, rest = text.partition(f"<!-- {mark}: {'speed.py'} -->\n")
+        _, end, after = rest.partition("<!-- end -->")
+        if not (start and end):
+            raise RuntimeError(f"docs/steps.md: found no mark {mark}")
+        text = before + start + lines + "\n" + end + after
+    page.write_text(text)
+
+
+if __name__ == "__main__":
+    main()
