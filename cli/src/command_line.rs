@@ -2,7 +2,7 @@
 
 use articulated_codegen::function_groups::Group;
 use articulated_core::algorithm::{Function, function};
-use articulated_core::step::{of_actuators, steps};
+use articulated_core::step::of_group;
 use clap::{Parser, Subcommand};
 
 use crate::arguments::{CheckArguments, EvalArguments, Format, FunctionsArguments, GenerateArguments, examples};
@@ -121,8 +121,8 @@ fn overview() -> String {
     let one = |name: &'static str| function::<f64>(name).map(|f| format!("    {name:42} {}\n", f.summary)).unwrap_or_default();
     let functions: String = Group::ALL.into_iter().map(|g| group(g) + &g.functions().map(one).collect::<String>()).collect();
     let step = |f: &Function<f64>| format!("    {:42} {}\n", f.name, f.summary);
-    let functions = functions + &group(Group::Steps) + &steps().iter().map(step).collect::<String>();
-    let functions = functions + &group(Group::Actuators) + &of_actuators().iter().map(step).collect::<String>();
+    let beside = Group::BESIDE.into_iter().map(|g| group(g) + &of_group(g).iter().map(step).collect::<String>());
+    let functions = functions + &beside.collect::<String>();
     let scenes: String = articulated_models::SCENES.iter().map(|s| format!("  {:16} {}\n", s.name, s.summary())).collect();
     let functions = format!("Functions, in groups whose names stand for all of them:\n{functions}");
     format!("Bundled robots:\n{robots}\nBundled scenes:\n{scenes}\n{functions}\n{STATUSES}")

@@ -1,6 +1,6 @@
 //! Lists of functions on the command line.
 
-use articulated_codegen::function_groups::{ACTUATORS, ALL, Group, MOTION, STEPS, functions_of};
+use articulated_codegen::function_groups::{ALL, Group, MOTION, functions_of};
 use articulated_codegen::{FunctionSpec, resolve_synonym};
 use articulated_core::algorithm::{Function, function, functions};
 use articulated_core::step::{beside_the_table, step};
@@ -22,7 +22,7 @@ pub(crate) fn requested(text: &str) -> Result<Names, String> {
         // A group may have functions that the robot lacks: it stays one word.
         false if entry == MOTION || functions_of(entry).is_some() => Ok(vec![entry.to_owned()]),
         false if step::<f64>(entry).is_some() || function::<f64>(entry).is_some() => Ok(vec![entry.to_owned()]),
-        false => Err(unknown(entry, beside_the_table(), &[STEPS, ACTUATORS])),
+        false => Err(unknown(entry, beside_the_table(), &Group::BESIDE)),
     })
 }
 
@@ -56,8 +56,8 @@ fn of_table(name: &str) -> Result<Vec<String>, String> {
     if function::<f64>(name).is_some() {
         return Ok(vec![name.to_owned()]);
     }
-    if [STEPS, ACTUATORS].contains(&name) || step::<f64>(name).is_some() {
-        return Err("steps and functions of actuators are not in this table: `articulated rollout` runs them, `articulated generate` \
+    if Group::BESIDE.iter().any(|group| group.name() == name) || step::<f64>(name).is_some() {
+        return Err("a function beside the table, as steps are: `articulated rollout` runs steps, `articulated generate` \
                     generates them"
             .to_owned());
     }
@@ -65,8 +65,8 @@ fn of_table(name: &str) -> Result<Vec<String>, String> {
 }
 
 /// The error about a name, with these functions and groups beside those of the table.
-fn unknown(name: &str, beside: impl Iterator<Item = &'static Function<f64>>, groups: &[&'static str]) -> String {
-    let groups: Vec<&str> = Group::ALL.map(Group::name).iter().chain(groups).copied().collect();
+fn unknown(name: &str, beside: impl Iterator<Item = &'static Function<f64>>, groups: &[Group]) -> String {
+    let groups: Vec<&str> = Group::ALL.iter().chain(groups).map(|group| group.name()).collect();
     let all = functions::<f64>().iter().chain(beside).map(|f| f.name).chain(groups.iter().copied()).chain([ALL]);
     let near = resolve_synonym(name, all).map(|n| format!("did you mean {n}? ")).unwrap_or_default();
     let groups = groups.join(", ");

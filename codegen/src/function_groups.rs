@@ -4,27 +4,23 @@ use std::collections::BTreeMap;
 
 pub use articulated_core::algorithm::Group;
 use articulated_core::diagnostic::Spanned;
-use articulated_core::step::{of_actuators, steps};
+use articulated_core::step::of_group;
 
 /// The word for all functions that the motion of a scene calls.
 pub const MOTION: &str = "motion";
 
-/// The word for all steps of time.
-pub const STEPS: &str = "steps";
-
-/// The word for the torques of actuators and steps with them.
-pub const ACTUATORS: &str = "actuators";
-
 /// The word for all functions of the table.
 pub const ALL: &str = "all";
 
-/// The functions of the group of this name; all of the table for `all`.
+/// The functions of the group of this name, in the table or beside it; all of the table for `all`.
 pub fn functions_of(name: &str) -> Option<Vec<String>> {
     match Group::named(name) {
         Some(group) => Some(group.functions().map(str::to_owned).collect()),
-        None if name == STEPS => Some(steps::<f64>().iter().map(|f| f.name.to_owned()).collect()),
-        None if name == ACTUATORS => Some(of_actuators::<f64>().iter().map(|f| f.name.to_owned()).collect()),
-        None => (name == ALL).then(all),
+        None if name == ALL => Some(all()),
+        None => {
+            let group = Group::BESIDE.into_iter().find(|group| group.name() == name)?;
+            Some(of_group::<f64>(group).iter().map(|f| f.name.to_owned()).collect())
+        }
     }
 }
 

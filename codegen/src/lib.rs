@@ -223,8 +223,7 @@ pub fn function(name: &str) -> Result<&'static Function<Sym>, Diagnostic> {
             return Diagnostic::refusal("", Place::DOCUMENT, Code::FunctionSpec, sentence);
         }
         // In a sum of functions, a group is not allowed.
-        let groups =
-            Group::ALL.map(Group::name).into_iter().chain([function_groups::STEPS, function_groups::ACTUATORS, function_groups::ALL]);
+        let groups = Group::ALL.into_iter().chain(Group::BESIDE).map(Group::name).chain([function_groups::ALL]);
         let groups = groups.filter(|_| function_groups::functions_of(name).is_none());
         let known: Vec<&str> = functions::<Sym>().iter().chain(step::beside_the_table()).map(|f| f.name).chain(groups).collect();
         let nearest = resolve_synonym(name, known.iter().copied());

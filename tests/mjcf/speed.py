@@ -4,13 +4,15 @@
     python3 tests/mjcf/speed.py                        the models of MODELS, from the pinned packages
     python3 tests/mjcf/speed.py --file F.xml …         these files
     python3 tests/mjcf/speed.py --accuracy [F.xml]     error and time of each method at several steps
+    python3 tests/mjcf/speed.py --check                whether generated steps of CHECKED agree with MuJoCo, by each method
     python3 tests/mjcf/speed.py --write                the tables of docs/steps.md, and a record beside those of docs/speed
 
-speed.rs is compiled for this processor with the generated code of each model, and linked with the library of MuJoCo's wheel. It rolls
+speed.rs is compiled for this processor with the generated code of each model, and linked with the library of MuJoCo's wheel. Generated
+code translates states from MuJoCo's conventions and back. It rolls
 STATES random states by STEPS steps with mj_step, with the step alone, and with the step in vectors of f64 and of f32, in turns; a number
 is the median of the rounds, ns a step. `mujoco.batch` of Python, on one thread, is timed afterwards.
 
-The ends are compared: f64 to 1e-9, f32 to 1e-2 of 1 and the largest rate. Exit status: 0 if all agree, else 1.
+The ends are compared: f64 to 1e-11, f32 to 1e-4 of 1 and the largest rate. Exit status: 0 if all agree, else 1.
 """
 
 import argparse
@@ -26,8 +28,7 @@ from pathlib import Path
 
 from oracle import HERE, PLACE, build_command, environment, packages
 from programs import COMMAND, REPOSITORY, build_example
-from simulate import order
-from steps import from_own, random_starts, smooth, to_own
+from steps import random_starts, smooth
 
 # A package and a file of it, and the method of the file.
 MODELS = [
@@ -42,8 +43,10 @@ MODELS = [
     ("envpool", "unitree_g1/g1_mjx.xml", "Euler"),
 ]
 METHODS = {"Euler": "implicit_damping", "implicitfast": "implicit_velocity", "RK4": "rk4_mujoco"}
+# Of --check: models with limbs, parallel joints, free joints, and every kind of actuator.
+CHECKED = [HERE / "models" / "actuated.xml", HERE / "models" / "drone.xml", ("gymnasium", "half_cheetah.xml"), ("gymnasium", "ant.xml")]
 STATES, STEPS, ROUNDS = 64, 20, 31
-F64, F32 = 1e-9, 1e-2
+F64, F32 = 1e-11, 1e-4
 # Of --accuracy: the motion, s, and the steps in it.
 MOTION, COUNTS, BESIDE = 0.5, [50, 100, 250, 1000], 32
 WAYS = [("semi_implicit_euler", None), ("implicit_damping", "Euler"), ("implicit_velocity", "implicitfast"), ("rk4", None), ("rk4_mujoco", "RK4")]
@@ -53,6 +56,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--file", nargs="+", help="only these files, by the method that they name")
     parser.add_argument("--accuracy", nargs="?", const="", metavar="FILE", help="error against time, of this file [default: Gymnasium's half_cheetah]")
+    parser.add_argument("--check", action="store_true", help="compare motions, without a clock")
     parser.add_argument("--write", action="store_true", help="write both tables")
     arguments = parser.parse_args()
     python = environment()
@@ -61,6 +65,8 @@ def main():
         build_example("dynamics")
         words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in sys.argv]
         sys.exit(subprocess.run([str(python), *words], cwd=PLACE, env={**os.environ, "MJCF_ORACLE": "1"}).returncode)
+    if arguments.check:
+        sys.exit(not check())
     agree = True
     if arguments.accuracy is None or arguments.write:
         rows = []
@@ -92,10 +98,28 @@ def line(row):
 
 def ours():
     """Paths of MODELS, and methods."""
-    found = {name: folder for name, folder in packages(argparse.Namespace(sample=False, only=""))}
     for package, name, integrator in MODELS:
-        (folder,) = (folder for full, folder in found.items() if full.partition("==")[0].startswith(package) and (package == "envpool" or full.startswith(package + "==")))
-        yield next(path for path in sorted(folder.rglob(Path(name).name)) if str(path).endswith(name)), integrator
+        yield in_package(package, name), integrator
+
+
+def in_package(package, name):
+    """The path of a file of a package: a name, or its beginning if no other has it."""
+    found = list(packages(argparse.Namespace(sample=False, only=package)))
+    folder = next((folder for full, folder in found if full.startswith(package + "==")), found[0][1])
+    return next(path for path in sorted(folder.rglob(Path(name).name)) if str(path).endswith(name))
+
+
+def check():
+    """Whether generated steps move as MuJoCo's: of each method on each model of CHECKED."""
+    agree = True
+    for one in CHECKED:
+        path = one if isinstance(one, Path) else in_package(*one)
+        for integrator in METHODS:
+            _, ours, _ = compared(path, integrator, 1)
+            text = ", ".join(f"{name} {far:.1e}" for name, far in zip(("alone", "vectors f64", "vectors f32"), ours))
+            print(f"{path.name:20}{integrator:14}{text}", flush=True)
+            agree &= max(ours[:2]) < F64 and ours[2] < F32
+    return agree
 
 
 def own_method(path):
@@ -117,7 +141,7 @@ class Program:
         actuated = json.loads(run(COMMAND, "rollout", path, "--steps", "1", "--format", "json")).get("actuators", [])
         if not actuated:
             raise RuntimeError(f"{path.name}: found no actuators, expected one at least")
-        run(COMMAND, "generate", path, "--effects", "file", "--functions", f"step = actuated_step_{method}", "--batch", "f64,f32", "-o", code)
+        run(COMMAND, "generate", path, "--effects", "file", "--functions", f"step = actuated_step_{method}, mujoco", "--batch", "f64,f32", "-o", code)
         run(
             "rustc", "--edition", "2024", "-C", "opt-level=3", "-C", "codegen-units=1", "-C", "target-cpu=native", HERE / "speed.rs", "-o", self.file,
             "-C", f"link-arg={shared}", "-C", f"link-arg=-Wl,-rpath,{shared.parent}", env={**os.environ, "GENERATED": str(code)},
@@ -134,9 +158,7 @@ class Program:
         mujoco.mj_saveModel(model, str(self.folder / "model.mjb"), None)
         contents = [getattr(mujoco.mjtState, f"mjSTATE_{name}") for name in ("QPOS", "QVEL", "ACT", "CTRL")]
         parts = sum(map(int, contents))
-        places, numbers = order(model), []
-        for q, v, _, act, ctrl in starts:
-            numbers += [q, v, act, ctrl, q[places], to_own(model, q, v), act[states], ctrl[controls]]
+        numbers = [part for q, v, _, act, ctrl in starts for part in (q, v, act, ctrl, q, v, act[states], ctrl[controls])]
         (self.folder / "starts").write_bytes(np.concatenate(numbers).astype("<f8").tobytes())
         words = ["model.mjb", "starts", "ends", len(starts), steps, rounds, repr(float(h)), parts]
         medians = json.loads(run(self.file, *words, cwd=self.folder))
@@ -155,9 +177,7 @@ class Program:
         for _ in range(3):
             own = []
             for _ in starts:
-                q, act = np.zeros(model.nq), np.zeros(model.na)
-                q[places] = take(len(places))
-                v = from_own(model, q, take(model.nv))
+                q, v, act = take(model.nq), take(model.nv), np.zeros(model.na)
                 act[states] = take(len(states))
                 own.append((q, v, act))
             ends.append(own)
@@ -182,21 +202,26 @@ def apart(model, states, one, other):
     return float(np.abs(parts).max()) / (1 + float(np.abs(other[1]).max()))
 
 
-def timed(path, integrator):
-    """A row of the table."""
+def compared(path, integrator, rounds):
+    """Medians, the largest difference of the three forms of ours, and (model, names of actuators, starts)."""
     import numpy as np
 
-    prepared = smooth(path, integrator or own_method(path))
-    integrator = integrator or own_method(path)
-    model, own, controls, states = prepared
+    prepared = smooth(path, integrator)
+    model, own, _, states = prepared
     starts = list(random_starts(prepared, np.random.default_rng(7), STATES, 0.3))
-    h = model.opt.timestep
     with tempfile.TemporaryDirectory() as folder:
-        medians, (theirs, *ours) = Program(path, METHODS[integrator], Path(folder)).rolled(prepared, starts, STEPS, ROUNDS, h)
-    differs = [max(apart(model, states, a, b) for a, b in zip(own, theirs)) for own in ours]
+        program = Program(path, METHODS[integrator], Path(folder))
+        medians, (theirs, *ours) = program.rolled(prepared, starts, STEPS, rounds, model.opt.timestep)
+    return medians, [max(apart(model, states, a, b) for a, b in zip(one, theirs)) for one in ours], (model, own, starts)
+
+
+def timed(path, integrator):
+    """A row of the table."""
+    integrator = integrator or own_method(path)
+    medians, differs, (model, own, starts) = compared(path, integrator, ROUNDS)
     return {
-        "model": path.stem if path.stem != "robot" else path.parent.name, "nv": model.nv, "nu": len(own), "method": integrator, "step": h,
-        "ns": [medians[0], batch(model, starts), *medians[1:]], "f64 differs": max(differs[:2]), "f32 differs": differs[2],
+        "model": path.stem if path.stem != "robot" else path.parent.name, "nv": model.nv, "nu": len(own), "method": integrator,
+        "step": model.opt.timestep, "ns": [medians[0], batch(model, starts), *medians[1:]], "f64 differs": max(differs[:2]), "f32 differs": differs[2],
     }
 
 

@@ -1,8 +1,9 @@
 //! Times rollouts of generated steps beside MuJoCo's `mj_step`, in one process and in turns.
 //!
 //! speed.py compiles this file with the path of generated code in `GENERATED`: a function `step`
-//! with controls and h. Arguments: a compiled model (mjb), states, the file to write, the number of
-//! states, steps, rounds, the length of a step, and what a state of MuJoCo contains (mjtState).
+//! with controls and h, and the translation of states. Arguments: a compiled model (mjb), states,
+//! the file to write, the number of states, steps, rounds, the length of a step, and what a state
+//! of MuJoCo contains (mjtState).
 
 use std::ffi::{CString, c_char, c_int, c_void};
 use std::hint::black_box;
@@ -61,6 +62,10 @@ struct State {
     v: [f64; NV],
     act: [f64; NA],
     ctrl: [f64; NU],
+}
+
+fn array<const N: usize>(numbers: Vec<f64>) -> [f64; N] {
+    numbers.try_into().expect("as many numbers as the robot has")
 }
 
 fn alone(start: &State, steps: usize, h: f64) -> State {
@@ -129,14 +134,8 @@ fn main() {
     let (mut their_starts, mut starts) = (Vec::new(), Vec::new());
     for _ in 0..states {
         their_starts.push(take(theirs.size));
-        let parts = [NQ, NV, NA, NU].map(&mut take);
-        let [q, v, act, ctrl] = &parts;
-        starts.push(State {
-            q: std::array::from_fn(|k| q[k]),
-            v: std::array::from_fn(|k| v[k]),
-            act: std::array::from_fn(|k| act[k]),
-            ctrl: std::array::from_fn(|k| ctrl[k]),
-        });
+        let robot::StateOfMujoco { q, v } = robot::state_of_mujoco(&array(take(NQ)), &array(take(NV)));
+        starts.push(State { q, v, act: array(take(NA)), ctrl: array(take(NU)) });
     }
 
     let mut their_ends = their_starts.clone();
@@ -160,7 +159,10 @@ fn main() {
         times[times.len() / 2]
     });
     println!("{medians:?}");
-    let own = ends.iter().flatten().flat_map(|s| s.q.iter().chain(&s.v).chain(&s.act));
-    let bytes: Vec<u8> = their_ends.iter().flatten().chain(own).flat_map(|x| x.to_le_bytes()).collect();
+    let own = ends.iter().flatten().flat_map(|s| {
+        let robot::MujocoState { qpos, qvel } = robot::mujoco_state(&s.q, &s.v);
+        qpos.into_iter().chain(qvel).chain(s.act)
+    });
+    let bytes: Vec<u8> = their_ends.iter().flatten().copied().chain(own).flat_map(f64::to_le_bytes).collect();
     std::fs::write(&words[3], bytes).expect("the ends can be written");
 }

@@ -7,7 +7,7 @@ use crate::shape;
 use crate::table::{Table, freedom, plain};
 use articulated_codegen::function_groups::Group;
 use articulated_core::algorithm::Argument;
-use articulated_core::step::{ACT, CTRL, H};
+use articulated_core::step::{ACT, CTRL, H, QPOS, QVEL};
 
 pub(super) fn text(report: &Report) -> String {
     let mut out =
@@ -33,7 +33,7 @@ pub(super) fn text(report: &Report) -> String {
 }
 
 fn by_group(report: &Report, table: &mut Table, mut cells: impl FnMut(&FunctionRow) -> Vec<String>) {
-    for group in Group::ALL.into_iter().chain([Group::Steps, Group::Actuators]) {
+    for group in Group::ALL.into_iter().chain(Group::BESIDE) {
         table.heading(group.name());
         for f in report.functions.iter().filter(|f| f.group == group) {
             table.row(std::iter::once(format!("  {}", f.function)).chain(cells(f)));
@@ -62,7 +62,7 @@ pub(super) fn markdown(report: &Report) -> String {
         let _ = writeln!(out, "* {}: {} base, {}; tips {}", r.robot, r.base, freedom(r.degrees_of_freedom), frames.join(", "));
     }
     out += ARGUMENTS;
-    for argument in Argument::ALL.into_iter().chain([H, ACT, CTRL, Argument::SinCos]) {
+    for argument in Argument::ALL.into_iter().chain([H, ACT, CTRL, QPOS, QVEL, Argument::SinCos]) {
         let asked = if argument == Argument::SinCos {
             "; behind the others and before `parameters`, where a function is asked for with `q = sin_cos`"
         } else {
@@ -72,7 +72,7 @@ pub(super) fn markdown(report: &Report) -> String {
         let _ = writeln!(out, "| `{}` | {dims} {}{asked} |", argument.name(), cell(argument.unit()));
     }
     let mut footnotes = Footnotes::default();
-    for group in Group::ALL.into_iter().chain([Group::Steps, Group::Actuators]) {
+    for group in Group::ALL.into_iter().chain(Group::BESIDE) {
         let names: String = report.robots.iter().map(|r| format!(" {} |", r.robot)).collect();
         let lines = "--:|".repeat(report.robots.len());
         let _ = writeln!(out, "\n## {}\n\n| function | gives | what it is | algorithm |{names}\n|---|---|---|---|{lines}", group.title());

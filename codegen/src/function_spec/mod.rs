@@ -15,7 +15,7 @@ use std::fmt;
 use articulated_core::algorithm::{Argument, Dim, Function, FunctionId, UserFunction, functions};
 use articulated_core::diagnostic::{Code, Diagnostic};
 use articulated_core::model::Model;
-use articulated_core::step::steps;
+use articulated_core::step::beside_the_table;
 
 pub use constant::Constant;
 pub use transform::{Derivative, Transform};
@@ -221,7 +221,7 @@ impl FunctionSpec {
         }
         let is_part = |f: &Function<Sym>| self.transform.is_none() && self.parts.iter().any(|part| part.function.name == f.name);
         let is_another = |f: &Function<Sym>| f.name == name && !is_part(f);
-        if functions::<Sym>().iter().chain(steps()).any(is_another) {
+        if functions::<Sym>().iter().chain(beside_the_table()).any(is_another) {
             return Some("is what another function is called: expected a name of its own");
         }
         let outputs = self.outputs();

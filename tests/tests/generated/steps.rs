@@ -227,6 +227,41 @@ fn graphs_and_statements_are_the_library() {
     }
 }
 
+/// The velocity of a free joint is the rate of its position, quaternions begin with w, and the way
+/// back ends where it began.
+#[test]
+fn states_of_mujoco_are_translated() {
+    let call = |name: &str, model: &Model<f64>, inputs: [&[f64]; 2]| {
+        let mut out = vec![0.0; model.nq() + model.nv()];
+        step(name).unwrap().call(model, &mut Workspace::new(model), &inputs, &mut out).unwrap();
+        let rates = out.split_off(model.nq());
+        (out, rates)
+    };
+    let h = 1e-6;
+    for seed in 0..10 {
+        let description = random_tree(seed, Flavour { massless: false, ..Flavour::WRITTEN });
+        let model = Model::new(&description, Base::Floating).unwrap();
+        let state = state(&model, &mut Random::new(seed));
+        let (qpos, qvel) = call("mujoco_state", &model, [&state.q, &state.v]);
+        assert_eq!(qpos[3..7], [state.q[6], state.q[3], state.q[4], state.q[5]]);
+        assert_eq!(qvel[3..6], state.v[..3]);
+        let moved = |h: f64| {
+            let step: Vec<f64> = state.v.iter().map(|v| h * v).collect();
+            let mut q = vec![0.0; model.nq()];
+            integrate(&model, &mut Workspace::new(&model), &state.q, &step, &mut q);
+            call("mujoco_state", &model, [&q, &state.v]).0
+        };
+        let (after, before) = (moved(h), moved(-h));
+        for k in 0..3 {
+            let rate = (after[k] - before[k]) / (2.0 * h);
+            assert!((rate - qvel[k]).abs() < 1e-8, "seed {seed}: {rate} {}", qvel[k]);
+        }
+        let (q, v) = call("state_of_mujoco", &model, [&qpos, &qvel]);
+        assert_eq!(q, state.q);
+        assert!(v.iter().zip(&state.v).all(|(a, b)| (a - b).abs() < 1e-14), "seed {seed}");
+    }
+}
+
 /// Parallel joints, floating bases, balls: every strategy that a bundled robot has.
 #[test]
 fn steps_of_bundled_robots_are_the_library() {

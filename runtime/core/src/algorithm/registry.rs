@@ -126,6 +126,8 @@ pub enum Group {
     Steps,
     /// Forces of a robot's actuators and steps with them, which are in a table of their own.
     Actuators,
+    /// States in MuJoCo's conventions, which are in a table of their own.
+    Mujoco,
     /// Functions of users, which are not in the table.
     User,
 }
@@ -143,6 +145,9 @@ impl Group {
         Self::Configurations,
     ];
 
+    /// The groups of the tables of [`crate::step`].
+    pub const BESIDE: [Self; 3] = [Self::Steps, Self::Actuators, Self::Mujoco];
+
     /// Its name in lists of functions.
     pub fn name(self) -> &'static str {
         match self {
@@ -156,6 +161,7 @@ impl Group {
             Self::Configurations => "configurations",
             Self::Steps => "steps",
             Self::Actuators => "actuators",
+            Self::Mujoco => "mujoco",
             Self::User => "user",
         }
     }
@@ -178,6 +184,7 @@ impl Group {
             Self::Configurations => "Configurations",
             Self::Steps => "Steps of time",
             Self::Actuators => "Actuators of the file, and steps of time with them",
+            Self::Mujoco => "States in MuJoCo's conventions",
             Self::User => "Functions of users",
         }
     }

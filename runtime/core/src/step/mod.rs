@@ -5,11 +5,12 @@
 //! symbols it is generated code, with batches and derivatives as any function. Torques and controls
 //! are held during the step. Effects of the scene act as in forward dynamics.
 //!
-//! [`steps`] and [`of_actuators`] are the tables. Adding a method: its file here, its row in them.
+//! [`of_group`] has the tables. Adding a method: its file here, its row in one of them.
 
 mod euler;
 mod free;
 mod implicit_velocity;
+mod mujoco;
 mod rk4;
 mod rollout;
 
@@ -25,6 +26,7 @@ use crate::algorithm::{
 };
 use crate::model::Model;
 
+pub use mujoco::{QPOS, QVEL};
 pub use rollout::{State, rollout};
 
 /// The length of a step, s.
@@ -175,6 +177,8 @@ macro_rules! steps {
 
 struct Steps<S>(PhantomData<S>);
 
+type Rows<S> = &'static [Function<S>];
+
 steps! { ROWS, Steps, TAKES, GIVES, [];
     step_semi_implicit_euler: euler::semi_implicit, untied, [forward_dynamics_with_wrenches],
         "v + h a, then q with the new velocity; error of order 1",
@@ -271,12 +275,27 @@ pub fn of_actuators<S: Scalar>() -> &'static [Function<S>] {
     Steps::OF_ACTUATORS
 }
 
-/// All functions beside those of the table: steps, and functions of actuators.
-pub fn beside_the_table<S: Scalar>() -> impl Iterator<Item = &'static Function<S>> + Clone {
-    steps().iter().chain(of_actuators())
+/// States in MuJoCo's conventions, and back.
+pub fn exchanges<S: Scalar>() -> &'static [Function<S>] {
+    Steps::EXCHANGES
 }
 
-/// The step, or the function of actuators, called `name`.
+/// The functions of a group of [`Group::BESIDE`]; none of another group.
+pub fn of_group<S: Scalar>(group: Group) -> &'static [Function<S>] {
+    match group {
+        Group::Steps => steps(),
+        Group::Actuators => of_actuators(),
+        Group::Mujoco => exchanges(),
+        _ => &[],
+    }
+}
+
+/// All functions beside those of the table.
+pub fn beside_the_table<S: Scalar>() -> impl Iterator<Item = &'static Function<S>> + Clone {
+    Group::BESIDE.into_iter().flat_map(of_group)
+}
+
+/// The function beside those of the table called `name`.
 pub fn step<S: Scalar>(name: &str) -> Option<&'static Function<S>> {
     beside_the_table().find(|row| row.name == name)
 }
