@@ -33,6 +33,18 @@ fn the_cart_balances_its_pole() {
 }
 
 #[test]
+fn the_pole_swings_up() {
+    let text = printed(env!("CARGO_BIN_EXE_swing_up"));
+    assert!(number(&text, "distance from upright and rest") < 5e-3, "{text}");
+}
+
+#[test]
+fn the_hand_reaches_its_place_by_sampled_torques() {
+    let text = printed(env!("CARGO_BIN_EXE_reach"));
+    assert!(number(&text.replace(" m\n", "\n"), "distance after 2 s") < 0.02, "{text}");
+}
+
+#[test]
 fn a_known_payload_is_held_still() {
     let text = printed(env!("CARGO_BIN_EXE_gravity_compensation"));
     for line in text.lines().skip(1) {
