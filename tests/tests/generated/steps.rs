@@ -459,6 +459,57 @@ fn a_rollout_is_a_loop_over_a_step() {
     assert!((left - right).abs() < 1e-10 * scale * 10.0, "{left} {right}");
 }
 
+user_function! {
+    /// Steps of 2 ms until the first joint is beyond a limit, 200 at most, and how many these are.
+    struct UntilBeyond;
+    fn until_beyond<S>(robot, work, q: [Nq] "rad", v: [Nv] "rad/s", limit: [] "rad") -> (end: [Of(6)] "q and v", turns: [] "1") {
+        let n = robot.nv();
+        let mut state = [q, v, &[S::zero()]].concat();
+        let step = step::<S>("step_semi_implicit_euler").expect("a row");
+        let still = vec![S::zero(); n];
+        let _ended = S::repeat(200, &mut state, |state| {
+            let mut now = vec![S::zero(); 2 * n];
+            let (q, v) = state[..2 * n].split_at(n);
+            step.call(robot, work, &[q, v, &still, &[S::from_f64(2e-3)]], &mut now).expect("vectors made to measure");
+            state[..2 * n].copy_from_slice(&now);
+            state[2 * n] = state[2 * n] + S::one();
+            (now[0] - limit[0]).positive()
+        });
+        end.copy_from_slice(&state[..2 * n]);
+        turns[0] = state[2 * n];
+    }
+}
+
+/// Each state ends by itself: alone, and in the lanes of a batch.
+#[test]
+fn a_motion_ends_where_a_function_of_its_state_says() {
+    let mut request = Request::new("arm.urdf", include_str!("../../robots/arm.urdf"));
+    request.options.users.push(UntilBeyond);
+    request.options.functions = vec!["until_beyond".into()];
+    request.options.batch = vec![Real::F64];
+    let generated = generate(&request).unwrap();
+    let (model, mut random) = (&generated.model, Random::new(3));
+    let mut counts = Vec::new();
+    for _ in 0..12 {
+        let State { q, v, .. } = state(model, &mut random);
+        let limit = q[0] + random.within(0.0, 0.3);
+        let given = [q, v, vec![limit]];
+        let mut at = (given[0].clone(), given[1].clone());
+        let mut count = 0;
+        while count < 200 && (count == 0 || at.0[0] <= limit) {
+            at = stepped("step_semi_implicit_euler", model, [&at.0, &at.1, &[0.0; 3]], 2e-3);
+            count += 1;
+        }
+        counts.push(count);
+        let expected: Vec<f64> = at.0.iter().chain(&at.1).copied().chain([f64::from(count)]).collect();
+        let close = |found: &[f64]| found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-11 * b.abs().max(1.0));
+        let input = |argument: usize, k: usize| given[argument][k];
+        assert!(close(&generated.graphs[0].evaluate(input)));
+        assert!(generated.bodies[0].all().all(|(_, body)| close(&interpret(body, input))));
+    }
+    assert!(counts.contains(&200) && counts.iter().any(|count| (2..150).contains(count)), "{counts:?}");
+}
+
 #[test]
 fn a_step_is_named_in_requests_and_nothing_else_may_be() {
     let told = |function: &str| generate(&request(&[function], Options::default())).err().map(|e| e.to_string()).unwrap_or_default();
