@@ -83,7 +83,7 @@ pub fn locked_actuators(file: &str, world: &World, model: &Model<f64>) -> Vec<Di
 }
 
 /// A warning of smooth forces of the file that do not act, although its actuators do.
-fn forces_of_the_file(file: &str, robot: &BuiltRobot) -> Option<Diagnostic> {
+pub fn forces_of_the_file(file: &str, robot: &BuiltRobot) -> Option<Diagnostic> {
     let (joints, world) = (&robot.reading.description.joints, &robot.reading.world);
     let is_in_file = |row: &Effect| {
         let of_joint = |joint: &Joint| match row.id {

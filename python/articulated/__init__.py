@@ -12,7 +12,7 @@ from ._compiled import CompiledRobot
 from ._derivative import Derivative
 from ._errors import RobotError, RobotWarning
 from ._robot import Actuator, Function, Joint, Robot, bundled, bundled_names, functions, load, loads
-from ._rollout import ActuatedRollout, ActuatedRolloutGradient, Rollout, RolloutGradient
+from ._rollout import ActuatedRollout, ActuatedRolloutGradient, MujocoState, Rollout, RolloutGradient, State
 from ._scene import Motion, Scene, bundled_scene_names
 
 __all__ = [
@@ -24,12 +24,14 @@ __all__ = [
     "Function",
     "Joint",
     "Motion",
+    "MujocoState",
     "Robot",
     "RobotError",
     "RobotWarning",
     "Rollout",
     "RolloutGradient",
     "Scene",
+    "State",
     "bundled",
     "bundled_names",
     "bundled_scene_names",

@@ -158,6 +158,8 @@ class _Source(NamedTuple):
     reading: tuple = _AS_WRITTEN
     # Whether joints follow others according to the file, and according to calls.
     coupling: tuple = (False, ())
+    # Whether the smooth effects of the file act.
+    effects: bool = False
 
 
 class Robot(_native.Robot):
@@ -295,6 +297,8 @@ class Robot(_native.Robot):
             source = other._source
             if source.append or source.payloads or source.locks or source.coupling != (False, ()):
                 raise ValueError("other: found a robot with edits, expected one as loaded; append it first, and edit the result")
+            if source.effects and not self._source.effects:
+                raise ValueError('other: found a robot with effects="file", expected that of the robot that carries it to have them')
             if source.args:
                 raise ValueError("other: found a robot with args, expected one without: args are those of the robot that carries it")
             if source.reading not in (self._source.reading, _AS_WRITTEN):
@@ -453,6 +457,29 @@ class Robot(_native.Robot):
         """
         weights = {"weights_q": weights_q, "weights_v": weights_v, "weights_act": weights_act}
         return _rollout.gradient(self, q, v, act, ctrl, h, weights, method, threads, True)
+
+    def mujoco_state(self, q, v):
+        """The state in MuJoCo's conventions: quaternions (w, x, y, z), and rates of free joints as the velocity in axes of
+        the parent, then ω in axes of the body. Joints that follow others, and locked ones, have no coordinates here.
+
+        Args:
+            q: (..., nq). v: (..., nv).
+
+        Returns:
+            MujocoState: qpos (..., nq) and qvel (..., nv).
+        """
+        return _rollout.MujocoState(*_rollout.exchanged(self, "mujoco_state", {"q": q, "v": v}))
+
+    def state_of_mujoco(self, qpos, qvel):
+        """The state of MuJoCo's qpos and qvel, the inverse of ``mujoco_state``.
+
+        Args:
+            qpos: (..., nq). qvel: (..., nv).
+
+        Returns:
+            State: q (..., nq) and v (..., nv).
+        """
+        return _rollout.State(*_rollout.exchanged(self, "state_of_mujoco", {"qpos": qpos, "qvel": qvel}))
 
     def wheel(self, folder, functions=_wheel.FUNCTIONS, *, name=None, version="0.1.0", flags=(), batch=False):
         """Writes a wheel of this robot: a package of its functions that needs NumPy alone, neither
@@ -633,6 +660,12 @@ def _coupling(coupling):
     return coupling == "file", ()
 
 
+def _effects(effects):
+    if effects not in (None, "file"):
+        raise ValueError(f'effects: found {effects!r}, expected "file" or None; a Scene has effects of its own')
+    return effects == "file"
+
+
 def _robot(file, document, base, gravity, frames, wrenches_in, includes, **given):
     if base not in ("fixed", "floating"):
         raise ValueError(f'base: found {base!r}, expected "fixed" or "floating"')
@@ -655,6 +688,7 @@ def load(
     args=None,
     packages=None,
     coupling=None,
+    effects=None,
     allow_unphysical_inertia=False,
     first_of_duplicates=False,
     leave_out=(),
@@ -674,6 +708,8 @@ def load(
         packages: Folders of packages that the file includes files from, such as
             ``{"arm_description": "src/arm_description"}`` for ``$(find arm_description)``.
         coupling: "file" lets joints follow others as linear equations of the file say (MJCF).
+        effects: "file" turns on the smooth effects of the file: damping, springs and armature of joints, compensated
+            weight, the medium. As MuJoCo has them.
         allow_unphysical_inertia: True accepts negative principal moments, with a warning.
         first_of_duplicates: True takes the first of tags of a URDF or SDF that should be there once, with a warning.
         leave_out: Elements of an MJCF that change the motion and are not read, to leave out with a warning: any of
@@ -695,7 +731,7 @@ def load(
         first_of_duplicates=first_of_duplicates,
         allow_unknown_version=allow_unknown_version,
     )
-    given = {"args": _args(args), "packages": _packages(packages), "reading": reading, "coupling": _coupling(coupling)}
+    given = {"args": _args(args), "packages": _packages(packages), "reading": reading, "coupling": _coupling(coupling), "effects": _effects(effects)}
     return _robot(path, _native.read(path), base, gravity, frames, wrenches_in, True, **given)
 
 
@@ -709,6 +745,7 @@ def loads(
     *,
     args=None,
     coupling=None,
+    effects=None,
     allow_unphysical_inertia=False,
     first_of_duplicates=False,
     leave_out=(),
@@ -731,7 +768,7 @@ def loads(
         first_of_duplicates=first_of_duplicates,
         allow_unknown_version=allow_unknown_version,
     )
-    given = {"args": _args(args), "reading": reading, "coupling": _coupling(coupling)}
+    given = {"args": _args(args), "reading": reading, "coupling": _coupling(coupling), "effects": _effects(effects)}
     return _robot(name, text, base, gravity, frames, wrenches_in, False, **given)
 
 

@@ -2,16 +2,21 @@
 
 import collections
 import math
+import warnings
 import weakref
 
 import numpy as np
 
-from ._errors import as_numbers
+from ._errors import RobotWarning, as_numbers
 
 Rollout = collections.namedtuple("Rollout", ["q", "v"])
 RolloutGradient = collections.namedtuple("RolloutGradient", ["q", "v", "tau"])
 ActuatedRollout = collections.namedtuple("ActuatedRollout", ["q", "v", "act"])
 ActuatedRolloutGradient = collections.namedtuple("ActuatedRolloutGradient", ["q", "v", "act", "ctrl"])
+State = collections.namedtuple("State", ["q", "v"])
+MujocoState = collections.namedtuple("MujocoState", ["qpos", "qvel"])
+# Robots whose forces of the file are off, after a warning.
+_WARNED = weakref.WeakSet()
 # Derivatives of steps, by robot and method.
 _DERIVATIVES = weakref.WeakKeyDictionary()
 
@@ -25,6 +30,11 @@ class Steps:
         self.name = method if str(method).startswith(prefix) else f"{prefix}{method}"
         if actuated and not robot._has_actuators:
             raise ValueError(f"actuated_rollout: {robot.name!r} has no actuators, expected a robot of an MJCF with <actuator>")
+        if actuated and robot not in _WARNED:
+            _WARNED.add(robot)
+            warning = robot._forces_off()
+            if warning:
+                warnings.warn(RobotWarning(f'{warning} (load(…, effects="file"))'), stacklevel=5)
 
     def arrays(self, q, v, act, held):
         """q, v, activations and what is held in each step with the same dimensions of a batch, and these dimensions."""
@@ -60,6 +70,22 @@ class Steps:
             by = "q v act ctrl" if self.actuated else "q v tau"
             known[self.name] = self.robot.derivative(f"vjp({self.name}, {by})")
         return known[self.name]
+
+
+def exchanged(robot, name, given):
+    """Positions and rates of each state, by a function that translates conventions."""
+    found = []
+    for (label, value), size in zip(given.items(), (robot.nq, robot.nv)):
+        array = np.asarray(as_numbers(label, value), dtype=np.float64)
+        if array.ndim == 0 or array.shape[-1] != size:
+            raise ValueError(f"{label}: found shape {array.shape}, expected ({size},), or that behind dimensions of a batch")
+        found.append(array)
+    try:
+        batch = np.broadcast_shapes(*(array.shape[:-1] for array in found))
+    except ValueError:
+        raise ValueError(f"{name}: found dimensions of a batch that do not fit: {[array.shape[:-1] for array in found]}") from None
+    flat = [np.ascontiguousarray(np.broadcast_to(array, (*batch, array.shape[-1])).reshape(-1, array.shape[-1])) for array in found]
+    return [end.reshape((*batch, end.shape[-1])) for end in robot._exchange(name, *flat)]
 
 
 def step_length(h):

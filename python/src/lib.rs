@@ -9,6 +9,7 @@ mod batch;
 mod compiled;
 mod derived;
 mod errors;
+mod exchange;
 mod method;
 mod robot;
 mod rollout;

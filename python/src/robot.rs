@@ -11,10 +11,11 @@ use articulated::description::{Coupling, Limit, Origin, Payload};
 use articulated::formats::{Environment, Included, LeaveOut};
 use articulated::spatial::Reference;
 use articulated::{Base, Model};
-use articulated_codegen::{Appended, COptions, Real, Request, Target, generate};
+use articulated_codegen::scene::Scene;
+use articulated_codegen::{Appended, COptions, Real, Request, Target, forces_of_the_file, generate};
 use articulated_core::actuator::ActuatorLaw;
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
-use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
@@ -23,6 +24,7 @@ use crate::arrays::{self, Argument, Real as _};
 use crate::batch::{self, Call, Compute, Generic, Kernel, Workspaces};
 use crate::derived::Derived;
 use crate::errors;
+use crate::exchange;
 use crate::method::Keywords;
 use crate::rollout;
 use crate::signature::{Signature, signatures};
@@ -299,7 +301,7 @@ impl Robot {
 impl Robot {
     /// `like`: the same robot, of which only gravity, frames and the reference of wrenches differ.
     #[new]
-    #[pyo3(signature = (file, document, base, gravity, includes, wrenches_in, frames, append, payloads, locks, args, packages, reading, coupling, like=None))]
+    #[pyo3(signature = (file, document, base, gravity, includes, wrenches_in, frames, append, payloads, locks, args, packages, reading, coupling, effects, like=None))]
     #[allow(clippy::too_many_arguments)] // Why: what makes a robot, one by one.
     fn new(
         py: Python<'_>,
@@ -317,6 +319,7 @@ impl Robot {
         packages: Vec<(String, PathBuf)>,
         reading: ((bool, bool, bool), Vec<String>, Option<f64>),
         coupling: (bool, Vec<(String, Vec<(String, f64)>, f64)>),
+        effects: bool,
         like: Option<&Bound<'_, Self>>,
     ) -> PyResult<Self> {
         let reference = reference_of(wrenches_in)?;
@@ -335,6 +338,7 @@ impl Robot {
             return Ok(Self::made(model, request, (like.links.clone(), like.warnings.clone(), like.unused.clone())));
         }
         let mut request = Request::new(file, document);
+        request.scene = effects.then(|| Scene::of_file_effects(file));
         let options = &mut request.options.robot;
         (options.base, options.gravity, options.wrench_reference) = (base_of(base)?, gravity, reference);
         (options.arguments, options.packages) = (args.into_iter().collect(), packages.into_iter().collect());
@@ -373,6 +377,24 @@ impl Robot {
         let unused = built.reading.unused.iter().map(ToString::to_string).collect();
         let warnings = built.reading.warnings.into_iter().chain(built.reading.snapped).collect();
         Ok(Self::made(model, request, (about, warnings, unused)))
+    }
+
+    /// The states in MuJoCo's conventions, or back, by the function of this name.
+    fn _exchange<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        positions: PyReadonlyArray2<'py, f64>,
+        rates: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<[Bound<'py, PyArray2<f64>>; 2]> {
+        exchange::run(py, &self.model, name, &positions, &rates)
+    }
+
+    /// A warning of smooth forces of the file that do not act beside its actuators, if there are
+    /// any.
+    fn _forces_off(&self) -> Option<String> {
+        let built = self.request.build_robot().ok()?;
+        forces_of_the_file(&self.request.file, &built).map(|warning| warning.to_string())
     }
 
     /// C99 of functions: its files, each with a name and a text. All names begin with `prefix`.

@@ -107,6 +107,7 @@ def load(
     args: Optional[Mapping[str, Union[str, bool, int, float]]] = None,
     packages: Optional[Mapping[str, Union[str, PathLike[str]]]] = None,
     coupling: Optional[Literal["file"]] = None,
+    effects: Optional[Literal["file"]] = None,
     allow_unphysical_inertia: bool = False,
     first_of_duplicates: bool = False,
     leave_out: Iterable[Literal["flex", "composite", "plugin"]] = ...,
@@ -123,6 +124,7 @@ def loads(
     *,
     args: Optional[Mapping[str, Union[str, bool, int, float]]] = None,
     coupling: Optional[Literal["file"]] = None,
+    effects: Optional[Literal["file"]] = None,
     allow_unphysical_inertia: bool = False,
     first_of_duplicates: bool = False,
     leave_out: Iterable[Literal["flex", "composite", "plugin"]] = ...,
@@ -241,6 +243,8 @@ class Robot(_Functions):
         method: str = "implicit_velocity",
         threads: Optional[int] = None,
     ) -> ActuatedRolloutGradient: ...
+    def mujoco_state(self, q: ArrayLike, v: ArrayLike) -> MujocoState: ...
+    def state_of_mujoco(self, qpos: ArrayLike, qvel: ArrayLike) -> State: ...
     def wheel(
         self,
         folder: Union[str, PathLike[str]],
@@ -282,6 +286,14 @@ class Derivative:
     gives: tuple[tuple[str, tuple[int, ...], str], ...]
 
     def __call__(self, *arguments: ArrayLike, threads: Optional[int] = None) -> Any: ...
+
+class State(NamedTuple):
+    q: NDArray[np.float64]
+    v: NDArray[np.float64]
+
+class MujocoState(NamedTuple):
+    qpos: NDArray[np.float64]
+    qvel: NDArray[np.float64]
 
 class Rollout(NamedTuple):
     q: NDArray[np.float64]

@@ -142,3 +142,43 @@ def test_what_is_wrong_with_controls_is_told(robot):
     ]:
         with pytest.raises(ValueError, match=text):
             cart.actuated_rollout([0, 0], [0, 0], ctrl, 1e-3, **options)
+
+
+DAMPED = """<mujoco><worldbody><body><joint name="x" type="slide" axis="1 0 0" damping="3" armature="0.5"/>
+<geom size="0.1" mass="1.5"/></body></worldbody><actuator><motor name="push" joint="x"/></actuator></mujoco>"""
+
+
+def test_forces_of_the_file_act_or_are_a_warning():
+    with pytest.warns(articulated.RobotWarning, match="armature, damping in the file"):
+        free = articulated.loads(DAMPED, "cart.xml").actuated_rollout([0.0], [1.0], [[0.0]], 0.01)
+    assert free.v[0, 0] == 1.0
+    cart = articulated.loads(DAMPED, "cart.xml", effects="file")
+    # (m + I + h d) a = −d v
+    expected = 1 - 0.01 * 3 / (2.0 + 0.01 * 3)
+    assert abs(cart.actuated_rollout([0.0], [1.0], [[0.0]], 0.01).v[0, 0] - expected) < 1e-15
+    assert abs(cart.mass_matrix([0.0])[0, 0] - 2.0) < 1e-15
+    with pytest.raises(ValueError, match="effects: found 'all', expected \"file\" or None"):
+        articulated.loads(DAMPED, "cart.xml", effects="all")
+
+
+def test_states_of_mujoco():
+    robot = articulated.loads(
+        """<mujoco><worldbody><body><freejoint/><geom size="0.1"/><body pos="0.3 0 0"><joint type="ball"/><geom size="0.1"/>
+        <body pos="0.3 0 0"><joint axis="0 1 0"/><geom size="0.1"/></body></body></body></worldbody></mujoco>""",
+        "m.xml",
+    )
+    q, v = robot.random_configuration(3, 4), np.random.default_rng(1).uniform(-1, 1, (2, 4, robot.nv))
+    qpos, qvel = robot.mujoco_state(q, v)
+    assert qpos.shape == (2, 4, robot.nq) and qvel.shape == (2, 4, robot.nv)
+    assert np.array_equal(qpos[1][:, [0, 1, 2, 4, 5, 6, 3, 8, 9, 10, 7, 11]], q)
+    x, y, z, w = q[0, 3:7]
+    turn = np.array([
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ])
+    assert np.allclose(qvel[1, 0, :3], turn @ v[1, 0, 3:6], atol=1e-14) and np.array_equal(qvel[..., 3:6], v[..., :3])
+    back = robot.state_of_mujoco(qpos, qvel)
+    assert np.array_equal(back.q[0], q) and np.allclose(back.v, v, atol=1e-15)
+    with pytest.raises(ValueError, match=r"qvel: found shape \(3,\), expected \(10,\)"):
+        robot.state_of_mujoco(qpos, [0.0] * 3)
