@@ -383,7 +383,7 @@ class Robot(_native.Robot):
             v: Velocities, [..., nv].
             tau: Torques, [..., steps, nv], N·m or N, held during each step. Dimensions of a batch broadcast.
             h: The length of a step, s.
-            method: semi_implicit_euler, implicit_damping (MuJoCo's Euler), implicit_velocity (its implicitfast), rk4, or
+            method: semi_implicit_euler, implicit_damping (MuJoCo's Euler), implicit_velocity (its implicitfast), lie_midpoint, rk4, or
                 rk4_mujoco.
             every: Every so many steps are recorded.
             threads: None or 1 for one thread, 0 for all, or a number.

@@ -49,7 +49,7 @@ STATES, STEPS, ROUNDS = 64, 20, 31
 F64, F32 = 1e-11, 1e-4
 # Of --accuracy: the motion, s, and the steps in it.
 MOTION, COUNTS, BESIDE = 0.5, [50, 100, 250, 1000], 32
-WAYS = [("semi_implicit_euler", None), ("implicit_damping", "Euler"), ("implicit_velocity", "implicitfast"), ("rk4", None), ("rk4_mujoco", "RK4")]
+WAYS = [("semi_implicit_euler", None), ("implicit_damping", "Euler"), ("implicit_velocity", "implicitfast"), ("lie_midpoint", None), ("rk4", None), ("rk4_mujoco", "RK4")]
 
 
 def main():

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::dce;
 use super::sums::{Rebuild, Term, flatten, inner, is_sum, open, uses_in_sums};
+use super::{cost, dce};
 use crate::graph::{Graph, NodeId, Op};
 
 /// Most terms of a searched sum: longer sums have too many pairs.
@@ -26,7 +26,9 @@ pub fn cse_partial_sums(graph: &Graph) -> Graph {
     let mut gone = vec![false; nodes.len()];
     sums.changed.iter().enumerate().filter(|(_, changed)| **changed).for_each(|(k, _)| open(graph, &inner, k, &mut gone));
     let mut built = vec![None; sums.pairs.len()];
-    dce(&Rebuild::graph(graph, &gone, |rebuild, k| sums.changed[k].then(|| sums.built(&sums.sums[k], rebuild, &mut built))))
+    let new = dce(&Rebuild::graph(graph, &gone, |rebuild, k| sums.changed[k].then(|| sums.built(&sums.sums[k], rebuild, &mut built))));
+    // Signs that pairs need may cost more than they save.
+    if cost(&new) <= cost(graph) { new } else { graph.clone() }
 }
 
 /// Whether each node is a product that multiply-adds take in.

@@ -10,6 +10,7 @@
 mod euler;
 mod free;
 mod implicit_velocity;
+mod lie_midpoint;
 mod mujoco;
 mod rk4;
 mod rollout;
@@ -189,6 +190,9 @@ steps! { ROWS, Steps, TAKES, GIVES, [];
     step_implicit_velocity: implicit_velocity::implicit_velocity, solved_at_once, [forward_dynamics_with_wrenches],
         "as step_implicit_damping, D with the slopes of box_drag too, and gyroscopic forces of bodies that float alone: MuJoCo's implicitfast",
         "MuJoCo documentation, Numerical integration";
+    step_lie_midpoint: lie_midpoint::lie_midpoint, untied, [forward_dynamics_with_wrenches, forward_dynamics_with_wrenches],
+        "the implicit midpoint rule on the manifold: symmetric, keeps the momentum of a free body; error of order 2",
+        "Simo & Wong, Int. J. Numer. Methods Eng. 31, 1991; Hairer, Lubich & Wanner 2006, §IV.8";
     step_rk4: rk4::on_the_manifold, untied,
         [forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches],
         "the classical method of four stages in step vectors of the manifold; error of order 4",
@@ -209,6 +213,9 @@ steps! { OF_ACTUATORS, Actuators, ACTUATED_TAKES, ACTUATED_GIVES, [actuator_torq
     actuated_step_implicit_velocity: implicit_velocity::implicit_velocity, solved_at_once, [forward_dynamics_with_wrenches],
         "as actuated_step_implicit_damping, D with the slopes of actuators and tendons too: MuJoCo's implicitfast",
         "MuJoCo documentation, Actuation model; Numerical integration";
+    actuated_step_lie_midpoint: lie_midpoint::lie_midpoint, untied, [forward_dynamics_with_wrenches, forward_dynamics_with_wrenches],
+        "step_lie_midpoint with actuators at held controls",
+        "MuJoCo documentation, Actuation model; Simo & Wong, Int. J. Numer. Methods Eng. 31, 1991";
     actuated_step_rk4: rk4::on_the_manifold, untied,
         [forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches],
         "step_rk4 with actuators at held controls",
@@ -302,6 +309,6 @@ pub fn step<S: Scalar>(name: &str) -> Option<&'static Function<S>> {
 
 /// The order of a step: its error after a fixed time falls as this power of h.
 pub fn order<S: Scalar>(step: &Function<S>) -> u32 {
-    // Methods of one stage have order 1, those of four stages order 4.
+    // Methods of one acceleration have order 1, of two order 2, of four order 4.
     step.contains.len() as u32
 }
