@@ -110,8 +110,8 @@ fn an_unknown_function_is_refused_with_the_nearest_and_all() {
     let told = generate(&request).unwrap_err().to_string();
     let known =
         told.split_once("there are: ").expect("a list").1.split_once("; a function of your own").expect("advice").0.split(", ").count();
-    // With the words `steps`, `actuators` and `all`.
-    assert_eq!(known, functions::<f64>().len() + beside_the_table::<f64>().count() + Group::ALL.len() + 3);
+    // With the word `all`.
+    assert_eq!(known, functions::<f64>().len() + beside_the_table::<f64>().count() + Group::ALL.len() + Group::BESIDE.len() + 1);
 }
 
 #[test]
