@@ -27,39 +27,53 @@ use crate::spatial::{Twist, Vector3};
 
 /// Largest number of rounds of substitution.
 const MOST: usize = 50;
+/// Powers of two: a change in parts of the size that ends the rounds, and one that ends them if it
+/// no longer falls.
+const SETTLED: i32 = -47;
+const SMALL: i32 = -16;
+/// The square of a change that always ends them, and one that is larger than any.
+const AT_REST: f64 = 1e-36;
+const FIRST: f64 = 1e30;
 
 pub(super) fn lie_midpoint<S: Scalar>(start: &Start<'_, S>, ws: &mut Workspace<S>, end: &mut End<'_, S>) {
     let Start { model, q: q0, v: v0, h, .. } = *start;
     let half = h * S::from_f64(0.5);
     // Activations at the middle of the step, and their rates there.
     let act: Vec<S> = start.act.iter().zip(start.activation_rates(start.act)).map(|(w, rate)| *w + half * rate).collect();
-    let mut a = vec![S::zero(); model.nv];
-    start.acceleration(ws, (q0, v0, start.act), &mut a);
-    let converged = S::repeat(MOST, &mut a, |a| {
+    // The acceleration, and the square of its last change.
+    let mut state = vec![S::zero(); model.nv + 1];
+    state[model.nv] = S::from_f64(FIRST);
+    start.acceleration(ws, (q0, v0, start.act), &mut state[..model.nv]);
+    let converged = S::repeat(MOST, &mut state, |state| {
+        let (a, last) = state.split_at_mut(model.nv);
         let before = a.to_vec();
         let mean: Vec<S> = v0.iter().zip(&before).map(|(v, a)| *v + half * *a).collect();
         let half_step: Vec<S> = cayley(model, &mean, h).iter().map(|s| *s * S::from_f64(0.5)).collect();
         let mut q = vec![S::zero(); model.nq];
         integrate(model, ws, q0, &half_step, &mut q);
         start.acceleration(ws, (&q, &mean, &act), a);
-        is_settled(v0, &before, a, h)
+        is_settled(v0, (&before, a), h, &mut last[0])
     });
-    let mean: Vec<S> = v0.iter().zip(&a).map(|(v, a)| *v + half * *a).collect();
+    let a = &state[..model.nv];
+    let mean: Vec<S> = v0.iter().zip(a).map(|(v, a)| *v + half * *a).collect();
     integrate(model, ws, q0, &cayley(model, &mean, h), end.q);
     // Without convergence the rates are not finite.
     let certain = S::one() / S::select(converged, S::one(), S::zero());
-    end.v.iter_mut().zip(v0).zip(&a).for_each(|((end, v), a)| *end = (*v + h * *a) * certain);
+    end.v.iter_mut().zip(v0).zip(a).for_each(|((end, v), a)| *end = (*v + h * *a) * certain);
     start.advance_activations(&start.activation_rates(&act), end);
 }
 
-/// |h Δa| ≤ ε √(|v|² + |h a|²) with ε = 64 units in the last place: the next round would change
-/// less.
-fn is_settled<S: Scalar>(v: &[S], before: &[S], a: &[S], h: S) -> S::Mask {
+/// |h Δa| ≤ ε √(|v|² + |h a|²) with ε = 64 units in the last place of f64: the next round would
+/// change less. Or it is small and no longer falls: in other precisions, and where rounding is
+/// large.
+fn is_settled<S: Scalar>(v: &[S], (before, a): (&[S], &[S]), h: S, last: &mut S) -> S::Mask {
     let sum = |terms: &mut dyn Iterator<Item = S>| terms.fold(S::zero(), |sum, x| sum + x * x);
     let change = sum(&mut before.iter().zip(a).map(|(before, a)| h * (*a - *before)));
     let size = sum(&mut v.iter().copied()) + sum(&mut a.iter().map(|a| h * *a));
-    let bits = S::BITS as i32;
-    (size * S::from_f64(two_to(12 - 2 * bits)) + S::from_f64(two_to(-40 - 2 * bits)) - change).positive()
+    let beyond = |part: i32| size * S::from_f64(two_to(2 * part)) + S::from_f64(AT_REST) - change;
+    let near = S::select((*last - change).positive(), -S::one(), beyond(SMALL));
+    *last = change;
+    S::select(beyond(SETTLED).positive(), S::one(), near).positive()
 }
 
 /// The step vector of Cayley's map of h v.
