@@ -517,7 +517,7 @@ user_function! {
             let (q, v) = state[..2 * n].split_at(n);
             step.call(robot, work, &[q, v, &still, &[S::from_f64(2e-3)]], &mut now).expect("vectors made to measure");
             state[..2 * n].copy_from_slice(&now);
-            state[2 * n] = state[2 * n] + S::one();
+            state[2 * n] += S::one();
             (now[0] - limit[0]).positive()
         });
         end.copy_from_slice(&state[..2 * n]);
