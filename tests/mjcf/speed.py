@@ -7,10 +7,9 @@
     python3 tests/mjcf/speed.py --check                whether generated steps of CHECKED agree with MuJoCo, by each method
     python3 tests/mjcf/speed.py --write                the tables of docs/steps.md, and a record beside those of docs/speed
 
-speed.rs is compiled for this processor with the generated code of each model, and linked with the library of MuJoCo's wheel. Generated
-code translates states from MuJoCo's conventions and back. It rolls
+speed.rs is compiled for this processor with the generated code of each model, and linked with the library of MuJoCo's wheel. It rolls
 STATES random states by STEPS steps with mj_step, with the step alone, and with the step in vectors of f64 and of f32, in turns; a number
-is the median of the rounds, ns a step. `mujoco.batch` of Python, on one thread, is timed afterwards.
+is the median of the rounds, ns a step. Generated code translates states from MuJoCo's conventions and back. `mujoco.batch` of Python, on one thread, is timed afterwards.
 
 The ends are compared: f64 to 1e-11, f32 to 1e-4 of 1 and the largest rate. Exit status: 0 if all agree, else 1.
 """
@@ -49,7 +48,10 @@ STATES, STEPS, ROUNDS = 64, 20, 31
 F64, F32 = 1e-11, 1e-4
 # Of --accuracy: the motion, s, and the steps in it.
 MOTION, COUNTS, BESIDE = 0.5, [50, 100, 250, 1000], 32
-WAYS = [("semi_implicit_euler", None), ("implicit_damping", "Euler"), ("implicit_velocity", "implicitfast"), ("lie_midpoint", None), ("rk4", None), ("rk4_mujoco", "RK4")]
+WAYS = [
+    ("semi_implicit_euler", None), ("implicit_damping", "Euler"), ("implicit_velocity", "implicitfast"), ("lie_midpoint", None), ("rk4", None),
+    ("rk4_mujoco", "RK4"),
+]
 
 
 def main():
@@ -118,7 +120,7 @@ def check():
             _, ours, _ = compared(path, integrator, 1)
             text = ", ".join(f"{name} {far:.1e}" for name, far in zip(("alone", "vectors f64", "vectors f32"), ours))
             print(f"{path.name:20}{integrator:14}{text}", flush=True)
-            agree &= max(ours[:2]) < F64 and ours[2] < F32
+            agree &= all(far < bound for far, bound in zip(ours, (F64, F64, F32)))
     return agree
 
 
@@ -212,16 +214,18 @@ def compared(path, integrator, rounds):
     with tempfile.TemporaryDirectory() as folder:
         program = Program(path, METHODS[integrator], Path(folder))
         medians, (theirs, *ours) = program.rolled(prepared, starts, STEPS, rounds, model.opt.timestep)
-    return medians, [max(apart(model, states, a, b) for a, b in zip(one, theirs)) for one in ours], (model, own, starts)
+    return medians, [float(np.max([apart(model, states, a, b) for a, b in zip(one, theirs)])) for one in ours], (model, own, starts)
 
 
 def timed(path, integrator):
     """A row of the table."""
+    import numpy as np
+
     integrator = integrator or own_method(path)
     medians, differs, (model, own, starts) = compared(path, integrator, ROUNDS)
     return {
         "model": path.stem if path.stem != "robot" else path.parent.name, "nv": model.nv, "nu": len(own), "method": integrator,
-        "step": model.opt.timestep, "ns": [medians[0], batch(model, starts), *medians[1:]], "f64 differs": max(differs[:2]), "f32 differs": differs[2],
+        "step": model.opt.timestep, "ns": [medians[0], batch(model, starts), *medians[1:]], "f64 differs": float(np.max(differs[:2])), "f32 differs": differs[2],
     }
 
 

@@ -177,7 +177,8 @@ def measure(path, integrator):
     # Without eulerdamp, Euler is explicit in damping.
     is_explicit = integrator == "Euler" and model.opt.disableflags & disable.mjDSBL_EULERDAMP
     method = "semi_implicit_euler" if is_explicit else integrator
-    single = max(apart(one, ended(start, 1)) for one, start in zip(rolled(path, model, (states, controls), starts, method, 1), starts))
+    # A difference that is not a number stays one.
+    single = float(np.max([apart(one, ended(start, 1)) for one, start in zip(rolled(path, model, (states, controls), starts, method, 1), starts)]))
     few = starts[:5]
     ratios = []
     for one, start in zip(rolled(path, model, (states, controls), few, method, STEPS), few):
@@ -190,7 +191,7 @@ def measure(path, integrator):
             ratios.append(apart(one, reference) / max(beside, STEPS * ROUNDING))
     is_free = (model.jnt_type == mujoco.mjtJoint.mjJNT_FREE).any()
     counts = model.nv, len(own), len(states), model.nactuator - len(own)
-    return counts, single, max(ratios) if ratios else None, MANY_OF_FREE if is_free else MANY
+    return counts, single, float(np.max(ratios)) if ratios else None, MANY_OF_FREE if is_free else MANY
 
 
 def turn_axes(model, path):
