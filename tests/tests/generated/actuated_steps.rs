@@ -130,6 +130,11 @@ fn activations_follow_their_control() {
             assert!((found[2] - expected).abs() < 1e-15, "{filter:?}: {found:?} {expected}");
             let force = 1.5 * if is_early { expected } else { 0.2 };
             assert!((found[1] - h * 2.0 * force / 0.25).abs() < 1e-15, "{filter:?}: {found:?}");
+            // The midpoint: exact for the exact filter, of the second order for the other.
+            let given = [vec![0.0], vec![0.0], vec![0.2], vec![0.5], vec![h]];
+            let middle = stepped("actuated_step_lie_midpoint", &model, &given)[2];
+            let second = if matches!(filter, Filter::Euler(_)) { 0.2 + h * (0.3 - 0.3 * h / 0.2) / 0.1 } else { expected };
+            assert!((middle - second).abs() < 1e-15, "{filter:?}: {middle} {second}");
             // Bounds of the control, then of the activation.
             assert_eq!(from(9.0, 0.2)[2].to_bits(), from(1.0, 0.2)[2].to_bits());
             assert_eq!(from(1.0, 0.89)[2], if matches!(filter, Filter::Integrator) { 0.9 } else { from(1.0, 0.89)[2].min(0.9) });

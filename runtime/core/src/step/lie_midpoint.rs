@@ -18,6 +18,7 @@ use alloc::vec::Vec;
 
 use super::{End, Start};
 use crate::Scalar;
+use crate::actuator::{Activation, Filter};
 use crate::algorithm::manifold::{Space, put, range, six, three};
 use crate::algorithm::{Workspace, integrate};
 use crate::model::Model;
@@ -38,8 +39,9 @@ const FIRST: f64 = 1e30;
 pub(super) fn lie_midpoint<S: Scalar>(start: &Start<'_, S>, ws: &mut Workspace<S>, end: &mut End<'_, S>) {
     let Start { model, q: q0, v: v0, h, .. } = *start;
     let half = h * S::from_f64(0.5);
-    // Activations at the middle of the step, and their rates there.
-    let act: Vec<S> = start.act.iter().zip(start.activation_rates(start.act)).map(|(w, rate)| *w + half * rate).collect();
+    // Activations at the middle of the step.
+    let first = start.activation_rates(start.act);
+    let act: Vec<S> = start.act.iter().zip(&first).map(|(w, rate)| *w + half * *rate).collect();
     // The acceleration, and the square of its last change.
     let mut state = vec![S::zero(); model.nv + 1];
     state[model.nv] = S::from_f64(FIRST);
@@ -60,7 +62,12 @@ pub(super) fn lie_midpoint<S: Scalar>(start: &Start<'_, S>, ws: &mut Workspace<S
     // Without convergence the rates are not finite.
     let certain = S::one() / S::select(converged, S::one(), S::zero());
     end.v.iter_mut().zip(v0).zip(a).for_each(|((end, v), a)| *end = (*v + h * *a) * certain);
-    start.advance_activations(&start.activation_rates(&act), end);
+    // An exact filter needs its rate at the start, the others theirs at the middle.
+    let is_exact = |own: &Activation<S>| matches!(own.filter, Filter::Exact(_));
+    let activations = model.actuators.laws.iter().filter_map(|law| law.activation.as_ref());
+    let rates = activations.zip(first.iter().zip(start.activation_rates(&act)));
+    let rates: Vec<S> = rates.map(|(own, (first, middle))| if is_exact(own) { *first } else { middle }).collect();
+    start.advance_activations(&rates, end);
 }
 
 /// |h Δa| ≤ ε √(|v|² + |h a|²) with ε = 64 units in the last place of f64: the next round would
