@@ -14,7 +14,7 @@ pub(crate) fn known(text: &str) -> Result<Names, String> {
     each(text, &of_table)
 }
 
-/// As [`known`], with steps and functions of actuators, and the generator's syntax:
+/// As [`known`], with functions beside the table, as steps are, and the generator's syntax:
 /// `name = first + second(a = 0)`, and `motion` of a scene.
 pub(crate) fn requested(text: &str) -> Result<Names, String> {
     each(text, &|entry| match entry.contains(['=', '+', '(']) {

@@ -4,10 +4,9 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use articulated_core::description::Joint;
-use articulated_core::effect::effects;
 use articulated_core::model::GRAVITY;
 use articulated_formats::{Environment, Options, Reading, included, read_file, read_with};
-use articulated_scene::folder_of;
+use articulated_scene::{folder_of, smooth_in_file};
 
 use crate::failure::Failure;
 use crate::table::number;
@@ -22,15 +21,8 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     let (joints, world) = (&reading.description.joints, &reading.world);
     let name = quoted(&path.file_name().unwrap_or(path.as_os_str()).to_string_lossy());
     let mut out = format!("# The smooth motion of {name}.\nfile = {name}\n\n[effects]\n");
-    for (effect, has) in SMOOTH {
-        if joints.iter().any(has) {
-            let _ = writeln!(out, "{effect} = \"file\"");
-        }
-    }
-    for row in effects() {
-        if world.effects.iter().any(|(own, _)| own.effect == row.id) {
-            let _ = writeln!(out, "{} = \"file\"", row.name);
-        }
+    for row in smooth_in_file(joints, world) {
+        let _ = writeln!(out, "{} = \"file\"", row.name);
     }
     for (line, what, has) in OTHERS {
         if joints.iter().any(has) {
@@ -125,13 +117,6 @@ pub(crate) fn left_out(joints: &[Joint], has_collision: bool) -> Vec<&'static st
 }
 
 type Has = fn(&Joint) -> bool;
-
-/// Effects with smooth forces.
-const SMOOTH: [(&str, Has); 3] = [
-    ("damping", |joint| is_not_zero(joint.dynamics.damping)),
-    ("spring", |joint| is_not_zero(joint.dynamics.stiffness)),
-    ("armature", |joint| is_not_zero(joint.dynamics.armature)),
-];
 
 fn is_not_zero(number: Option<f64>) -> bool {
     number.is_some_and(|number| number != 0.0)

@@ -5,13 +5,12 @@ use std::collections::BTreeMap;
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Function, Group, Needs, functions};
-use articulated_core::description::Joint;
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Spanned, quote};
-use articulated_core::effect::{Effect, EffectId, effects};
+use articulated_core::effect::Effect;
 use articulated_core::model::Model;
 use articulated_formats::OnLockedJoint;
 use articulated_formats::world::World;
-use articulated_scene::{BuiltRobot, Why};
+use articulated_scene::{BuiltRobot, Why, smooth_in_file};
 
 use crate::function_spec::{FunctionSpec, wrong_entry};
 use crate::language::refuses_port;
@@ -84,21 +83,12 @@ pub fn locked_actuators(file: &str, world: &World, model: &Model<f64>) -> Vec<Di
 
 /// A warning of smooth forces of the file that do not act, although its actuators do.
 pub fn forces_of_the_file(file: &str, robot: &BuiltRobot) -> Option<Diagnostic> {
-    let (joints, world) = (&robot.reading.description.joints, &robot.reading.world);
-    let is_in_file = |row: &Effect| {
-        let of_joint = |joint: &Joint| match row.id {
-            EffectId::damping => joint.dynamics.damping,
-            EffectId::spring => joint.dynamics.stiffness,
-            EffectId::armature => joint.dynamics.armature,
-            _ => None,
-        };
-        joints.iter().filter_map(of_joint).any(|number| number != 0.0) || world.effects.iter().any(|(own, _)| own.effect == row.id)
-    };
     let off = &robot.resolved.report.off;
     let is_chosen = |row: &Effect| {
         robot.effects.iter().any(|own| own.effect == row.id) || off.iter().any(|own| own.effect == row.name && own.why != Why::NotAsked)
     };
-    let names: Vec<&str> = effects().iter().filter(|row| is_in_file(row) && !is_chosen(row)).map(|row| row.name).collect();
+    let in_file = smooth_in_file(&robot.reading.description.joints, &robot.reading.world);
+    let names: Vec<&str> = in_file.filter(|row| !is_chosen(row)).map(|row| row.name).collect();
     (!names.is_empty()).then(|| {
         let found = format!("{} in the file, turned off, beside its actuators", names.join(", "));
         let expected =

@@ -61,7 +61,7 @@ pub use articulated_core::settings::{Output, Settings, Stiffness};
 pub use calls::Calls;
 pub use control::{Control, Drive, PerJoint, Target};
 pub use edits::{Append, Follower, Load, Lock};
-pub use effects::{Edited, EffectRequest, Numbers, Resolved, Selector, still};
+pub use effects::{Edited, EffectRequest, Numbers, Resolved, Selector, smooth_in_file, still};
 pub use impact::{Impact, When};
 pub use initial::{BaseState, Coordinates, Initial, Named};
 pub use report::{EffectCount, EffectOff, EffectOn, Number, Report, Why};

@@ -68,14 +68,7 @@ LEFT_BY_MUJOCO = 1.5e-6
 
 def main():
     arguments = parse()
-    python = environment()
-    if "MJCF_ORACLE" not in os.environ:
-        build_example("dynamics")
-        build_command()
-        words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in sys.argv]
-        # MuJoCo writes a log into the folder that it runs in.
-        code = subprocess.run([str(python), *words], cwd=PLACE, env={**os.environ, "MJCF_ORACLE": "1"}).returncode
-        sys.exit(code)
+    enter("dynamics")
     if arguments.file:
         verdict, numbers, counts = compare(Path(arguments.file))
         lines = [f"{name}: {value:.1e}" for name, value in sorted(numbers.items())]
@@ -137,6 +130,19 @@ def parse():
 def environment():
     """The Python with MuJoCo."""
     return python_of(PLACE / "python", HERE / "requirements.txt")
+
+
+def enter(*examples):
+    """Builds the command and these examples, and runs the script again beside MuJoCo, unless it runs there already."""
+    python = environment()
+    if "MJCF_ORACLE" in os.environ:
+        return
+    build_command()
+    for example in examples:
+        build_example(example)
+    words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in sys.argv]
+    # MuJoCo writes a log into the folder that it runs in.
+    sys.exit(subprocess.run([str(python), *words], cwd=PLACE, env={**os.environ, "MJCF_ORACLE": "1"}).returncode)
 
 
 def models():

@@ -19,14 +19,13 @@ Exit status: 0 if all motions are the same within 1e-6, else 1.
 import argparse
 import csv
 import json
-import os
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
-from oracle import BALL, HERE, PLACE, REPOSITORY, build_command, environment, models
+from oracle import BALL, HERE, REPOSITORY, enter, models
 from programs import COMMAND
 
 SAME = 1e-6
@@ -37,11 +36,7 @@ def main():
     parser.add_argument("--file", help="only this file")
     parser.add_argument("--end", type=float, default=1.0, help="the last time, s [default: 1]")
     arguments = parser.parse_args()
-    python = environment()
-    if "MJCF_ORACLE" not in os.environ:
-        build_command()
-        words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in sys.argv]
-        sys.exit(subprocess.run([str(python), *words], cwd=PLACE, env={**os.environ, "MJCF_ORACLE": "1"}).returncode)
+    enter()
     print(f"{'':40}{'':6}{'':13}{'MuJoCo, its step':>24}{'dopri5, generated':>24}{'generic':>12}")
     print(f"{'model':40}{'nv':>6}{'same motion':>13}" + f"{'error':>12}{'time, ms':>12}" * 2 + f"{'time, ms':>12}")
     good = True

@@ -25,8 +25,8 @@ import tempfile
 import time
 from pathlib import Path
 
-from oracle import HERE, PLACE, build_command, environment, packages
-from programs import COMMAND, REPOSITORY, build_example
+from oracle import HERE, enter, packages
+from programs import COMMAND, REPOSITORY
 from steps import random_starts, smooth
 
 # A package and a file of it, and the method of the file.
@@ -61,12 +61,7 @@ def main():
     parser.add_argument("--check", action="store_true", help="compare motions, without a clock")
     parser.add_argument("--write", action="store_true", help="write both tables")
     arguments = parser.parse_args()
-    python = environment()
-    if "MJCF_ORACLE" not in os.environ:
-        build_command()
-        build_example("dynamics")
-        words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in sys.argv]
-        sys.exit(subprocess.run([str(python), *words], cwd=PLACE, env={**os.environ, "MJCF_ORACLE": "1"}).returncode)
+    enter("dynamics")
     if arguments.check:
         sys.exit(not check())
     agree = True

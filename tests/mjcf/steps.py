@@ -21,7 +21,6 @@ import argparse
 import collections
 import json
 import math
-import os
 import re
 import subprocess
 import sys
@@ -29,8 +28,8 @@ import tempfile
 import warnings
 from pathlib import Path
 
-from oracle import BALL, HELPER, PLACE, build_command, environment, models, packages
-from programs import COMMAND, build_example
+from oracle import BALL, HELPER, enter, models, packages
+from programs import COMMAND
 from simulate import order
 
 ONE_STEP = 1e-12
@@ -49,12 +48,7 @@ def main():
     parser.add_argument("--file", nargs="+", help="only these files")
     parser.add_argument("--all", action="store_true", help="every file of the packages")
     arguments = parser.parse_args()
-    python = environment()
-    if "MJCF_ORACLE" not in os.environ:
-        build_command()
-        build_example("dynamics")
-        words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in sys.argv]
-        sys.exit(subprocess.run([str(python), *words], cwd=PLACE, env={**os.environ, "MJCF_ORACLE": "1"}).returncode)
+    enter("dynamics")
     print(f"{'model':40}{'nv':>4}{'nu':>4}{'na':>4}{'off':>4}  {'integrator':14}{'one step':>10}{'steps':>10}")
     paths = every_file() if arguments.all else map(Path, arguments.file) if arguments.file else models()
     verdicts, worst = collections.Counter(), 0.0

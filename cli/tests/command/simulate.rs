@@ -391,8 +391,8 @@ fn a_file_of_a_robot_moves_smoothly() {
 file = "pendulum.xml"
 
 [effects]
-damping = "file"
 armature = "file"
+damping = "file"
 # friction = "file"  # dry friction
 # limit = { from = "file", stiffness = 1e4, damping = 10 }  # limits
 # contact = { "*" = { from = "collision", plane = "file", stiffness = 1.8e4, damping_time = 1.0e-2, friction = 0.8 } }  # against the planes of the file; 1 kg at rest on 2 points

@@ -1,8 +1,8 @@
 //! Numbers of effects in a robot's file: in a URDF, `<dynamics>` and `<limit>`.
 
-use articulated_core::description::{Joint, JointKind};
-
-use articulated_core::effect::{Effect, EffectId};
+use articulated_core::description::{ById, Joint, JointId, JointKind};
+use articulated_core::effect::{Effect, EffectId, effects};
+use articulated_formats::world::World;
 
 use super::collision;
 use super::resolve::Filled;
@@ -17,6 +17,16 @@ const ON_JOINTS: [EffectId; 3] = [EffectId::damping, EffectId::spring, EffectId:
 /// Whether a file's numbers for this effect are of a smooth force, or of an inertia.
 pub(super) fn is_smooth(effect: EffectId) -> bool {
     ON_JOINTS.contains(&effect) || of_link(effect).is_some()
+}
+
+/// The effects that `effects."*" = "file"` turns on, of those that the file has.
+pub fn smooth_in_file(joints: &ById<JointId, Joint>, world: &World) -> impl Iterator<Item = &'static Effect> {
+    effects().iter().filter(|row| is_smooth(row.id)).filter(|row| {
+        // The first field is the strength of each.
+        let strength = row.fields.first().and_then(|field| tag(row.id, field.name));
+        let of_joint = |joint: &Joint| strength.and_then(|tag| number(joint, tag)).is_some_and(|number| number != 0.0);
+        joints.iter().any(of_joint) || world.effects.iter().any(|(own, _)| own.effect == row.id)
+    })
 }
 
 /// What has an effect on links in the file.

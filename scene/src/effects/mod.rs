@@ -30,6 +30,7 @@ use crate::tree::Value;
 use articulated_core::effect::{Effect, EffectId, Field, On, effect, effects};
 
 pub(crate) use collision::is_of_shape;
+pub use file::smooth_in_file;
 pub(crate) use file::{sources, tag};
 pub(crate) use index::indices;
 pub use resolve::{Edited, Resolved};
