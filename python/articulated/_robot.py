@@ -426,8 +426,8 @@ class Robot(_native.Robot):
                 Dimensions of a batch broadcast.
             h: The length of a step, s.
             act: Activations of the actuators that have one, [..., na]; None for zeros.
-            method: implicit_velocity (MuJoCo's implicitfast), implicit_damping (its Euler), semi_implicit_euler, rk4,
-                or rk4_mujoco.
+            method: implicit_velocity (MuJoCo's implicitfast), implicit_damping (its Euler), semi_implicit_euler,
+                lie_midpoint, rk4, or rk4_mujoco.
             every: Every so many steps are recorded.
             threads: None or 1 for one thread, 0 for all, or a number.
 
