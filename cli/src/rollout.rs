@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use articulated_core::algorithm::{Argument, Function, Workspace};
+use articulated_core::diagnostic::Diagnostics;
 use articulated_core::model::Model;
-use articulated_core::step::{self, ACT, CTRL, beside_the_table, rollout};
+use articulated_core::step::{self, ACT, CTRL, WARM, beside_the_table, rollout};
 use articulated_formats::world::{Stepping, World, step_of_integrator};
 use clap::Args;
 use serde::Serialize;
@@ -38,6 +39,9 @@ pub(crate) struct RolloutArguments {
     /// [default: the file's, with its actuators, or step_semi_implicit_euler]
     #[arg(long, value_name = "NAME")]
     method: Option<String>,
+    /// Step with limits, dry friction and contacts of the file, by MuJoCo's law
+    #[arg(long)]
+    constraints: bool,
     /// The length of a step, s [default: the file's, or 0.001]
     #[arg(long, value_name = "S", value_parser = length)]
     time_step: Option<f64>,
@@ -91,7 +95,18 @@ pub(crate) fn run(arguments: &RolloutArguments, format: Format) -> Result<u8, Fa
     let (starts, source) = starts(arguments, &robot.file, world, &model)?;
     let has_torques =
         arguments.states.as_ref().is_some_and(|given| given.exists()) && starts.iter().any(|s| s.get(Argument::Tau).is_some());
-    let method = method(arguments, world.stepping.as_ref(), !model.actuators().is_empty() && !has_torques)?;
+    let kind = match arguments.constraints {
+        true => Kind::Constrained,
+        false if !model.actuators().is_empty() && !has_torques => Kind::Actuated,
+        false => Kind::Plain,
+    };
+    let method = method(arguments, world.stepping.as_ref(), kind)?;
+    if method.takes.contains(&WARM) {
+        let mut log = Diagnostics::new(&robot.file);
+        let unread = articulated_codegen::unread_constraints(&robot.file, &built, &mut log);
+        unread.iter().for_each(|warning| console::warn(&warning.to_string()));
+        log.result(Some(()))?;
+    }
     articulated_codegen::defined(&robot.file, &model, &articulated_codegen::massless(&model), method)?;
     if method.takes.contains(&CTRL) {
         let locked = articulated_codegen::locked_actuators(&robot.file, world, &model);
@@ -140,17 +155,40 @@ impl End {
     }
 }
 
+/// What acts during a step.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Plain,
+    Actuated,
+    Constrained,
+}
+
+impl Kind {
+    /// How its functions begin.
+    fn prefix(self) -> &'static str {
+        match self {
+            Self::Plain => "step_",
+            Self::Actuated => "actuated_step_",
+            Self::Constrained => "constrained_step_",
+        }
+    }
+
+    /// The function beside this one without actuators.
+    fn beside(self, plain: &str) -> Option<&'static Function<f64>> {
+        let own = plain.strip_prefix("step_")?;
+        step::step(&format!("{}{own}", self.prefix()))
+    }
+}
+
 /// The method.
-fn method(arguments: &RolloutArguments, of_file: Option<&Stepping>, is_actuated: bool) -> Result<&'static Function<f64>, Failure> {
-    let of = |[plain, actuated]: [&'static str; 2]| if is_actuated { actuated } else { plain };
+fn method(arguments: &RolloutArguments, of_file: Option<&Stepping>, kind: Kind) -> Result<&'static Function<f64>, Failure> {
     let is_step = |row: &&Function<f64>| row.takes.contains(&step::H);
     let Some(name) = &arguments.method else {
-        let name = of(step_of_file(of_file));
-        return step::step(name).ok_or_else(|| Failure::usage(format!("--method: found no step {name}")));
+        let [plain, _] = step_of_file(of_file);
+        return kind.beside(plain).ok_or_else(|| Failure::usage(format!("--method: found no step beside {plain}")));
     };
-    let prefix = if is_actuated { "actuated_step_" } else { "step_" };
-    let row = beside_the_table::<f64>().filter(is_step).find(|row| row.name == name || row.name.strip_prefix(prefix) == Some(name));
-    row.or_else(|| step::step(of(step_of_integrator(name)?))).ok_or_else(|| {
+    let row = beside_the_table::<f64>().filter(is_step).find(|row| row.name == name || row.name.strip_prefix(kind.prefix()) == Some(name));
+    row.or_else(|| kind.beside(step_of_integrator(name)?[0])).ok_or_else(|| {
         let all: Vec<&str> = beside_the_table::<f64>().filter(is_step).map(|row| row.name).collect();
         Failure::usage(format!("--method: found {name:?}, expected one of {}, Euler, implicitfast, RK4", all.join(", ")))
     })
@@ -188,7 +226,7 @@ fn stepped(model: &Model<f64>, method: &Function<f64>, state: &State, h: f64, co
     let vector = |argument: Argument| state.get(argument).map_or_else(|| vec![0.0; argument.len(shape)], <[f64]>::to_vec);
     let is_actuated = method.takes.contains(&CTRL);
     let act = if is_actuated { vector(ACT) } else { Vec::new() };
-    let mut end = step::State { q: vector(Argument::Q), v: vector(Argument::V), act };
+    let mut end = step::State { q: vector(Argument::Q), v: vector(Argument::V), act, warm: Vec::new() };
     let held = vector(if is_actuated { CTRL } else { Argument::Tau });
     let inputs = (0..count).map(|_| held.as_slice());
     let done = rollout(method, (model, &mut Workspace::new(model)), &mut end, h, inputs, |_, _| {});

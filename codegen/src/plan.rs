@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Function, Group, Needs, functions};
-use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Spanned, quote};
+use articulated_core::description::Coupling;
+use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Spanned, quote};
 use articulated_core::effect::Effect;
 use articulated_core::model::Model;
-use articulated_formats::OnLockedJoint;
-use articulated_formats::world::World;
+use articulated_formats::world::{Loop, Unread, World};
+use articulated_formats::{LeaveOut, OnLockedJoint, Reading};
 use articulated_scene::{BuiltRobot, Why, smooth_in_file};
 
 use crate::function_spec::{FunctionSpec, wrong_entry};
@@ -57,7 +58,11 @@ pub(crate) fn plan(request: &Request, members: &BTreeMap<String, String>, log: &
     let mut without = Vec::new();
     let entries = fitting(request, &model, &massless, entries, (members, &mut without), log);
     robot.reading.warnings.extend(without);
-    if entries.iter().any(|(_, function)| function.parts.iter().any(|part| part.function.group == Group::Actuators)) {
+    let has_group = |group: Group| entries.iter().any(|(_, function)| function.parts.iter().any(|part| part.function.group == group));
+    if has_group(Group::Constraints) {
+        robot.reading.warnings.extend(unread_constraints(&request.file, &robot, log));
+    }
+    if has_group(Group::Actuators) || has_group(Group::Constraints) {
         let warnings = locked_actuators(&request.file, &robot.reading.world, &robot.model);
         let of_file = forces_of_the_file(&request.file, &robot);
         robot.reading.warnings.extend(warnings.into_iter().chain(of_file));
@@ -79,6 +84,36 @@ pub fn locked_actuators(file: &str, world: &World, model: &Model<f64>) -> Vec<Di
         Diagnostic::error(file, (Default::default(), "actuator"), Code::LostDynamics, found, expected).into_warning()
     };
     world.actuators_of(model).1.into_iter().map(warning).collect()
+}
+
+/// Reports constraints of the file that are not computed: errors, or the warnings that are returned
+/// where an option leaves them out.
+pub fn unread_constraints(file: &str, robot: &BuiltRobot, log: &mut Diagnostics) -> Vec<Diagnostic> {
+    let Reading { description, world, .. } = &robot.reading;
+    let mut unread = world.constraints_of(description, &robot.model).1;
+    let place = At::Nowhere;
+    let of_loop = |own: &Loop| format!("{} {}", own.kind, quote(&own.name));
+    unread.extend(world.loops.iter().map(|own| Unread { kind: LeaveOut::Constraint, is_left_out: false, what: of_loop(own), place }));
+    let is_kept = |coupling: &Coupling| !robot.model.bodies().iter().any(|body| body.name == coupling.joint && body.coordinates.mimic.is_some());
+    let couplings = world.couplings.iter().map(|(coupling, _)| coupling).filter(|coupling| is_kept(coupling));
+    let of_coupling = |own: &Coupling| format!("the equation of joint {} (`--coupling file` makes it follow)", quote(&own.joint));
+    unread.extend(couplings.map(|own| Unread { kind: LeaveOut::Constraint, is_left_out: false, what: of_coupling(own), place }));
+    let left_out = world.touching.as_ref().map(|touching| touching.left_out.clone()).unwrap_or_default();
+    let mut warnings = Vec::new();
+    // One finding for each kind: a file may have thousands of pairs.
+    for kind in [LeaveOut::Constraint, LeaveOut::Contact] {
+        let own: Vec<String> = unread.iter().filter(|own| own.kind == kind).map(|own| own.what.clone()).collect();
+        let Some(first) = own.first() else { continue };
+        let found = if own.len() == 1 { first.clone() } else { format!("{first}, and {} more", own.len() - 1) };
+        let is_left_out = left_out.contains(&kind);
+        let expected = match is_left_out {
+            true => format!("constraints that are computed: `leave_out` has {}, and the motion is that without it", quote(kind.name())),
+            false => format!("constraints that are computed; {} leaves it out", kind.option()),
+        };
+        let finding = Diagnostic::error(file, (At::Nowhere, kind.name()), Code::Unsupported, found, expected);
+        if is_left_out { warnings.push(finding.into_warning()) } else { log.push(finding) }
+    }
+    warnings
 }
 
 /// A warning of smooth forces of the file that do not act, although its actuators do.
@@ -240,6 +275,10 @@ pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], f
     if function.group == Group::Actuators && model.actuators().is_empty() {
         let expected = "a file with actuators or tendons (MJCF), or functions with torques as an argument";
         return lacks(Code::NoActuators, "no actuator".into(), expected);
+    }
+    if function.group == Group::Constraints && model.constraints().is_empty() {
+        let expected = "a file with limits, dry friction or contacts (MJCF), or functions without constraints";
+        return lacks(Code::NoConstraints, "no constraint".into(), expected);
     }
     if function.inverts_mass_matrix() && !massless.is_empty() {
         let found = format!("no inertia of its own for joint {}", massless.join(", joint "));

@@ -16,27 +16,41 @@ pub enum LeaveOut {
     Composite,
     /// Plugins for forces (elastic ones) or shapes (signed distance fields).
     Plugin,
+    /// Constraints of the law of contact that are not computed: equations, limits and friction of
+    /// tendons, solvers. Only functions with constraints report them.
+    Constraint,
+    /// Pairs of shapes whose contact is not computed. Only functions with constraints report them.
+    Contact,
 }
 
 impl LeaveOut {
     /// All kinds.
-    pub const ALL: [Self; 3] = [Self::Flex, Self::Composite, Self::Plugin];
+    pub const ALL: [Self; 5] = [Self::Flex, Self::Composite, Self::Plugin, Self::Constraint, Self::Contact];
 
     /// The names and the kinds, for lists of words.
-    pub const WORDS: [(&str, Self); 3] = [("flex", Self::Flex), ("composite", Self::Composite), ("plugin", Self::Plugin)];
+    pub const WORDS: [(&str, Self); 5] = [
+        ("flex", Self::Flex),
+        ("composite", Self::Composite),
+        ("plugin", Self::Plugin),
+        ("constraint", Self::Constraint),
+        ("contact", Self::Contact),
+    ];
 
-    /// The name in options: `flex`, `composite` or `plugin`.
+    /// The name in options: `flex`, `composite`, `plugin`, `constraint` or `contact`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Flex => "flex",
             Self::Composite => "composite",
             Self::Plugin => "plugin",
+            Self::Constraint => "constraint",
+            Self::Contact => "contact",
         }
     }
 
     /// The options that leave it out.
-    pub(crate) fn option(self) -> String {
+    #[must_use]
+    pub fn option(self) -> String {
         format!("`--leave-out {}` (key `leave_out`, method `Build::leave_out`)", self.name())
     }
 }
@@ -53,7 +67,7 @@ pub struct NoKind(String);
 
 impl fmt::Display for NoKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "found {:?}, expected flex, composite or plugin", self.0)?;
+        write!(f, "found {:?}, expected flex, composite, plugin, constraint or contact", self.0)?;
         match nearest(&self.0, LeaveOut::ALL.iter().map(|kind| kind.name())) {
             Some(near) => write!(f, " (did you mean {near:?}?)"),
             None => Ok(()),
@@ -81,6 +95,6 @@ mod tests {
             assert_eq!((kind, kind.name(), name.parse()), (own, name, Ok(kind)));
         }
         let error = "plugins".parse::<LeaveOut>().unwrap_err().to_string();
-        assert_eq!(error, "found \"plugins\", expected flex, composite or plugin (did you mean \"plugin\"?)");
+        assert_eq!(error, "found \"plugins\", expected flex, composite, plugin, constraint or contact (did you mean \"plugin\"?)");
     }
 }

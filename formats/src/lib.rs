@@ -44,6 +44,7 @@
 //! * Only [`Sources`] open files. [`read`] opens none.
 
 mod actuation;
+mod constraints;
 mod contact_points;
 mod cycles;
 mod files;

@@ -4,12 +4,16 @@
 //! units and in the conventions of the library: quaternions (x, y, z, w), rates of a floating joint
 //! as the twist [ω; v] in axes of its link.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use articulated_core::actuator::Activation;
+use articulated_core::collision::Form;
+use articulated_core::constraint::Cone;
 use articulated_core::description::{Coupling, Description, Origin};
 use articulated_core::diagnostic::At;
 use articulated_core::effect::Applied;
+
+use crate::LeaveOut;
 
 /// A robot and its world, as read by a format.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -57,8 +61,111 @@ pub struct World {
     /// Effects of the file on links, with their places: of weight that is compensated, and of the
     /// medium.
     pub effects: Vec<(Applied, At)>,
+    /// What touches in the file's simulator, by its law (MJCF).
+    pub touching: Option<Touching>,
     /// Equations of the file that close loops, or are not linear: they are not applied.
     pub loops: Vec<Loop>,
+}
+
+/// Limits, dry friction and contacts of a file, with the numbers of MuJoCo's law.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Touching {
+    /// The form of cones of friction.
+    pub cone: Cone,
+    /// `impratio`: by how much friction is harder than the normal, dimensionless.
+    pub impedance_ratio: f64,
+    /// Time constants are at least twice this time, s. `None`: they may be any.
+    pub safe_step: Option<f64>,
+    /// Shapes of links.
+    pub shapes: Vec<TouchingShape>,
+    /// Pairs of them that touch, by their places.
+    pub pairs: Vec<TouchingPair>,
+    /// Limits of joints.
+    pub limits: Vec<TouchingLimit>,
+    /// Dry friction of joints.
+    pub friction: Vec<TouchingFriction>,
+    /// For each body of the file its link, its centre of mass in the link's frame, m, and whether
+    /// it moves on slides alone, where MuJoCo takes its mass for its inertia.
+    pub bodies: Vec<(String, [f64; 3], bool)>,
+    /// What the file has besides, and is not read.
+    pub unread: Vec<Unread>,
+    /// What the options leave out.
+    pub left_out: BTreeSet<LeaveOut>,
+}
+
+/// A constraint that is not read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unread {
+    /// The word that leaves it out.
+    pub kind: LeaveOut,
+    /// Whether the options do.
+    pub is_left_out: bool,
+    /// What it is.
+    pub what: String,
+    /// Place in the file.
+    pub place: At,
+}
+
+/// A shape that makes contact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TouchingShape {
+    /// Its name, or `geom_N` by its number from 0.
+    pub name: String,
+    /// Its link.
+    pub link: String,
+    /// Its frame in the link's frame.
+    pub origin: Origin,
+    /// Its form; or what it is, of a form that makes no contact here.
+    pub form: Result<Form, &'static str>,
+    /// Place in the file.
+    pub place: At,
+}
+
+/// Two shapes that touch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TouchingPair {
+    /// Their places in the list.
+    pub shapes: [usize; 2],
+    /// 1, 3, 4 or 6.
+    pub dimension: usize,
+    /// Coefficients of friction: two of sliding, of torsion, two of rolling.
+    pub friction: [f64; 5],
+    /// `solref` along the normal, and across it if that is another.
+    pub reference: [f64; 2],
+    /// The same across the normal; zeros: the same.
+    pub reference_across: [f64; 2],
+    /// `solimp`.
+    pub impedance: [f64; 5],
+    /// m.
+    pub margin: f64,
+}
+
+/// A limit of a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TouchingLimit {
+    /// The joint.
+    pub joint: String,
+    /// Bounds of its coordinate, rad or m; of a ball joint 0 and the largest angle.
+    pub range: [f64; 2],
+    /// rad or m.
+    pub margin: f64,
+    /// `solref`.
+    pub reference: [f64; 2],
+    /// `solimp`.
+    pub impedance: [f64; 5],
+}
+
+/// Dry friction of a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TouchingFriction {
+    /// The joint.
+    pub joint: String,
+    /// N·m or N, of each of its degrees of freedom.
+    pub loss: f64,
+    /// `solref`.
+    pub reference: [f64; 2],
+    /// `solimp`.
+    pub impedance: [f64; 5],
 }
 
 /// How the simulator of a file steps its motion.

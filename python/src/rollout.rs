@@ -63,7 +63,7 @@ pub(crate) fn run<'py>(
                 rows.iter_mut().zip(parts).zip(sizes).for_each(|((row, part), size)| row[at * size..][..size].copy_from_slice(part));
             }
         };
-        rollout(row, (model, &mut Workspace::new(model)), &mut State { q, v, act }, h, inputs, see)
+        rollout(row, (model, &mut Workspace::new(model)), &mut State { q, v, act, warm: Vec::new() }, h, inputs, see)
     };
     let pool = batch::pool(threads)?;
     let done = py.detach(|| {

@@ -66,7 +66,8 @@ fn model(reading: &Reading, base: Base) -> Result<Model<f64>, LoadError> {
     let description = &reading.description;
     let model = ModelError::of_base(description, base).and_then(|()| Model::new(description, base)).map_err(LoadError::Model)?;
     let (actuators, _) = reading.world.actuators_of(&model);
-    Ok(model.with_actuators(actuators))
+    let (constraints, _) = reading.world.constraints_of(description, &model);
+    Ok(model.with_actuators(actuators).with_constraints(constraints))
 }
 
 /// The content of the robot's file at `path`, to be edited and made a model of:

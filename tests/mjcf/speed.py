@@ -130,17 +130,21 @@ def own_method(path):
 class Program:
     """speed.rs with the step of a robot."""
 
-    def __init__(self, path, method, folder):
+    def __init__(self, path, method, folder, constrained=False):
         import mujoco
 
         shared = next(Path(mujoco.__file__).parent.glob("libmujoco.so*"))
         code, self.file = folder / "generated.rs", folder / "speed"
         actuated = json.loads(run(COMMAND, "rollout", path, "--steps", "1", "--format", "json")).get("actuators", [])
-        if not actuated:
+        if not actuated and not constrained:
             raise RuntimeError(f"{path.name}: found no actuators, expected one at least")
-        run(COMMAND, "generate", path, "--effects", "file", "--functions", f"step = actuated_step_{method}, mujoco", "--batch", "f64,f32", "-o", code)
+        kind, own, cfg = "actuated", [], []
+        if constrained:
+            kind, own, cfg = "constrained", ["--leave-out", "constraint"], ["--cfg", "constrained"]
+        functions = f"step = {kind}_step_{method}, mujoco"
+        run(COMMAND, "generate", path, "--effects", "file", "--functions", functions, "--batch", "f64,f32", "-o", code, *own)
         run(
-            "rustc", "--edition", "2024", "-C", "opt-level=3", "-C", "codegen-units=1", "-C", "target-cpu=native", HERE / "speed.rs", "-o", self.file,
+            "rustc", *cfg, "--edition", "2024", "-C", "opt-level=3", "-C", "codegen-units=1", "-C", "target-cpu=native", HERE / "speed.rs", "-o", self.file,
             "-C", f"link-arg={shared}", "-C", f"link-arg=-Wl,-rpath,{shared.parent}", env={**os.environ, "GENERATED": str(code)},
         )
         self.folder = folder

@@ -3,7 +3,7 @@
 //! speed.py compiles this file with the path of generated code in `GENERATED`: a function `step`
 //! with controls and h, and the translation of states. Arguments: a compiled model (mjb), states,
 //! the file to write, the number of states, steps, rounds, the length of a step, and what a state
-//! of MuJoCo contains (mjtState).
+//! of MuJoCo contains (mjtState). With `--cfg constrained` the step has constraints.
 
 use std::ffi::{CString, c_char, c_int, c_void};
 use std::hint::black_box;
@@ -62,6 +62,8 @@ struct State {
     v: [f64; NV],
     act: [f64; NA],
     ctrl: [f64; NU],
+    /// The last acceleration, of steps with constraints.
+    warm: [f64; NV],
 }
 
 fn array<const N: usize>(numbers: Vec<f64>) -> [f64; N] {
@@ -71,8 +73,15 @@ fn array<const N: usize>(numbers: Vec<f64>) -> [f64; N] {
 fn alone(start: &State, steps: usize, h: f64) -> State {
     let mut state = start.clone();
     for _ in 0..steps {
+        #[cfg(not(constrained))]
         let next = robot::step(&state.q, &state.v, &state.act, &state.ctrl, &h);
+        #[cfg(constrained)]
+        let next = robot::step(&state.q, &state.v, &state.act, &state.ctrl, &state.warm, &h);
         (state.q, state.v, state.act) = (next.q_next, next.v_next, next.act_next);
+        #[cfg(constrained)]
+        {
+            state.warm = next.warm_next;
+        }
     }
     state
 }
@@ -100,19 +109,28 @@ macro_rules! lanes {
                 let (mut act, ctrl) = (packed(states, |s| &s.act), packed(states, |s| &s.ctrl));
                 // Two places take turns, so that nothing is copied.
                 let (mut q_next, mut v_next, mut act_next) = (q, v, act);
+                #[cfg(constrained)]
+                let (mut warm, mut warm_next) = (packed(states, |s| &s.warm), packed(states, |s| &s.warm));
                 for step in 0..steps {
-                    if step % 2 == 0 {
+                    #[cfg(not(constrained))]
+                    let done = if step % 2 == 0 {
                         step_blocks(&q, &v, &act, &ctrl, &h, &mut q_next, &mut v_next, &mut act_next)
                     } else {
                         step_blocks(&q_next, &v_next, &act_next, &ctrl, &h, &mut q, &mut v, &mut act)
-                    }
-                    .expect("blocks of one length");
+                    };
+                    #[cfg(constrained)]
+                    let done = if step % 2 == 0 {
+                        step_blocks(&q, &v, &act, &ctrl, &warm, &h, &mut q_next, &mut v_next, &mut act_next, &mut warm_next)
+                    } else {
+                        step_blocks(&q_next, &v_next, &act_next, &ctrl, &warm_next, &h, &mut q, &mut v, &mut act, &mut warm)
+                    };
+                    done.expect("blocks of one length");
                 }
                 if steps % 2 == 1 {
                     (q, v, act) = (q_next, v_next, act_next);
                 }
                 let (q, v, act) = (unpacked(&q, states.len()), unpacked(&v, states.len()), unpacked(&act, states.len()));
-                ends.extend((0..states.len()).map(|k| State { q: q[k], v: v[k], act: act[k], ctrl: states[k].ctrl }));
+                ends.extend((0..states.len()).map(|k| State { q: q[k], v: v[k], act: act[k], ctrl: states[k].ctrl, warm: [0.0; NV] }));
             }
             ends
         }
@@ -135,7 +153,7 @@ fn main() {
     for _ in 0..states {
         their_starts.push(take(theirs.size));
         let robot::StateOfMujoco { q, v } = robot::state_of_mujoco(&array(take(NQ)), &array(take(NV)));
-        starts.push(State { q, v, act: array(take(NA)), ctrl: array(take(NU)) });
+        starts.push(State { q, v, act: array(take(NA)), ctrl: array(take(NU)), warm: [0.0; NV] });
     }
 
     let mut their_ends = their_starts.clone();

@@ -86,7 +86,7 @@ def every_file():
                 yield path
 
 
-def smooth(path, integrator):
+def smooth(path, integrator, constrained=False):
     """The model of MuJoCo without constraints, the names of the actuators that are read, and the places of their controls and activations."""
     import mujoco
 
@@ -104,7 +104,8 @@ def smooth(path, integrator):
         return None
     turn_axes(model, path)
     disable = mujoco.mjtDisableBit
-    model.opt.disableflags |= disable.mjDSBL_CONTACT | disable.mjDSBL_LIMIT | disable.mjDSBL_FRICTIONLOSS | disable.mjDSBL_EQUALITY
+    if not constrained:
+        model.opt.disableflags |= disable.mjDSBL_CONTACT | disable.mjDSBL_LIMIT | disable.mjDSBL_FRICTIONLOSS | disable.mjDSBL_EQUALITY
     # Without a reset where a motion has no bound.
     model.opt.disableflags |= disable.mjDSBL_AUTORESET
     own = actuators(path)
@@ -224,7 +225,7 @@ def actuators(path):
     return json.loads(done.stdout).get("actuators", [])
 
 
-def rolled(path, model, places_of, starts, method, steps):
+def rolled(path, model, places_of, starts, method, steps, *flags):
     """The ends of the command's rollouts, in MuJoCo's order and axes."""
     import numpy as np
 
@@ -232,7 +233,7 @@ def rolled(path, model, places_of, starts, method, steps):
     states = []
     for q, v, tau, act, ctrl in starts:
         state = {"q": [float(q[place]) for place in places], "v": to_own(model, q, v)}
-        if controls:
+        if controls or flags:
             state |= {"act": [float(act[place]) for place in activations], "ctrl": [float(ctrl[place]) for place in controls]}
         else:
             state["tau"] = to_own(model, q, tau)
@@ -240,7 +241,7 @@ def rolled(path, model, places_of, starts, method, steps):
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "states.json"
         file.write_text(json.dumps({"states": states}))
-        command = [str(COMMAND), "rollout", str(path), "--steps", str(steps), "--states", str(file), "--method", method]
+        command = [str(COMMAND), "rollout", str(path), "--steps", str(steps), "--states", str(file), "--method", method, *flags]
         done = subprocess.run([*command, "--time-step", repr(model.opt.timestep), "--format", "json"], capture_output=True, text=True)
     if done.returncode:
         raise RuntimeError(done.stderr)

@@ -7,6 +7,7 @@ use std::rc::Rc;
 use articulated_core::description::{JointDynamics, Limit};
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
+use super::contact;
 use super::documents::Documents;
 use super::element::Element;
 use super::geometry::{self, Geom};
@@ -80,6 +81,8 @@ pub(crate) struct Joint<'a> {
     /// both are above zero.
     pub(crate) spring_damper: [f64; 2],
     pub(crate) armature: f64,
+    /// Its numbers of the law of constraints.
+    pub(crate) soft: contact::SoftJoint,
     /// The part of the tree that it is in.
     pub(crate) part: usize,
 }
@@ -328,14 +331,16 @@ impl<'a> Build<'a> {
                         rest: 0.0,
                         spring_damper: [0.0; 2],
                         armature: 0.0,
+                        soft: contact::SoftJoint::default(),
                         part: context.part,
                     };
                     self.bodies[body].joints.push(free);
                 }
                 "geom" => {
-                    if let Some(geom) =
-                        geometry::geom(&values("geom"), &context.settings, &context.frame, (self.rules, &mut self.gate), log)
-                    {
+                    let values = values("geom");
+                    let geom = geometry::geom(&values, &context.settings, &context.frame, (self.rules, &mut self.gate), log);
+                    if let Some(mut geom) = geom {
+                        (geom.name, geom.part) = (self.name(element, context, log), context.part);
                         self.bodies[body].geoms.push(geom);
                     }
                 }
@@ -539,6 +544,7 @@ fn joint<'a>(name: Option<String>, values: &Values<'a>, context: &Context<'a>, f
         rest: scalar("springref", &mut reported),
         spring_damper: values.exactly("springdamper", log).unwrap_or_default(),
         armature: values.number("armature", &mut reported).unwrap_or(0.0),
+        soft: contact::SoftJoint::of(values, flags, log),
         dynamics: dynamics(values, kind, flags, &angle, log),
         part: context.part,
     })

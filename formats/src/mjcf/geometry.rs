@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use articulated_core::collision::Form;
 use articulated_core::description::{CollisionShape, Hull};
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
 use super::axes;
+use super::contact::Surface;
 use super::element::Element;
 use super::grammar::subject;
 use super::left_out::Gate;
@@ -35,6 +37,10 @@ pub(crate) enum Kind {
 /// A geom in the frame of its body.
 pub(crate) struct Geom<'a> {
     pub(crate) element: &'a Element,
+    /// With prefixes and suffixes; `None` if it has no name.
+    pub(crate) name: Option<String>,
+    /// The part of the tree that it is in.
+    pub(crate) part: usize,
     /// Of its document.
     settings: Rc<Settings<'a>>,
     kind: Kind,
@@ -55,6 +61,8 @@ pub(crate) struct Geom<'a> {
     pub(crate) color: Option<[f64; 4]>,
     /// Whether the medium acts on it as on an ellipsoid.
     pub(crate) is_ellipsoid_in_fluid: bool,
+    /// Its numbers of the law of contact.
+    pub(crate) surface: Surface,
 }
 
 const KINDS: [(&str, Kind); 9] = [
@@ -142,6 +150,8 @@ pub(crate) fn geom<'a>(
     let is_fitted = mesh.is_some() && !matches!(kind, Kind::Mesh | Kind::Sdf);
     Some(Geom {
         element: values.element,
+        name: None,
+        part: 0,
         settings: settings.clone(),
         kind,
         pose: frame.then(&pose),
@@ -155,6 +165,7 @@ pub(crate) fn geom<'a>(
         group: values.integer("group", log).unwrap_or(0),
         mask,
         color: values.exactly::<4>("rgba", log),
+        surface: Surface::of(values, log),
         is_ellipsoid_in_fluid: values.word("fluidshape", &[("none", false), ("ellipsoid", true)], log).unwrap_or(false),
     })
 }
@@ -291,6 +302,23 @@ impl Geom<'_> {
             (Kind::Mesh, None) => return None,
         };
         Some((self.pose, shape))
+    }
+
+    /// Its pose and its form for contact; of a form that makes none what it is.
+    pub(crate) fn form(&self) -> (Pose, Result<Form, &'static str>) {
+        let [a, b, _] = self.size;
+        let form = match (self.kind, self.mesh) {
+            (_, Some(_)) => Err("mesh"),
+            (Kind::Plane, _) => Ok(Form::Plane),
+            (Kind::Sphere, _) => Ok(Form::Sphere { radius: a }),
+            (Kind::Capsule, _) => Ok(Form::Capsule { radius: a, half: b }),
+            (Kind::Cylinder, _) => Ok(Form::Cylinder { radius: a, half: b }),
+            (Kind::Box, _) => Ok(Form::Box { half: self.size }),
+            (Kind::Ellipsoid, _) => Err("ellipsoid"),
+            (Kind::HeightField, _) => Err("height field"),
+            (Kind::Sdf | Kind::Mesh, _) => Err("mesh"),
+        };
+        (self.pose, form)
     }
 
     /// Whether it makes contact with something.

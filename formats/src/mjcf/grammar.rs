@@ -62,7 +62,7 @@ const ROWS: &[Row] = &[
         within: "",
         attributes: "model",
         unused_attributes: &[],
-        tags: "compiler option default asset worldbody keyframe actuator tendon equality",
+        tags: "compiler option default asset worldbody keyframe actuator tendon equality contact",
         unused_tags: &[
             ("visual", APPEARANCE),
             ("statistic size", SIMULATOR),
@@ -70,7 +70,6 @@ const ROWS: &[Row] = &[
             ("sensor", "sensors play no part in the dynamics"),
             ("extension", PLUGIN),
             ("deformable", DEFORMABLE),
-            ("contact", CONTACT),
         ],
     },
     Row {
@@ -90,13 +89,13 @@ const ROWS: &[Row] = &[
     Row {
         name: "option",
         within: "mujoco",
-        attributes: "gravity timestep integrator actuatorgroupdisable wind density viscosity",
+        attributes: "gravity timestep integrator actuatorgroupdisable wind density viscosity impratio cone solver noslip_iterations",
         unused_attributes: &[
             ("magnetic", "sensors play no part in the dynamics"),
             ("o_margin o_solref o_solimp o_friction", CONTACT),
             (
-                "impratio tolerance ls_tolerance noslip_tolerance ccd_tolerance sleep_tolerance cone jacobian solver iterations \
-                 ls_iterations noslip_iterations ccd_iterations sdf_iterations sdf_initpoints",
+                "tolerance ls_tolerance noslip_tolerance ccd_tolerance sleep_tolerance jacobian iterations ls_iterations ccd_iterations \
+                 sdf_iterations sdf_initpoints",
                 SOLVER,
             ),
         ],
@@ -106,9 +105,9 @@ const ROWS: &[Row] = &[
     Row {
         name: "flag",
         within: "option",
-        attributes: "gravity constraint equality frictionloss limit contact spring damper clampctrl actuation eulerdamp",
+        attributes: "gravity constraint equality frictionloss limit contact spring damper clampctrl actuation eulerdamp filterparent refsafe",
         unused_attributes: &[(
-            "warmstart filterparent refsafe sensor midphase autoreset nativeccd \
+            "warmstart sensor midphase autoreset nativeccd \
              island multiccd override energy fwdinv invdiscrete sleep diagexact ipc speculative",
             "what acts on the robot is given by the scene",
         )],
@@ -120,10 +119,9 @@ const ROWS: &[Row] = &[
         within: "mujoco default",
         attributes: "class",
         unused_attributes: &[],
-        tags: "default mesh joint geom site equality tendon general motor position velocity intvelocity damper cylinder",
+        tags: "default mesh joint geom site equality tendon general motor position velocity intvelocity damper cylinder pair",
         unused_tags: &[
             ("material camera light texture", APPEARANCE),
-            ("pair", CONTACT),
             ("intvelocity orientation pid cylinder muscle adhesion dcmotor", UNREAD_ACTUATOR),
         ],
     },
@@ -190,10 +188,9 @@ const ROWS: &[Row] = &[
         name: "joint",
         within: IN_BODIES,
         attributes: "name class type pos axis springdamper limited actuatorfrclimited stiffness range actuatorfrcrange ref springref armature \
-                     damping frictionloss springyield",
+                     damping frictionloss springyield solreflimit solimplimit solreffriction solimpfriction margin",
         unused_attributes: &[
             ("group", APPEARANCE),
-            ("solreflimit solimplimit solreffriction solimpfriction margin", SOLVER),
             ("actuatorgravcomp", ACTUATOR),
             ("user", USER),
         ],
@@ -212,9 +209,9 @@ const ROWS: &[Row] = &[
         name: "geom",
         within: IN_BODIES,
         attributes: "name class type contype conaffinity group size mass density shellinertia fromto pos quat axisangle xyaxes zaxis euler \
-                     mesh hfield fitscale rgba fluidshape",
+                     mesh hfield fitscale rgba fluidshape condim priority friction solmix solref solimp margin gap",
         unused_attributes: &[
-            ("condim priority friction solmix solref solimp margin gap surfacevel adhesion", CONTACT),
+            ("surfacevel adhesion", CONTACT),
             ("material", APPEARANCE),
             ("fluidcoef", FLUID),
             ("user", USER),
@@ -255,6 +252,30 @@ const ROWS: &[Row] = &[
         within: "default",
         attributes: "limited range actuatorfrclimited actuatorfrcrange frictionloss springlength springyield stiffness damping armature",
         unused_attributes: UNUSED_OF_TENDONS,
+        tags: "",
+        unused_tags: &[],
+    },
+    Row {
+        name: "contact",
+        within: "mujoco",
+        attributes: "",
+        unused_attributes: &[],
+        tags: "pair exclude",
+        unused_tags: &[],
+    },
+    Row {
+        name: "pair",
+        within: "contact default",
+        attributes: "name class geom1 geom2 condim friction solref solreffriction solimp gap margin",
+        unused_attributes: &[("adhesion", CONTACT)],
+        tags: "",
+        unused_tags: &[],
+    },
+    Row {
+        name: "exclude",
+        within: "contact",
+        attributes: "name body1 body2",
+        unused_attributes: &[],
         tags: "",
         unused_tags: &[],
     },

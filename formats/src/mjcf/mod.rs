@@ -27,6 +27,7 @@ mod actuators;
 mod align;
 mod axes;
 mod bodies;
+mod contact;
 mod documents;
 mod element;
 mod equalities;
@@ -46,6 +47,7 @@ mod simulation;
 mod states;
 mod surroundings;
 mod tendons;
+mod touching;
 mod values;
 mod world;
 
@@ -90,7 +92,7 @@ impl Format for Mjcf {
         let mut inertials = inertia::of_bodies(&tree.bodies, &mut meshes, diagnostics);
         align::align(&mut tree.bodies, &mut inertials);
         let mut lowered = lower::lower(name, &tree.bodies, &inertials, input.options, diagnostics);
-        let world = world::world(&documents, (&tree, &inertials), &simulation, &mut lowered, diagnostics);
+        let world = world::world(&documents, (&tree, &inertials), &simulation, (&mut lowered, &input.options.leave_out), diagnostics);
         Some(Document { description: lowered.description, world })
     }
 }

@@ -24,6 +24,7 @@ pub(crate) enum Sort {
     Tendon,
     Site,
     Body,
+    Geom,
 }
 
 impl Sort {
@@ -33,6 +34,7 @@ impl Sort {
             Self::Tendon => "tendon",
             Self::Site => "site",
             Self::Body => "body",
+            Self::Geom => "geom",
         }
     }
 }
@@ -53,6 +55,8 @@ pub(crate) struct Scope<'a> {
     pub(crate) joints: Vec<Known<'a>>,
     /// All sites, each with the index of its body.
     pub(crate) sites: Vec<(&'a Site<'a>, usize)>,
+    /// All geoms: the index of the body, and the place in its list.
+    pub(crate) geoms: Vec<(usize, usize)>,
     /// Indices and parts by full names.
     names: BTreeMap<(Sort, String), (usize, usize)>,
     /// Names as the documents have them.
@@ -75,7 +79,7 @@ impl<'a> Scope<'a> {
         let all = tree.bodies.iter().enumerate().flat_map(|(body, own)| own.joints.iter().map(move |joint| (body, joint)));
         let joints: Vec<Known<'_>> = all.zip(names).map(|((body, joint), name)| Known { joint, name, body }).collect();
         let (names, own, reported) = (BTreeMap::new(), BTreeSet::new(), BTreeSet::new());
-        let mut scope = Self { tree, joints: Vec::new(), sites: Vec::new(), names, own, is_complete, reported, looked_up: 0, main };
+        let mut scope = Self { tree, joints: Vec::new(), sites: Vec::new(), geoms: Vec::new(), names, own, is_complete, reported, looked_up: 0, main };
         for (index, Known { joint, .. }) in joints.iter().enumerate() {
             scope.add(Sort::Joint, joint.element, joint.name.as_ref(), (index, joint.part));
         }
@@ -84,6 +88,10 @@ impl<'a> Scope<'a> {
             for site in &body.sites {
                 scope.add(Sort::Site, site.element, site.name.as_ref(), (scope.sites.len(), site.part));
                 scope.sites.push((site, index));
+            }
+            for (place, geom) in body.geoms.iter().enumerate() {
+                scope.add(Sort::Geom, geom.element, geom.name.as_ref(), (scope.geoms.len(), geom.part));
+                scope.geoms.push((index, place));
             }
         }
         scope.joints = joints;

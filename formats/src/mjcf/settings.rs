@@ -200,6 +200,7 @@ pub(crate) struct Settings<'a> {
     pub(crate) actuators: Vec<&'a Element>,
     pub(crate) equations: Vec<&'a Element>,
     pub(crate) keyframes: Vec<&'a Element>,
+    pub(crate) contacts: Vec<&'a Element>,
 }
 
 impl<'a> Settings<'a> {
@@ -226,8 +227,8 @@ impl<'a> Settings<'a> {
             }
         }
         let section = |name| root.all(name).flat_map(|section| &section.children).collect();
-        let [tendons, actuators, equations, keyframes] = ["tendon", "actuator", "equality", "keyframe"].map(section);
-        Self { folder, compiler, classes, meshes, height_fields, models, tendons, actuators, equations, keyframes }
+        let [tendons, actuators, equations, keyframes, contacts] = ["tendon", "actuator", "equality", "keyframe", "contact"].map(section);
+        Self { folder, compiler, classes, meshes, height_fields, models, tendons, actuators, equations, keyframes, contacts }
     }
 }
 

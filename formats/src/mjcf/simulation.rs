@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use articulated_core::constraint::Cone;
 use articulated_core::diagnostic::{Code, Diagnostics, Subject, quote};
 
 use super::documents::Documents;
@@ -28,6 +29,10 @@ pub(crate) struct Flags {
     pub(crate) no_contact: bool,
     pub(crate) no_spring: bool,
     pub(crate) no_damper: bool,
+    /// Shapes of a body and of its parent touch.
+    pub(crate) parents_touch: bool,
+    /// Time constants may be shorter than two steps.
+    pub(crate) any_time_constant: bool,
 }
 
 impl Flags {
@@ -48,8 +53,10 @@ pub(crate) struct Rules {
 
 /// The flags that are read, each with the effect if it is disabled; empty: that is reported
 /// elsewhere.
-const FLAGS: [(&str, &str); 11] = [
+const FLAGS: [(&str, &str); 13] = [
     ("gravity", ""),
+    ("filterparent", ""),
+    ("refsafe", ""),
     ("actuation", ""),
     ("clampctrl", ""),
     ("eulerdamp", ""),
@@ -89,6 +96,11 @@ pub(crate) struct Simulation<'a> {
     wind: Option<[f64; 3]>,
     /// The medium, if there is one.
     pub(crate) medium: Option<Medium>,
+    /// The cone of friction, `impratio`, and the solver with its steps after the last one.
+    pub(crate) cone: Option<Cone>,
+    pub(crate) impedance_ratio: Option<f64>,
+    pub(crate) solver: Option<&'static str>,
+    pub(crate) noslip: i64,
     /// Groups of actuators without force.
     pub(crate) disabled_groups: BTreeSet<i64>,
     /// Flags as the file has them: whether each is disabled.
@@ -132,6 +144,8 @@ impl<'a> Simulation<'a> {
             no_contact: no_constraint || self.is_off("contact"),
             no_spring: self.is_off("spring"),
             no_damper: self.is_off("damper"),
+            parents_touch: self.is_off("filterparent"),
+            any_time_constant: self.is_off("refsafe"),
         }
     }
 
@@ -163,6 +177,10 @@ impl<'a> Simulation<'a> {
             }
             let words = ["Euler", "RK4", "implicit", "implicitfast", "discrete"].map(|word| (word, word));
             all.integrator = values.word("integrator", &words, log).map(str::to_owned).or(all.integrator);
+            all.cone = values.word("cone", &[("pyramidal", Cone::Pyramid), ("elliptic", Cone::Ellipse)], log).or(all.cone);
+            all.impedance_ratio = values.number("impratio", log).or(all.impedance_ratio);
+            all.solver = values.word("solver", &["PGS", "CG", "Newton"].map(|word| (word, word)), log).or(all.solver);
+            all.noslip = values.integer("noslip_iterations", log).unwrap_or(all.noslip);
             all.density = values.number("density", log).or(all.density);
             all.viscosity = values.number("viscosity", log).or(all.viscosity);
             all.wind = values.exactly("wind", log).or(all.wind);

@@ -1,5 +1,7 @@
 //! The rest of a document besides its bodies, as a [`World`].
 
+use std::collections::BTreeSet;
+
 use articulated_core::description::Description;
 use articulated_core::diagnostic::{Code, Diagnostics};
 
@@ -17,6 +19,8 @@ use super::simulation::Simulation;
 use super::states;
 use super::surroundings;
 use super::tendons::tendons;
+use super::touching;
+use crate::LeaveOut;
 use crate::pose::{Pose, rotate};
 use crate::world::{Plane, World};
 
@@ -25,7 +29,7 @@ pub(crate) fn world(
     documents: &Documents,
     (tree, inertials): (&Tree<'_>, &[Option<Mass>]),
     simulation: &Simulation<'_>,
-    lowered: &mut Lowered,
+    (lowered, leave_out): (&mut Lowered, &BTreeSet<LeaveOut>),
     log: &mut Diagnostics,
 ) -> World {
     let main = documents.root(0);
@@ -52,6 +56,10 @@ pub(crate) fn world(
     spring_dampers(&scope, flags, &mut lowered.description, &armatures, log);
     add_armatures(&scope, &mut lowered.description, armatures.get(tendons.len()..).unwrap_or_default());
     equalities(&mut scope, &tendons, flags.no_equality, &mut world, log);
+    let mut touching = touching::touching(&mut scope, inertials, &links, simulation, log);
+    touching.unread.iter_mut().for_each(|own| own.is_left_out = leave_out.contains(&own.kind));
+    touching.left_out.clone_from(leave_out);
+    world.touching = Some(touching);
     states::keyframes(&mut scope, &controls, has_unread_joints, &mut world, log);
     world
 }

@@ -68,6 +68,10 @@ pub mod spatial;
 #[cfg(feature = "alloc")]
 pub mod algorithm;
 #[cfg(feature = "alloc")]
+pub mod collision;
+#[cfg(feature = "alloc")]
+pub mod constraint;
+#[cfg(feature = "alloc")]
 pub mod control;
 #[cfg(feature = "alloc")]
 pub mod description;

@@ -148,7 +148,9 @@ impl RobotRequest<'_> {
         let gravity = self.options.gravity_in(&reading.world).map(|x| if x.is_finite() { x } else { 0.0 });
         let model = Model::new(&reading.description, self.options.base)?;
         let (actuators, _) = reading.world.actuators_of(&model);
-        Ok(model.with_gravity(gravity).with_wrenches_in(self.options.wrench_reference).with_actuators(actuators))
+        let (constraints, _) = reading.world.constraints_of(&reading.description, &model);
+        let model = model.with_actuators(actuators).with_constraints(constraints);
+        Ok(model.with_gravity(gravity).with_wrenches_in(self.options.wrench_reference))
     }
 
     /// The model of a robot of this request whose description was changed since, with its effects.

@@ -23,7 +23,7 @@ pub(super) fn multiplications(parent_dof: &[usize]) -> u64 {
 
 /// M = Lᵀ D L in place: L below the diagonal with ones on it, D⁻¹ on the diagonal. From the last
 /// row up, so that the zeros between branches stay.
-pub(super) fn factor<S: Scalar>(m: &mut [S], parent_dof: &[usize]) {
+pub(crate) fn factor<S: Scalar>(m: &mut [S], parent_dof: &[usize]) {
     let n = parent_dof.len();
     for k in (0..n).rev() {
         let inverse = S::one() / m[k * n + k];
@@ -45,7 +45,7 @@ pub(super) fn factor<S: Scalar>(m: &mut [S], parent_dof: &[usize]) {
 }
 
 /// x = L⁻¹ D⁻¹ L⁻ᵀ b, in place.
-pub(super) fn solve<S: Scalar>(l: &[S], parent_dof: &[usize], x: &mut [S]) {
+pub(crate) fn solve<S: Scalar>(l: &[S], parent_dof: &[usize], x: &mut [S]) {
     let n = parent_dof.len();
     for k in (0..n).rev() {
         for i in path_to_root(parent_dof, k) {

@@ -126,6 +126,9 @@ pub enum Group {
     Steps,
     /// Forces of a robot's actuators and steps with them, which are in a table of their own.
     Actuators,
+    /// What touches: accelerations with constraints and steps with them, which are in a table of
+    /// their own.
+    Constraints,
     /// States in MuJoCo's conventions, which are in a table of their own.
     Mujoco,
     /// Functions of users, which are not in the table.
@@ -146,7 +149,7 @@ impl Group {
     ];
 
     /// The groups of the tables of [`crate::step`].
-    pub const BESIDE: [Self; 3] = [Self::Steps, Self::Actuators, Self::Mujoco];
+    pub const BESIDE: [Self; 4] = [Self::Steps, Self::Actuators, Self::Constraints, Self::Mujoco];
 
     /// Its name in lists of functions.
     pub fn name(self) -> &'static str {
@@ -161,6 +164,7 @@ impl Group {
             Self::Configurations => "configurations",
             Self::Steps => "steps",
             Self::Actuators => "actuators",
+            Self::Constraints => "constraints",
             Self::Mujoco => "mujoco",
             Self::User => "user",
         }
@@ -184,6 +188,7 @@ impl Group {
             Self::Configurations => "Configurations",
             Self::Steps => "Steps of time",
             Self::Actuators => "Actuators of the file, and steps of time with them",
+            Self::Constraints => "What touches: accelerations and steps with limits, dry friction and contacts",
             Self::Mujoco => "States in MuJoCo's conventions",
             Self::User => "Functions of users",
         }

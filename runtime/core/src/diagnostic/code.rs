@@ -206,6 +206,8 @@ codes! {
     NoMass "no_mass",
     /// A function of actuators, for a robot that has none.
     NoActuators "no_actuators",
+    /// A function of constraints, for a robot that has none.
+    NoConstraints "no_constraints",
     /// A function of frames with six degrees of freedom, and a frame has fewer.
     BoundFrames "bound_frames",
     /// More generated code than the request allows.

@@ -11,6 +11,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::leaders::{Leads, leads, others};
 use super::{Body, BodyLink, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model};
 use crate::actuator::Actuators;
+use crate::constraint::Constraints;
 use crate::description::{self, Base, ById, Description, Inertial, JointId, JointKind, Limit, LinkId, Mimic};
 use crate::effect::Effects;
 use crate::index::{BodyId, FrameId};
@@ -198,6 +199,7 @@ impl<'a> Builder<'a> {
             nq: 0,
             nv: 0,
             actuators: Actuators::default(),
+            constraints: Constraints::default(),
         };
         let (links, joints) = (description.links.len(), description.joints.len());
         Self {

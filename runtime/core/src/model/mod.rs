@@ -19,6 +19,7 @@ pub use regroup::{regroup, regroup_body, subtract};
 
 use crate::Scalar;
 use crate::actuator::Actuators;
+use crate::constraint::Constraints;
 use crate::description::{ById, Description, EditError, JointKind, Limit, LinkId};
 use crate::effect::Effects;
 use crate::index::{BodyId, FrameId};
@@ -49,6 +50,7 @@ pub struct Model<S = f64> {
     pub(crate) nq: usize,
     pub(crate) nv: usize,
     pub(crate) actuators: Actuators<S>,
+    pub(crate) constraints: Constraints<S>,
 }
 
 /// A body and the joint that carries it.
@@ -343,6 +345,28 @@ impl<S: Scalar> Model<S> {
         self
     }
 
+    /// What the robot touches: constraints of the robot's file. Functions of the group `contact`
+    /// have their forces.
+    #[inline(always)]
+    pub fn constraints(&self) -> &Constraints<S> {
+        &self.constraints
+    }
+
+    /// The same robot with these constraints instead of its own.
+    #[must_use]
+    pub fn with_constraints(mut self, constraints: Constraints<S>) -> Self {
+        self.constraints = constraints;
+        self
+    }
+
+    /// Whether a joint of body `before` moves `body`.
+    pub fn is_on_the_way(&self, before: BodyId, mut body: BodyId) -> bool {
+        while !body.is_base() && body != before {
+            body = self.bodies[body].parent;
+        }
+        body == before
+    }
+
     /// The same robot under another gravity, given in the world frame, m/s².
     #[must_use]
     pub fn with_gravity(mut self, gravity: [f64; 3]) -> Self {
@@ -364,6 +388,7 @@ impl<S: Scalar> Model<S> {
             nq: self.nq,
             nv: self.nv,
             actuators: self.actuators.map(f),
+            constraints: self.constraints.map(f),
         }
     }
 }

@@ -9,6 +9,8 @@ use nalgebra::Vector3;
 use super::{Body, Frame, JointInfo, Model, ModelError};
 use crate::Scalar;
 use crate::actuator::Actuators;
+use crate::collision::Form;
+use crate::constraint::{Bound, Constraints};
 use crate::effect::Field;
 use crate::index::{BodyId, ById, FrameId};
 use crate::spatial::Reference;
@@ -30,14 +32,16 @@ pub struct ModelParts<S = f64> {
     pub joints: Vec<JointInfo>,
     /// As [`Model::actuators`].
     pub actuators: Actuators<S>,
+    /// As [`Model::constraints`].
+    pub constraints: Constraints<S>,
 }
 
 impl<S: Scalar> Model<S> {
     /// The model's parts.
     #[must_use]
     pub fn into_parts(self) -> ModelParts<S> {
-        let Self { name, gravity, wrench_reference, bodies, frames, joints, actuators, .. } = self;
-        ModelParts { name, gravity, wrench_reference, bodies, frames, joints, actuators }
+        let Self { name, gravity, wrench_reference, bodies, frames, joints, actuators, constraints, .. } = self;
+        ModelParts { name, gravity, wrench_reference, bodies, frames, joints, actuators, constraints }
     }
 
     /// A model of these parts. Its indices are checked, its numbers may be any.
@@ -53,8 +57,8 @@ impl<S: Scalar> Model<S> {
     /// * Effects act on degrees of freedom that exist, with as many numbers as their fields have.
     pub fn from_parts(parts: ModelParts<S>) -> Result<Self, ModelError> {
         let (nq, nv) = parts.check()?;
-        let ModelParts { name, gravity, wrench_reference, bodies, frames, joints, actuators } = parts;
-        Ok(Self { name, gravity, wrench_reference, bodies, frames, joints, nq, nv, actuators })
+        let ModelParts { name, gravity, wrench_reference, bodies, frames, joints, actuators, constraints } = parts;
+        Ok(Self { name, gravity, wrench_reference, bodies, frames, joints, nq, nv, actuators, constraints })
     }
 
     /// The same model with its parts changed, here with bodies that weigh twice as much:
@@ -94,6 +98,7 @@ impl<S: Scalar> ModelParts<S> {
         }
         self.check_effects()?;
         self.check_actuators(sizes)?;
+        self.check_constraints(sizes)?;
         Ok(sizes)
     }
 
@@ -110,6 +115,40 @@ impl<S: Scalar> ModelParts<S> {
             if let Some(drive) = beyond {
                 let found = format!("coordinate {} and rate {}", drive.q, drive.v);
                 return Err(refused(format!("actuator {:?}", law.name), found, "those of a joint"));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_constraints(&self, (nq, nv): (usize, usize)) -> Result<(), ModelError> {
+        let Constraints { limits, friction, shapes, pairs, .. } = &self.constraints;
+        for limit in limits {
+            let (of_q, of_v) = if let Bound::Angle(_) = limit.bound { (4, 3) } else { (1, 1) };
+            if limit.q.saturating_add(of_q) > nq || limit.v.saturating_add(of_v) > nv {
+                let found = format!("coordinate {} and rate {}", limit.q, limit.v);
+                return Err(refused("a limit".into(), found, "those of a joint"));
+            }
+        }
+        if let Some(own) = friction.iter().find(|own| own.v >= nv) {
+            return Err(refused("dry friction".into(), format!("rate {}", own.v), "that of a joint"));
+        }
+        if let Some(shape) = shapes.iter().find(|shape| self.bodies.get(shape.body).is_none()) {
+            return Err(refused(format!("shape {:?}", shape.name), format!("body {}", shape.body), "a body of the model"));
+        }
+        for pair in pairs {
+            let [Some(first), Some(second)] = pair.shapes.map(|shape| shapes.get(shape)) else {
+                return Err(refused("a pair".into(), format!("shapes {:?}", pair.shapes), "shapes of the model"));
+            };
+            let part = || format!("the pair of {:?} and {:?}", first.name, second.name);
+            if first.body == second.body {
+                return Err(refused(part(), "one body".into(), "two bodies"));
+            }
+            if Form::places(&first.form, &second.form).is_none() {
+                let found = format!("a {} and a {}", first.form.name(), second.form.name());
+                return Err(refused(part(), found, "a pair of `collision::Form::places`"));
+            }
+            if !matches!(pair.dimension, 1 | 3 | 4 | 6) {
+                return Err(refused(part(), format!("dimension {}", pair.dimension), "1, 3, 4 or 6"));
             }
         }
         Ok(())

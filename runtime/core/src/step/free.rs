@@ -59,6 +59,15 @@ pub(super) fn of_origins<S: Scalar>(model: &Model<S>, v: &[S], a: &mut [S]) {
     }
 }
 
+/// The rates v̇ of body twists, in the place of accelerations of origins v̇ + ω × v.
+pub(super) fn of_bodies<S: Scalar>(model: &Model<S>, v: &[S], a: &mut [S]) {
+    for joint in model.joints.iter().filter(|joint| matches!(Space::of(joint.kind), Space::Placements)) {
+        let (twist, at) = (six(&v[range(joint.v)]), joint.v.0 + 3);
+        let rate = three(&a[at..]) - twist.angular.cross(&twist.linear);
+        put(&mut a[at..], &rate);
+    }
+}
+
 /// τ −= h D (ω × v): h D acts on accelerations of origins of floating joints, not on rates v̇ of
 /// their body twists.
 pub(super) fn act_on_origins<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, v: &[S], tau: &mut [S]) {

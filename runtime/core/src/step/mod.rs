@@ -7,6 +7,7 @@
 //!
 //! [`of_group`] has the tables. Adding a method: its file here, its row in one of them.
 
+mod constrained;
 mod euler;
 mod free;
 mod implicit_velocity;
@@ -17,7 +18,9 @@ mod rollout;
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::cell::RefCell;
 use core::marker::PhantomData;
+use core::mem;
 
 use crate::Scalar;
 use crate::algorithm::registry::{Group, Inputs, Needs};
@@ -37,10 +40,22 @@ pub const ACT: Argument = Argument::new(&Port::new("act", &[Dim::Activations], "
 /// Controls of the actuators.
 pub const CTRL: Argument = Argument::new(&Port::new("ctrl", &[Dim::Controls], "control of each actuator, in its own unit"));
 
+/// The acceleration with which a search of the one with constraints begins: that of the last step,
+/// or zeros. It does not change the result but for roundings.
+pub const WARM: Argument = Argument::new(&Port::new("warm", &[Dim::Nv], "rad/s²|m/s², where the search begins: `warm_next` of the last step, or 0"));
+
 const TAKES: &[Argument] = &[Argument::Q, Argument::V, Argument::Tau, H];
 const GIVES: &[Port] = &[Q_NEXT, V_NEXT];
 const ACTUATED_TAKES: &[Argument] = &[Argument::Q, Argument::V, ACT, CTRL, H];
 const ACTUATED_GIVES: &[Port] = &[Q_NEXT, V_NEXT, Port::new("act_next", &[Dim::Activations], "activations after the step")];
+
+const CONSTRAINED_TAKES: &[Argument] = &[Argument::Q, Argument::V, ACT, CTRL, WARM, H];
+const CONSTRAINED_GIVES: &[Port] = &[
+    Q_NEXT,
+    V_NEXT,
+    Port::new("act_next", &[Dim::Activations], "activations after the step"),
+    Port::new("warm_next", &[Dim::Nv], "rad/s²|m/s², `warm` of the next step"),
+];
 
 const Q_NEXT: Port = Port::configuration("q_next", "rad|m|unit quaternion, after the step");
 const V_NEXT: Port = Port::new("v_next", &[Dim::Nv], "rad/s|m/s, after the step");
@@ -58,6 +73,8 @@ struct Start<'a, S: 'static> {
     drive: Drive<'a, S>,
     h: S,
     accelerate: Accelerate<S>,
+    /// With constraints: the last acceleration, with which the next search begins.
+    warm: Option<RefCell<Vec<S>>>,
 }
 
 /// Inputs, constant during a step.
@@ -87,6 +104,16 @@ impl<S: Scalar> Start<'_, S> {
                 tau
             }
         };
+        if let Some(warm) = &self.warm {
+            let diagonal = (mem::take(&mut ws.diagonal), mem::take(&mut ws.coupled));
+            (self.accelerate)(self.model, ws, q, v, &tau, &[], out);
+            let forces = constrained::acceleration(self.model, ws, (q, v), &mut warm.borrow_mut(), out);
+            (ws.diagonal, ws.coupled) = diagonal;
+            if ws.diagonal.iter().all(Option::is_none) && ws.coupled.is_empty() {
+                return;
+            }
+            tau.iter_mut().zip(forces).for_each(|(tau, force)| *tau += force);
+        }
         free::act_on_origins(self.model, ws, v, &mut tau);
         (self.accelerate)(self.model, ws, q, v, &tau, &[], out);
     }
@@ -125,14 +152,21 @@ fn run<S: Scalar>(
 ) {
     let [q, v, h] = [Argument::Q, Argument::V, H].map(|argument| inputs.get(argument));
     let (q_next, rest) = out.split_at_mut(model.nq);
-    let (v_next, act_next) = rest.split_at_mut(model.nv);
+    let (v_next, rest) = rest.split_at_mut(model.nv);
+    let (act_next, warm_next) = rest.split_at_mut(inputs.get(ACT).len());
+    // Functions with constraints have it.
+    let warm = Some(inputs.get(WARM)).filter(|warm| !warm.is_empty()).map(|warm| RefCell::new(warm.to_vec()));
     // Torques are an argument, or the actuators have them.
     let (act, drive) = match inputs.get(Argument::Tau) {
         [] => (inputs.get(ACT), Drive::Controls(inputs.get(CTRL))),
         tau => (&[][..], Drive::Torques(tau)),
     };
     let mut end = End { q: q_next, v: v_next, act: act_next };
-    method(&Start { model, q, v, act, drive, h: h[0], accelerate }, ws, &mut end);
+    let start = Start { model, q, v, act, drive, h: h[0], accelerate, warm };
+    method(&start, ws, &mut end);
+    if let Some(warm) = start.warm {
+        warm_next.copy_from_slice(&warm.into_inner());
+    }
 }
 
 macro_rules! steps {
@@ -226,6 +260,22 @@ steps! { OF_ACTUATORS, Actuators, ACTUATED_TAKES, ACTUATED_GIVES, [actuator_torq
         "MuJoCo documentation, Actuation model; Numerical integration";
 }
 
+steps! { OF_CONSTRAINTS, Constraints, CONSTRAINED_TAKES, CONSTRAINED_GIVES, [constrained_acceleration];
+    constrained_step_semi_implicit_euler: euler::semi_implicit, untied, [forward_dynamics_with_wrenches],
+        "actuated_step_semi_implicit_euler with limits, dry friction and contacts",
+        "MuJoCo documentation, Computation: constraint model";
+    constrained_step_implicit_damping: euler::implicit_damping, untied, [forward_dynamics_with_wrenches],
+        "actuated_step_implicit_damping with limits, dry friction and contacts: MuJoCo's Euler",
+        "MuJoCo documentation, Computation: constraint model; Numerical integration";
+    constrained_step_implicit_velocity: implicit_velocity::implicit_velocity, solved_at_once, [forward_dynamics_with_wrenches],
+        "actuated_step_implicit_velocity with limits, dry friction and contacts: MuJoCo's implicitfast",
+        "MuJoCo documentation, Computation: constraint model; Numerical integration";
+    constrained_step_rk4_mujoco: rk4::in_axes_of_the_parent, untied,
+        [forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches, forward_dynamics_with_wrenches],
+        "actuated_step_rk4_mujoco with limits, dry friction and contacts: RK4 of MuJoCo 4",
+        "MuJoCo documentation, Computation: constraint model; Numerical integration";
+}
+
 /// Whether one branch at a time can be solved: no joint follows another, and D has no entries
 /// between degrees of freedom.
 fn solved_at_once<S: Scalar>(model: &Model<S>) -> bool {
@@ -282,6 +332,11 @@ pub fn of_actuators<S: Scalar>() -> &'static [Function<S>] {
     Steps::OF_ACTUATORS
 }
 
+/// Functions of robots with constraints: accelerations, and steps.
+pub fn of_constraints<S: Scalar>() -> &'static [Function<S>] {
+    Steps::OF_CONSTRAINTS
+}
+
 /// States in MuJoCo's conventions, and back.
 pub fn exchanges<S: Scalar>() -> &'static [Function<S>] {
     Steps::EXCHANGES
@@ -292,6 +347,7 @@ pub fn of_group<S: Scalar>(group: Group) -> &'static [Function<S>] {
     match group {
         Group::Steps => steps(),
         Group::Actuators => of_actuators(),
+        Group::Constraints => of_constraints(),
         Group::Mujoco => exchanges(),
         _ => &[],
     }

@@ -1,0 +1,217 @@
+//! Limits, dry friction and contacts of a model, and the section `<contact>`.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use articulated_core::diagnostic::{Code, Diagnostics, Subject};
+
+use super::bodies::Kind;
+use super::contact::{Both, dimension};
+use super::mass::Mass;
+use super::scope::{Scope, Sort};
+use super::simulation::Simulation;
+use super::values::Values;
+use crate::LeaveOut;
+use crate::world::{Touching, TouchingFriction, TouchingLimit, TouchingPair, TouchingShape, Unread};
+
+/// The least coefficient of friction in MuJoCo.
+const LEAST_FRICTION: f64 = 1e-5;
+/// Maximum number of pairs of shapes.
+const MOST_PAIRS: usize = 100_000;
+
+/// What touches. `links`: the name of the link of each body.
+pub(crate) fn touching(
+    scope: &mut Scope<'_>,
+    inertials: &[Option<Mass>],
+    links: &[&str],
+    simulation: &Simulation<'_>,
+    log: &mut Diagnostics,
+) -> Touching {
+    let flags = simulation.flags();
+    let mut all = Touching {
+        cone: simulation.cone.unwrap_or_default(),
+        impedance_ratio: simulation.impedance_ratio.unwrap_or(1.0),
+        safe_step: (!flags.any_time_constant).then(|| simulation.stepping().step),
+        bodies: bodies(scope, inertials, links),
+        ..Touching::default()
+    };
+    joints(scope, flags.no_limit, &mut all);
+    let mut unread = |what: String| all.unread.push(Unread { kind: LeaveOut::Constraint, is_left_out: false, what, place: Default::default() });
+    if let Some(solver) = simulation.solver.filter(|solver| *solver != "Newton") {
+        unread(format!("the solver {solver}: Newton's method is used"));
+    }
+    if simulation.noslip > 0 {
+        unread("noslip_iterations: there are none".to_owned());
+    }
+    if !flags.no_contact {
+        contacts(scope, links, flags.parents_touch, &mut all, log);
+    }
+    all
+}
+
+fn bodies(scope: &Scope<'_>, inertials: &[Option<Mass>], links: &[&str]) -> Vec<(String, [f64; 3], bool)> {
+    let tree = &scope.tree.bodies;
+    let has_children: BTreeSet<usize> = tree.iter().skip(1).map(|body| body.parent).collect();
+    let is_static = |index: usize| tree[index].joints.is_empty();
+    let of = |(index, own): (usize, &Option<Mass>)| {
+        let body = &tree[index];
+        let center = own.map_or([0.0; 3], |own| own.pose.position);
+        // MuJoCo's simple bodies without rotation
+        let is_at_root = body.parent == 0 || (tree[body.parent].parent == 0 && is_static(body.parent));
+        let is_plain = own.is_some_and(|own| own.pose.position == [0.0; 3] && own.axes.is_none_or(|axes| axes[1..] == [0.0; 3]));
+        let along_axes = body.joints.iter().all(|joint| {
+            let is_along = joint.axis.iter().filter(|x| x.abs() > 1e-14).count() == 1;
+            joint.kind == Kind::Slide && joint.anchor == [0.0; 3] && is_along
+        });
+        let slides = !body.joints.is_empty() && along_axes && is_plain && is_at_root && !has_children.contains(&index);
+        (links[index].to_owned(), center, slides)
+    };
+    inertials.iter().enumerate().map(of).collect()
+}
+
+/// Limits and dry friction of joints.
+fn joints(scope: &Scope<'_>, no_limit: bool, all: &mut Touching) {
+    for known in &scope.joints {
+        let (joint, soft, name) = (known.joint, known.joint.soft, known.name.to_owned());
+        if let Some(limit) = joint.limit.filter(|_| joint.is_limited && !no_limit) {
+            let range = if joint.kind == Kind::Ball { [0.0, limit.upper] } else { [limit.lower, limit.upper] };
+            let (reference, impedance) = soft.limit;
+            all.limits.push(TouchingLimit { joint: name.clone(), range, margin: soft.margin, reference, impedance });
+        }
+        if soft.loss != 0.0 {
+            let (reference, impedance) = soft.friction;
+            all.friction.push(TouchingFriction { joint: name, loss: soft.loss, reference, impedance });
+        }
+    }
+}
+
+/// The pairs of shapes: those of the section `<contact>`, and those that masks and the tree allow.
+fn contacts(scope: &mut Scope<'_>, links: &[&str], parents_touch: bool, all: &mut Touching, log: &mut Diagnostics) {
+    let mut pairs: BTreeMap<[usize; 2], (usize, TouchingPair)> = BTreeMap::new();
+    let mut excluded: BTreeSet<[usize; 2]> = BTreeSet::new();
+    for index in 0..scope.tree.parts.len() {
+        if scope.is_full() {
+            break;
+        }
+        let part = scope.part(index);
+        for element in part.settings.contacts.iter().copied() {
+            let (sort, fields) = match element.name.as_str() {
+                "pair" => (Sort::Geom, ["geom1", "geom2"]),
+                "exclude" => (Sort::Body, ["body1", "body2"]),
+                _ => continue,
+            };
+            for field in fields.iter().filter(|field| element.attribute(field).is_none()) {
+                element.error((&Subject::Document, field), Code::MissingAttribute, "none", format!("the attribute {field}"), log);
+            }
+            let is_world = |name: &str| sort == Sort::Body && name == "world";
+            let names = fields.map(|field| element.text(field).unwrap_or_default());
+            let references = fields.iter().zip(names).filter(|(_, name)| !name.is_empty() && !is_world(name));
+            let references = references.map(|(field, name)| (sort, *field, name)).collect();
+            let Some(found) = scope.resolve(index, element, &references, log) else { continue };
+            let mut found = found.into_iter();
+            let [Some(first), Some(second)] = names.map(|name| if is_world(name) { Some(0) } else { found.next() }) else { continue };
+            let both = [first.min(second), first.max(second)];
+            if sort == Sort::Body {
+                excluded.insert(both);
+                continue;
+            }
+            let class = part.settings.classes.find(element, "class", log).unwrap_or(0);
+            let values = Values::new(element, part.settings.classes.tags(class, "pair"), &Subject::Document);
+            pairs.insert(both, (pairs.len(), pair(scope, both, &values, log)));
+        }
+    }
+    let explicit: BTreeSet<[usize; 2]> = pairs.keys().copied().collect();
+    let mut chosen: Vec<TouchingPair> = {
+        let mut own: Vec<_> = pairs.into_values().collect();
+        own.sort_by_key(|(order, _)| *order);
+        own.into_iter().map(|(_, pair)| pair).collect()
+    };
+    automatic(scope, (&explicit, &excluded), parents_touch, &mut chosen, log);
+    keep(scope, links, chosen, all);
+}
+
+/// The numbers of a tag `<pair>`; what it does not have comes from both geoms.
+fn pair(scope: &Scope<'_>, shapes: [usize; 2], values: &Values<'_>, log: &mut Diagnostics) -> TouchingPair {
+    let [first, second] = shapes.map(|shape| surface(scope, shape));
+    let Both { dimension: own, friction: [slide, turn, roll], reference, impedance } = first.with(&second);
+    // Without margins of its own the greater of both
+    let margin = values.number("margin", log).unwrap_or(first.margin.max(second.margin));
+    let friction = values.at_most("friction", [slide, slide, turn, roll, roll], log);
+    TouchingPair {
+        shapes,
+        dimension: dimension(values, log).unwrap_or(own) as usize,
+        friction,
+        reference: values.at_most("solref", reference, log),
+        reference_across: values.at_most("solreffriction", [0.0; 2], log),
+        impedance: values.at_most("solimp", impedance, log),
+        margin,
+    }
+}
+
+fn surface(scope: &Scope<'_>, shape: usize) -> super::contact::Surface {
+    let (body, place) = scope.geoms[shape];
+    scope.tree.bodies[body].geoms[place].surface
+}
+
+/// The pairs that masks and the tree allow.
+fn automatic(
+    scope: &Scope<'_>,
+    (explicit, excluded): (&BTreeSet<[usize; 2]>, &BTreeSet<[usize; 2]>),
+    parents_touch: bool,
+    chosen: &mut Vec<TouchingPair>,
+    log: &mut Diagnostics,
+) {
+    let bodies = &scope.tree.bodies;
+    // The body that each one is fixed to, and the parent of that one, fixed to another
+    let mut fixed_to: Vec<usize> = Vec::with_capacity(bodies.len());
+    for (index, body) in bodies.iter().enumerate() {
+        fixed_to.push(if index == 0 || body.joints.is_empty() { if index == 0 { 0 } else { fixed_to[body.parent] } } else { index });
+    }
+    let above = |body: usize| fixed_to[bodies[fixed_to[body]].parent];
+    let geoms: Vec<(usize, usize, &super::geometry::Geom<'_>)> =
+        scope.geoms.iter().enumerate().map(|(k, (body, place))| (k, *body, &bodies[*body].geoms[*place])).filter(|(.., geom)| geom.collides()).collect();
+    for (k, (i, a, first)) in geoms.iter().enumerate() {
+        for (j, b, second) in &geoms[k + 1..] {
+            let [one, other] = [fixed_to[*a], fixed_to[*b]];
+            let is_parent = one != 0 && other != 0 && (one == above(*b) || other == above(*a));
+            let is_out = one == other || (is_parent && !parents_touch) || excluded.contains(&[*a.min(b), *a.max(b)]);
+            if is_out || explicit.contains(&[*i, *j]) || !first.mask.meets(second.mask) {
+                continue;
+            }
+            if chosen.len() >= MOST_PAIRS {
+                let expected = format!("at most {MOST_PAIRS} pairs of geoms that make contact");
+                second.element.error((&Subject::Document, ""), Code::TooLarge, "very many pairs of geoms", expected, log);
+                return;
+            }
+            let Both { dimension, friction: [slide, turn, roll], reference, impedance } = first.surface.with(&second.surface);
+            chosen.push(TouchingPair {
+                shapes: [*i, *j],
+                dimension: dimension as usize,
+                friction: [slide, slide, turn, roll, roll],
+                reference,
+                reference_across: [0.0; 2],
+                impedance,
+                margin: first.surface.margin + second.surface.margin,
+            });
+        }
+    }
+}
+
+/// Keeps the shapes that are in a pair.
+fn keep(scope: &Scope<'_>, links: &[&str], chosen: Vec<TouchingPair>, all: &mut Touching) {
+    let mut places: BTreeMap<usize, usize> = BTreeMap::new();
+    for mut pair in chosen {
+        pair.friction = pair.friction.map(|mu| mu.max(LEAST_FRICTION));
+        pair.shapes = pair.shapes.map(|shape| {
+            *places.entry(shape).or_insert_with(|| {
+                let (body, place) = scope.geoms[shape];
+                let geom = &scope.tree.bodies[body].geoms[place];
+                let (pose, form) = geom.form();
+                let name = geom.name.clone().unwrap_or_else(|| format!("geom_{shape}"));
+                let place = scope.place(geom.element);
+                all.shapes.push(TouchingShape { name, link: links[body].to_owned(), origin: pose.origin(), form, place });
+                all.shapes.len() - 1
+            })
+        });
+        all.pairs.push(pair);
+    }
+}

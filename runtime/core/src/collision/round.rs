@@ -1,0 +1,103 @@
+//! Spheres and capsules.
+
+use super::{Placed, Touch};
+use crate::Scalar;
+use crate::constraint::flag;
+use crate::spatial::Vector3;
+
+/// The least length and determinant, as in MuJoCo.
+const LEAST: f64 = 1e-15;
+
+/// x within −1 and 1, times `most`.
+fn clipped<S: Scalar>(x: S, most: S) -> S {
+    let x = S::select((x - most).positive(), most, x);
+    S::select((-(x + most)).positive(), -most, x)
+}
+
+/// Two spheres with these centres. In one point, their axes z say what is across.
+pub(super) fn balls<S: Scalar>(
+    [(first, a), (second, b)]: [(Vector3<S>, S); 2],
+    axes: [Vector3<S>; 2],
+    exists: S,
+) -> Touch<S> {
+    let apart = second - first;
+    let square = apart.dot(&apart);
+    let is_apart = (square - S::from_f64(LEAST * LEAST)).positive();
+    let across = axes[0].cross(&axes[1]);
+    let length = across.dot(&across);
+    let has_axis = (length - S::from_f64(LEAST * LEAST)).positive();
+    let one = S::select(has_axis, length, S::one()).sqrt();
+    let unit = Vector3::new(S::one(), S::zero(), S::zero());
+    let otherwise = across.zip_map(&unit, |x, unit| S::select(has_axis, x / one, unit));
+    let long = S::select(is_apart, square, S::one()).sqrt();
+    let normal = apart.zip_map(&otherwise, |x, other| S::select(is_apart, x / long, other));
+    let distance = S::select(is_apart, long, S::zero()) - a - b;
+    let point = first + normal * (a + distance * S::from_f64(0.5));
+    Touch { exists, distance, point, normal, tangent: None }
+}
+
+pub(super) fn spheres<S: Scalar>(first: &Placed<'_, S>, second: &Placed<'_, S>, a: S, b: S) -> Touch<S> {
+    balls([(first.position, a), (second.position, b)], [first.axis(2), second.axis(2)], S::one())
+}
+
+/// The point of the capsule's axis that is next to the sphere.
+pub(super) fn sphere_capsule<S: Scalar>(first: &Placed<'_, S>, second: &Placed<'_, S>, a: S, b: S, half: S) -> Touch<S> {
+    let axis = second.axis(2);
+    let at = clipped(axis.dot(&(first.position - second.position)), half);
+    balls([(first.position, a), (second.position + axis * at, b)], [first.axis(2), axis], S::one())
+}
+
+/// The points of both axes that are next to each other: one place, or two of parallel capsules.
+pub(super) fn capsules<S: Scalar>(
+    first: &Placed<'_, S>,
+    second: &Placed<'_, S>,
+    [a, half]: [S; 2],
+    [b, other]: [S; 2],
+    reach: S,
+) -> [Touch<S>; 2] {
+    let (zero, one) = (S::zero(), S::one());
+    let axes = [first.axis(2), second.axis(2)];
+    let (e, f) = (axes[0] * half, axes[1] * other);
+    let apart = first.position - second.position;
+    // min |apart + x e − y f|²: [ee −ef; −ef ff] [x; y] = [u; w]
+    let (ee, ef, ff) = (e.dot(&e), -e.dot(&f), f.dot(&f));
+    let (u, w) = (-e.dot(&apart), f.dot(&apart));
+    let determinant = ee * ff - ef * ef;
+    let is_crossed = one - flag::<S>((S::from_f64(LEAST) - determinant.abs()).positive());
+    let crosses = is_crossed.positive();
+    let divisor = S::select(crosses, determinant, one);
+    let (x, y) = ((ff * u - ef * w) / divisor, (ee * w - ef * u) / divisor);
+    // Within the first axis, then within the second.
+    let y_at = |x: S| (w - ef * x) / ff;
+    let x_at = |y: S| clipped((u - ef * y) / ee, one);
+    let (over, under) = ((x - one).positive(), (-(x + one)).positive());
+    let y = S::select(over, y_at(one), S::select(under, y_at(-one), y));
+    let x = clipped(x, one);
+    let (over, under) = ((y - one).positive(), (-(y + one)).positive());
+    let x = S::select(over, x_at(one), S::select(under, x_at(-one), x));
+    let y = clipped(y, one);
+    let place = |x: S, y: S, exists: S| balls([(first.position + e * x, a), (second.position + f * y, b)], axes, exists);
+    // Parallel: the ends of the first, then those of the second, two at most.
+    let ends = [
+        (one, clipped(y_at(one), one)),
+        (-one, clipped(y_at(-one), one)),
+        (x_at(one), one),
+        (x_at(-one), -one),
+    ];
+    let (mut found, mut chosen) = (zero, [(zero, zero, zero); 2]);
+    for (x, y) in ends {
+        let one_place = place(x, y, one);
+        let counts = one - flag::<S>((one_place.distance - reach).positive());
+        for (k, (own_x, own_y, exists)) in chosen.iter_mut().enumerate() {
+            // The first free one takes it.
+            let takes = counts * flag::<S>((S::from_f64(0.5) - (found - S::from_f64(k as f64)).abs()).positive());
+            *own_x = S::select(takes.positive(), x, *own_x);
+            *own_y = S::select(takes.positive(), y, *own_y);
+            *exists += takes;
+        }
+        found += counts;
+    }
+    let [(x0, y0, exists0), (x1, y1, exists1)] = chosen;
+    let pick = |a: S, b: S| S::select(crosses, a, b);
+    [place(pick(x, x0), pick(y, y0), pick(one, exists0)), place(x1, y1, pick(zero, exists1))]
+}

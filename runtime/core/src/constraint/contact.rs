@@ -1,0 +1,259 @@
+//! A contact: rows along the normal, across it, and about its axes, with a cone of friction.
+//!
+//! ```text
+//! u = B V − r            B: the axes of the contact, V: the relative twist
+//! pyramid:  s = ½ D Σ min(0, u₀ ± μ_k u_k)²
+//! ellipse:  N = μ u₀,  U_k = μ_k u_k,  T = |U|
+//!           s = 0                                  where N ≥ μ T
+//!           s = ½ Σ D_k u_k²,  D_k = D μ_k² / μ²   where μ N + T ≤ 0
+//!           s = ½ D / (μ² (1 + μ²)) (N − μ T)²     between them
+//! ```
+//!
+//! Source: MuJoCo documentation, Computation: friction cones.
+
+use alloc::vec::Vec;
+
+use super::{Cone, Pair, flag};
+use crate::Scalar;
+use crate::collision::Touch;
+use crate::spatial::{Twist, Vector3, Wrench};
+
+/// No contact has more rows.
+pub const MOST_ROWS: usize = 6;
+
+/// Numbers of a contact that do not change while the accelerations are found.
+#[derive(Clone, Debug)]
+pub(super) struct Contact<S> {
+    /// 1 where the contact acts, else 0.
+    pub(super) acts: S,
+    /// The normal and two axes across it.
+    frame: [Vector3<S>; 3],
+    /// Their moments about the origin.
+    moments: [Vector3<S>; 3],
+    /// r.
+    reference: Vec<S>,
+    /// D.
+    curvature: S,
+    mu: S,
+    friction: Vec<S>,
+}
+
+/// Value, slope and curvature of s over u.
+pub(super) struct Cost<S> {
+    pub(super) value: S,
+    pub(super) slope: [S; MOST_ROWS],
+    pub(super) curvature: [[S; MOST_ROWS]; MOST_ROWS],
+}
+
+/// How many numbers a contact is as a row of a table.
+pub(super) fn length(dimension: usize) -> usize {
+    1 + 9 + 9 + dimension + 2 + dimension - 1
+}
+
+impl<S: Scalar> Contact<S> {
+    /// A pair that touches. `twist`: of the second body seen from the first, about the same origin
+    /// as the touch, in the same axes.
+    pub(super) fn new(pair: &Pair<S>, cone: Cone, touch: &Touch<S>, twist: &Twist<S>) -> Self {
+        let frame = touch.frame();
+        let moments = frame.map(|axis| touch.point.cross(&axis));
+        let mut contact = Self {
+            acts: flag::<S>((pair.margin - touch.distance).positive()) * touch.exists,
+            frame,
+            moments,
+            reference: Vec::new(),
+            curvature: S::one(),
+            mu: pair.mu,
+            friction: pair.friction[..pair.dimension - 1].to_vec(),
+        };
+        let rates: Vec<S> = (0..pair.dimension).map(|k| contact.along(k, twist)).collect();
+        let (normal, give) = pair.soft.row(touch.distance - pair.margin, rates[0], pair.weight);
+        contact.reference = rates.iter().map(|rate| -(pair.tangential_damping * *rate)).collect();
+        contact.reference[0] = normal;
+        let give = match cone {
+            Cone::Pyramid if pair.dimension > 1 => S::from_f64(2.0) * pair.mu * pair.mu * give,
+            _ => give,
+        };
+        contact.curvature = S::one() / give;
+        contact
+    }
+
+    /// The same for the opposite twist.
+    pub(super) fn reversed(mut self) -> Self {
+        self.frame.iter_mut().chain(&mut self.moments).for_each(|axis| *axis = -*axis);
+        self
+    }
+
+    /// As a row of a table.
+    pub(super) fn put(&self, row: &mut Vec<S>) {
+        row.push(self.acts);
+        self.frame.iter().chain(&self.moments).for_each(|axis| row.extend_from_slice(axis.as_slice()));
+        row.extend_from_slice(&self.reference);
+        row.extend_from_slice(&[self.curvature, self.mu]);
+        row.extend_from_slice(&self.friction);
+    }
+
+    /// Of such a row.
+    pub(super) fn of(row: &[S], dimension: usize) -> Self {
+        let axis = |k: usize| Vector3::new(row[1 + 3 * k], row[2 + 3 * k], row[3 + 3 * k]);
+        let rest = &row[19..];
+        Self {
+            acts: row[0],
+            frame: core::array::from_fn(axis),
+            moments: core::array::from_fn(|k| axis(3 + k)),
+            reference: rest[..dimension].to_vec(),
+            curvature: rest[dimension],
+            mu: rest[dimension + 1],
+            friction: rest[dimension + 2..][..dimension - 1].to_vec(),
+        }
+    }
+
+    fn dimension(&self) -> usize {
+        self.reference.len()
+    }
+
+    /// Row `k` of B, as a wrench.
+    pub(super) fn row(&self, k: usize) -> Wrench<S> {
+        if k < 3 {
+            Wrench { moment: self.moments[k], force: self.frame[k] }
+        } else {
+            Wrench { moment: self.frame[k - 3], force: Vector3::zeros() }
+        }
+    }
+
+    /// Row `k` of B V.
+    pub(super) fn along(&self, k: usize, twist: &Twist<S>) -> S {
+        if k < 3 { self.row(k).power(twist) } else { self.frame[k - 3].dot(&twist.angular) }
+    }
+
+    /// B V − r at a relative twist.
+    pub(super) fn residual(&self, twist: &Twist<S>) -> Vec<S> {
+        self.reference.iter().enumerate().map(|(k, reference)| self.along(k, twist) - *reference).collect()
+    }
+
+    /// B V.
+    pub(super) fn rates(&self, twist: &Twist<S>) -> Vec<S> {
+        (0..self.dimension()).map(|k| self.along(k, twist)).collect()
+    }
+
+    /// s at u.
+    pub(super) fn cost(&self, cone: Cone, u: &[S]) -> Cost<S> {
+        match cone {
+            Cone::Ellipse if u.len() > 1 => self.ellipse(u),
+            _ => self.pyramid(u),
+        }
+    }
+
+    fn pyramid(&self, u: &[S]) -> Cost<S> {
+        let (zero, half) = (S::zero(), S::from_f64(0.5));
+        let mut cost = Cost { value: zero, slope: [zero; MOST_ROWS], curvature: [[zero; MOST_ROWS]; MOST_ROWS] };
+        let below = |x: S, value: S| S::select((-x).positive(), value, zero);
+        let d = self.curvature;
+        if u.len() == 1 {
+            let force = below(u[0], d * u[0]);
+            (cost.value, cost.slope[0], cost.curvature[0][0]) = (half * force * u[0], force, below(u[0], d));
+            return cost;
+        }
+        for (k, mu) in (1..).zip(&self.friction) {
+            let across = *mu * u[k];
+            let edges = [u[0] + across, u[0] - across];
+            let [f, g] = edges.map(|x| below(x, d * x));
+            let [a, b] = edges.map(|x| below(x, d));
+            cost.value += half * (f * edges[0] + g * edges[1]);
+            cost.slope[0] += f + g;
+            cost.slope[k] = *mu * (f - g);
+            cost.curvature[0][0] += a + b;
+            let mixed = *mu * (a - b);
+            (cost.curvature[0][k], cost.curvature[k][0]) = (mixed, mixed);
+            cost.curvature[k][k] = *mu * *mu * (a + b);
+        }
+        cost
+    }
+
+    fn ellipse(&self, u: &[S]) -> Cost<S> {
+        let (zero, one, half) = (S::zero(), S::one(), S::from_f64(0.5));
+        let (mu, d) = (self.mu, self.curvature);
+        let normal = mu * u[0];
+        let across: Vec<S> = u[1..].iter().zip(&self.friction).map(|(u, own)| *own * *u).collect();
+        let square = across.iter().fold(zero, |sum, x| sum + *x * *x);
+        // Without sliding, T is zero, and so is each U.
+        let length = S::select(square.positive(), square, one).sqrt();
+        let slip = S::select(square.positive(), length, zero);
+        let is_below = (-(mu * normal + slip)).positive();
+        let is_above = (normal - mu * slip).positive();
+        let choose = |bottom: S, middle: S| S::select(is_above, zero, S::select(is_below, bottom, middle));
+        // Between: with e = N − μ T
+        let weight = d / (mu * mu * (one + mu * mu));
+        let e = normal - mu * slip;
+        let unit: Vec<S> = across.iter().map(|x| *x / length).collect();
+        let part = |k: usize| if k == 0 { mu } else { self.friction[k - 1] };
+        // ∂e/∂u
+        let gradient = |k: usize| if k == 0 { mu } else { -(mu * unit[k - 1] * part(k)) };
+        let own = |k: usize| if k == 0 { d } else { d * part(k) * part(k) / (mu * mu) };
+        let mut cost = Cost { value: zero, slope: [zero; MOST_ROWS], curvature: [[zero; MOST_ROWS]; MOST_ROWS] };
+        let bottom = (0..u.len()).fold(zero, |sum, k| sum + own(k) * u[k] * u[k]);
+        cost.value = half * choose(bottom, weight * e * e);
+        for k in 0..u.len() {
+            cost.slope[k] = choose(own(k) * u[k], weight * e * gradient(k));
+            for j in 0..=k {
+                // ∂²e/∂u² = −μ / T (1 − t tᵀ) across, t = U / T
+                let bent = if j == 0 {
+                    zero
+                } else {
+                    let plane = if j == k { one } else { zero } - unit[k - 1] * unit[j - 1];
+                    -(mu * e / length * plane * part(k) * part(j))
+                };
+                let middle = weight * (gradient(k) * gradient(j) + bent);
+                let value = choose(if j == k { own(k) } else { zero }, middle);
+                (cost.curvature[k][j], cost.curvature[j][k]) = (value, value);
+            }
+        }
+        cost
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn contact(dimension: usize) -> Contact<f64> {
+        Contact {
+            acts: 1.0,
+            frame: [Vector3::x(), Vector3::y(), Vector3::z()],
+            moments: [Vector3::zeros(); 3],
+            reference: [0.0; MOST_ROWS][..dimension].to_vec(),
+            curvature: 70.0,
+            mu: 0.8,
+            friction: [0.9, 0.9, 0.05, 0.01, 0.01][..dimension - 1].to_vec(),
+        }
+    }
+
+    /// Slopes and curvatures are those of the value, in all zones, and the value is continuous.
+    #[test]
+    fn slopes_and_curvatures_are_derivatives_of_the_cost() {
+        for cone in [Cone::Pyramid, Cone::Ellipse] {
+            for dimension in [1, 3, 4, 6] {
+                let one = contact(dimension);
+                for k in 0..400_u32 {
+                    let x = |j: u32| f64::from((k * 37 + j * 101 + 13) % 97) / 48.5 - 1.0;
+                    let u: Vec<f64> = (0..dimension as u32).map(x).collect();
+                    let moved = |j: usize, h: f64| {
+                        let mut u = u.clone();
+                        u[j] += h;
+                        one.cost(cone, &u)
+                    };
+                    let (cost, h) = (one.cost(cone, &u), 1e-6);
+                    for i in 0..dimension {
+                        let (after, before) = (moved(i, h), moved(i, -h));
+                        let slope = (after.value - before.value) / (2.0 * h);
+                        assert!((slope - cost.slope[i]).abs() < 1e-3, "{cone:?} {dimension} {u:?}: {slope} {}", cost.slope[i]);
+                        for j in 0..dimension {
+                            let slope = (after.slope[j] - before.slope[j]) / (2.0 * h);
+                            let at_switch = (moved(i, h).curvature[i][j] - moved(i, -h).curvature[i][j]).abs() > 1.0;
+                            assert!(at_switch || (slope - cost.curvature[i][j]).abs() < 2e-2, "{cone:?} {u:?} {i} {j}: {slope} {}", cost.curvature[i][j]);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
