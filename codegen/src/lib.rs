@@ -85,7 +85,9 @@ pub use function_spec::{Constant, Derivative, FunctionSpec, FunctionTerm, Output
 pub use language::{COptions, File, RustOptions, Target, identifier, is_keyword};
 pub use ledger::Ledger;
 pub use parameters::Parameter;
-pub use plan::{MOST_FREEDOMS, check_names, check_words, defined, forces_of_the_file, locked_actuators, massless, undefined, unread_constraints};
+pub use plan::{
+    MOST_FREEDOMS, check_names, check_words, defined, forces_of_the_file, locked_actuators, massless, undefined, unread_constraints,
+};
 pub use request::{Options, Request};
 pub use size::MAX_CODE_SIZE;
 pub use sym::Sym;

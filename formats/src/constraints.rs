@@ -95,7 +95,9 @@ impl Made<'_> {
                 self.follower(&limit.joint, "the limit");
                 continue;
             };
-            let Some(soft) = self.soft(limit.reference, limit.impedance, &format!("the limit of joint {:?}", limit.joint)) else { continue };
+            let Some(soft) = self.soft(limit.reference, limit.impedance, &format!("the limit of joint {:?}", limit.joint)) else {
+                continue;
+            };
             let bound = if joint.v.1 == 3 { Bound::Angle(limit.range[1]) } else { Bound::Between(limit.range) };
             let (q, v) = (joint.q.0, joint.v.0);
             all.limits.push(Limit { q, v, bound, margin: limit.margin, soft, weight: weights.freedoms[v] });

@@ -270,7 +270,7 @@ fn a_number_that_is_not_used_is_not_parsed() {
             "<joint type=\"free\" pos=\"x\" axis=\"x\" range=\"x\" ref=\"x\" springref=\"x\" actuatorfrcrange=\"x\"/><geom size=\"0.1\"/>",
         ),
         body("<joint type=\"ball\" axis=\"x\" ref=\"x\" springref=\"x\" actuatorfrcrange=\"x\"/><geom size=\"0.1\"/>"),
-        body("<joint/><geom size=\"0.1\" mass=\"1\" density=\"x\" fitscale=\"x\" friction=\"x\"/>"),
+        body("<joint/><geom size=\"0.1\" mass=\"1\" density=\"x\" fitscale=\"x\"/>"),
         body("<joint/><inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/><geom type=\"mesh\" mesh=\"m\" size=\"x\"/>")
             .replace("<worldbody>", "<asset><mesh name=\"m\" file=\"none.stl\" scale=\"x\"/></asset><worldbody>"),
     ];

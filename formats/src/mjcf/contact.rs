@@ -23,6 +23,8 @@ pub(crate) struct Surface {
     reference: [f64; 2],
     impedance: [f64; 5],
     pub(crate) margin: f64,
+    /// Whether it attracts, or its surface moves: that is not read.
+    pub(crate) is_unread: bool,
 }
 
 /// What two geoms together have.
@@ -53,17 +55,14 @@ impl Surface {
             reference: values.at_most("solref", REFERENCE, log),
             impedance: values.at_most("solimp", IMPEDANCE, log),
             margin: values.number("margin", log).unwrap_or(0.0),
+            is_unread: ["adhesion", "surfacevel"].iter().any(|name| values.has_numbers(name)),
         }
     }
 
     /// Those of the geom with the higher priority, or a mixture.
     pub(crate) fn with(&self, other: &Self) -> Both {
-        let whole = |one: &Self| Both {
-            dimension: one.dimension,
-            friction: one.friction,
-            reference: one.reference,
-            impedance: one.impedance,
-        };
+        let whole =
+            |one: &Self| Both { dimension: one.dimension, friction: one.friction, reference: one.reference, impedance: one.impedance };
         match self.priority.cmp(&other.priority) {
             std::cmp::Ordering::Greater => return whole(self),
             std::cmp::Ordering::Less => return whole(other),
@@ -101,9 +100,8 @@ pub(crate) struct SoftJoint {
 
 impl SoftJoint {
     pub(crate) fn of(values: &Values<'_>, flags: Flags, log: &mut Diagnostics) -> Self {
-        let mut soft = |reference: &str, impedance: &str| {
-            (values.at_most(reference, REFERENCE, log), values.at_most(impedance, IMPEDANCE, log))
-        };
+        let mut soft =
+            |reference: &str, impedance: &str| (values.at_most(reference, REFERENCE, log), values.at_most(impedance, IMPEDANCE, log));
         let (limit, friction) = (soft("solreflimit", "solimplimit"), soft("solreffriction", "solimpfriction"));
         // The number itself is read with the other forces of the joint.
         let loss = values.number("frictionloss", &mut log.apart()).filter(|_| !flags.no_friction).unwrap_or(0.0);

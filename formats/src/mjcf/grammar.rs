@@ -26,7 +26,8 @@ struct Row {
 }
 
 const APPEARANCE: &str = "appearance plays no part in the dynamics";
-const CONTACT: &str = "contact parameters are given by the scene";
+const CONTACT: &str = "used by functions of the group `constraints` alone";
+const NO_CONTACT: &str = "not computed: contacts are without it";
 const SOLVER: &str = "settings of MuJoCo's solver";
 const SIMULATOR: &str = "settings of the simulator";
 const USER: &str = "numbers of the user";
@@ -89,10 +90,11 @@ const ROWS: &[Row] = &[
     Row {
         name: "option",
         within: "mujoco",
-        attributes: "gravity timestep integrator actuatorgroupdisable wind density viscosity impratio cone solver noslip_iterations",
+        attributes: "gravity timestep integrator actuatorgroupdisable wind density viscosity",
         unused_attributes: &[
             ("magnetic", "sensors play no part in the dynamics"),
-            ("o_margin o_solref o_solimp o_friction", CONTACT),
+            ("o_margin o_solref o_solimp o_friction", NO_CONTACT),
+            ("impratio cone solver noslip_iterations", CONTACT),
             (
                 "tolerance ls_tolerance noslip_tolerance ccd_tolerance sleep_tolerance jacobian iterations ls_iterations ccd_iterations \
                  sdf_iterations sdf_initpoints",
@@ -105,12 +107,15 @@ const ROWS: &[Row] = &[
     Row {
         name: "flag",
         within: "option",
-        attributes: "gravity constraint equality frictionloss limit contact spring damper clampctrl actuation eulerdamp filterparent refsafe",
-        unused_attributes: &[(
-            "warmstart sensor midphase autoreset nativeccd \
+        attributes: "gravity constraint equality frictionloss limit contact spring damper clampctrl actuation eulerdamp",
+        unused_attributes: &[
+            ("filterparent refsafe", CONTACT),
+            (
+                "warmstart sensor midphase autoreset nativeccd \
              island multiccd override energy fwdinv invdiscrete sleep diagexact ipc speculative",
-            "what acts on the robot is given by the scene",
-        )],
+                "what acts on the robot is given by the scene",
+            ),
+        ],
         tags: "",
         unused_tags: &[],
     },
@@ -188,9 +193,10 @@ const ROWS: &[Row] = &[
         name: "joint",
         within: IN_BODIES,
         attributes: "name class type pos axis springdamper limited actuatorfrclimited stiffness range actuatorfrcrange ref springref armature \
-                     damping frictionloss springyield solreflimit solimplimit solreffriction solimpfriction margin",
+                     damping frictionloss springyield",
         unused_attributes: &[
             ("group", APPEARANCE),
+            ("solreflimit solimplimit solreffriction solimpfriction margin", CONTACT),
             ("actuatorgravcomp", ACTUATOR),
             ("user", USER),
         ],
@@ -209,9 +215,10 @@ const ROWS: &[Row] = &[
         name: "geom",
         within: IN_BODIES,
         attributes: "name class type contype conaffinity group size mass density shellinertia fromto pos quat axisangle xyaxes zaxis euler \
-                     mesh hfield fitscale rgba fluidshape condim priority friction solmix solref solimp margin gap",
+                     mesh hfield fitscale rgba fluidshape",
         unused_attributes: &[
-            ("surfacevel adhesion", CONTACT),
+            ("condim priority friction solmix solref solimp margin gap", CONTACT),
+            ("surfacevel adhesion", NO_CONTACT),
             ("material", APPEARANCE),
             ("fluidcoef", FLUID),
             ("user", USER),
@@ -255,30 +262,16 @@ const ROWS: &[Row] = &[
         tags: "",
         unused_tags: &[],
     },
-    Row {
-        name: "contact",
-        within: "mujoco",
-        attributes: "",
-        unused_attributes: &[],
-        tags: "pair exclude",
-        unused_tags: &[],
-    },
+    Row { name: "contact", within: "mujoco", attributes: "", unused_attributes: &[], tags: "pair exclude", unused_tags: &[] },
     Row {
         name: "pair",
         within: "contact default",
         attributes: "name class geom1 geom2 condim friction solref solreffriction solimp gap margin",
-        unused_attributes: &[("adhesion", CONTACT)],
+        unused_attributes: &[("adhesion", NO_CONTACT)],
         tags: "",
         unused_tags: &[],
     },
-    Row {
-        name: "exclude",
-        within: "contact",
-        attributes: "name body1 body2",
-        unused_attributes: &[],
-        tags: "",
-        unused_tags: &[],
-    },
+    Row { name: "exclude", within: "contact", attributes: "name body1 body2", unused_attributes: &[], tags: "", unused_tags: &[] },
     Row {
         name: "equality",
         within: "mujoco",

@@ -79,7 +79,8 @@ impl<'a> Scope<'a> {
         let all = tree.bodies.iter().enumerate().flat_map(|(body, own)| own.joints.iter().map(move |joint| (body, joint)));
         let joints: Vec<Known<'_>> = all.zip(names).map(|((body, joint), name)| Known { joint, name, body }).collect();
         let (names, own, reported) = (BTreeMap::new(), BTreeSet::new(), BTreeSet::new());
-        let mut scope = Self { tree, joints: Vec::new(), sites: Vec::new(), geoms: Vec::new(), names, own, is_complete, reported, looked_up: 0, main };
+        let mut scope =
+            Self { tree, joints: Vec::new(), sites: Vec::new(), geoms: Vec::new(), names, own, is_complete, reported, looked_up: 0, main };
         for (index, Known { joint, .. }) in joints.iter().enumerate() {
             scope.add(Sort::Joint, joint.element, joint.name.as_ref(), (index, joint.part));
         }

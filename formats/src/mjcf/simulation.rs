@@ -101,6 +101,8 @@ pub(crate) struct Simulation<'a> {
     pub(crate) impedance_ratio: Option<f64>,
     pub(crate) solver: Option<&'static str>,
     pub(crate) noslip: i64,
+    /// Flags that change the law of constraints, and are not read.
+    pub(crate) constraint_flags: BTreeSet<&'static str>,
     /// Groups of actuators without force.
     pub(crate) disabled_groups: BTreeSet<i64>,
     /// Flags as the file has them: whether each is disabled.
@@ -192,6 +194,7 @@ impl<'a> Simulation<'a> {
             }
             for flag in section.all("flag") {
                 let values = Values::alone(flag, &Subject::Document);
+                all.constraint_flags.extend(["override", "diagexact"].into_iter().filter(|name| values.text(name) == Some("enable")));
                 for (name, _) in FLAGS {
                     if let Some(disabled) = values.word(name, &[("disable", true), ("enable", false)], log) {
                         all.flags.insert(name, disabled);

@@ -35,9 +35,21 @@ pub(crate) fn touching(
         ..Touching::default()
     };
     joints(scope, flags.no_limit, &mut all);
-    let mut unread = |what: String| all.unread.push(Unread { kind: LeaveOut::Constraint, is_left_out: false, what, place: Default::default() });
+    let mut names: Vec<String> = Vec::new();
+    for (body, place) in &scope.geoms {
+        let geom = &scope.tree.bodies[*body].geoms[*place];
+        if geom.surface.is_unread && geom.collides() {
+            names.push(geom.name.clone().unwrap_or_else(|| "without a name".to_owned()));
+        }
+    }
+    let mut unread =
+        |what: String| all.unread.push(Unread { kind: LeaveOut::Constraint, is_left_out: false, what, place: Default::default() });
     if let Some(solver) = simulation.solver.filter(|solver| *solver != "Newton") {
         unread(format!("the solver {solver}: Newton's method is used"));
+    }
+    names.into_iter().for_each(|name| unread(format!("adhesion or surfacevel of the geom {name}")));
+    for flag in &simulation.constraint_flags {
+        unread(format!("the flag {flag}"));
     }
     if simulation.noslip > 0 {
         unread("noslip_iterations: there are none".to_owned());
@@ -167,8 +179,13 @@ fn automatic(
         fixed_to.push(if index == 0 || body.joints.is_empty() { if index == 0 { 0 } else { fixed_to[body.parent] } } else { index });
     }
     let above = |body: usize| fixed_to[bodies[fixed_to[body]].parent];
-    let geoms: Vec<(usize, usize, &super::geometry::Geom<'_>)> =
-        scope.geoms.iter().enumerate().map(|(k, (body, place))| (k, *body, &bodies[*body].geoms[*place])).filter(|(.., geom)| geom.collides()).collect();
+    let geoms: Vec<(usize, usize, &super::geometry::Geom<'_>)> = scope
+        .geoms
+        .iter()
+        .enumerate()
+        .map(|(k, (body, place))| (k, *body, &bodies[*body].geoms[*place]))
+        .filter(|(.., geom)| geom.collides())
+        .collect();
     for (k, (i, a, first)) in geoms.iter().enumerate() {
         for (j, b, second) in &geoms[k + 1..] {
             let [one, other] = [fixed_to[*a], fixed_to[*b]];

@@ -15,11 +15,7 @@ fn clipped<S: Scalar>(x: S, most: S) -> S {
 }
 
 /// Two spheres with these centres. In one point, their axes z say what is across.
-pub(super) fn balls<S: Scalar>(
-    [(first, a), (second, b)]: [(Vector3<S>, S); 2],
-    axes: [Vector3<S>; 2],
-    exists: S,
-) -> Touch<S> {
+pub(super) fn balls<S: Scalar>([(first, a), (second, b)]: [(Vector3<S>, S); 2], axes: [Vector3<S>; 2], exists: S) -> Touch<S> {
     let apart = second - first;
     let square = apart.dot(&apart);
     let is_apart = (square - S::from_f64(LEAST * LEAST)).positive();
@@ -78,12 +74,7 @@ pub(super) fn capsules<S: Scalar>(
     let y = clipped(y, one);
     let place = |x: S, y: S, exists: S| balls([(first.position + e * x, a), (second.position + f * y, b)], axes, exists);
     // Parallel: the ends of the first, then those of the second, two at most.
-    let ends = [
-        (one, clipped(y_at(one), one)),
-        (-one, clipped(y_at(-one), one)),
-        (x_at(one), one),
-        (x_at(-one), -one),
-    ];
+    let ends = [(one, clipped(y_at(one), one)), (-one, clipped(y_at(-one), one)), (x_at(one), one), (x_at(-one), -one)];
     let (mut found, mut chosen) = (zero, [(zero, zero, zero); 2]);
     for (x, y) in ends {
         let one_place = place(x, y, one);

@@ -249,7 +249,11 @@ mod tests {
                         for j in 0..dimension {
                             let slope = (after.slope[j] - before.slope[j]) / (2.0 * h);
                             let at_switch = (moved(i, h).curvature[i][j] - moved(i, -h).curvature[i][j]).abs() > 1.0;
-                            assert!(at_switch || (slope - cost.curvature[i][j]).abs() < 2e-2, "{cone:?} {u:?} {i} {j}: {slope} {}", cost.curvature[i][j]);
+                            assert!(
+                                at_switch || (slope - cost.curvature[i][j]).abs() < 2e-2,
+                                "{cone:?} {u:?} {i} {j}: {slope} {}",
+                                cost.curvature[i][j]
+                            );
                         }
                     }
                 }

@@ -24,7 +24,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 pub use contact::MOST_ROWS;
-pub(crate) use newton::{constrained, Smooth};
+pub(crate) use newton::{Smooth, constrained};
 pub use soft::{Impedance, Soft};
 pub use weights::{Weights, weights};
 

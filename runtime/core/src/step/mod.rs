@@ -42,7 +42,8 @@ pub const CTRL: Argument = Argument::new(&Port::new("ctrl", &[Dim::Controls], "c
 
 /// The acceleration with which a search of the one with constraints begins: that of the last step,
 /// or zeros. It does not change the result but for roundings.
-pub const WARM: Argument = Argument::new(&Port::new("warm", &[Dim::Nv], "rad/s²|m/s², where the search begins: `warm_next` of the last step, or 0"));
+pub const WARM: Argument =
+    Argument::new(&Port::new("warm", &[Dim::Nv], "rad/s²|m/s², where the search begins: `warm_next` of the last step, or 0"));
 
 const TAKES: &[Argument] = &[Argument::Q, Argument::V, Argument::Tau, H];
 const GIVES: &[Port] = &[Q_NEXT, V_NEXT];
