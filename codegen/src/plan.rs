@@ -313,7 +313,10 @@ pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], f
 #[must_use]
 pub fn undefined(findings: &Diagnostics) -> Option<&str> {
     let lacks = |d: &Diagnostic| {
-        matches!(d.code, Code::SingularMassMatrix | Code::NoMass | Code::NoActuators | Code::BoundFrames | Code::TooMuchCode)
+        matches!(
+            d.code,
+            Code::SingularMassMatrix | Code::NoMass | Code::NoActuators | Code::NoConstraints | Code::BoundFrames | Code::TooMuchCode
+        )
     };
     findings.errors.first().filter(|_| findings.errors.iter().all(lacks)).map(|first| first.found.as_str())
 }

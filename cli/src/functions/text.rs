@@ -7,7 +7,7 @@ use crate::shape;
 use crate::table::{Table, freedom, plain};
 use articulated_codegen::function_groups::Group;
 use articulated_core::algorithm::Argument;
-use articulated_core::step::{ACT, CTRL, H, QPOS, QVEL};
+use articulated_core::step::{ACT, CTRL, H, QPOS, QVEL, WARM};
 
 pub(super) fn text(report: &Report) -> String {
     let mut out =
@@ -62,7 +62,7 @@ pub(super) fn markdown(report: &Report) -> String {
         let _ = writeln!(out, "* {}: {} base, {}; tips {}", r.robot, r.base, freedom(r.degrees_of_freedom), frames.join(", "));
     }
     out += ARGUMENTS;
-    for argument in Argument::ALL.into_iter().chain([H, ACT, CTRL, QPOS, QVEL, Argument::SinCos]) {
+    for argument in Argument::ALL.into_iter().chain([H, ACT, CTRL, WARM, QPOS, QVEL, Argument::SinCos]) {
         let asked = if argument == Argument::SinCos {
             "; behind the others and before `parameters`, where a function is asked for with `q = sin_cos`"
         } else {
