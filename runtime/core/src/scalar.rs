@@ -131,6 +131,16 @@ pub trait Scalar:
     }
 }
 
+/// 1 where the mask holds, else 0.
+pub(crate) fn flag<S: Scalar>(mask: S::Mask) -> S {
+    S::select(mask, S::one(), S::zero())
+}
+
+/// The greater of two numbers.
+pub(crate) fn greater<S: Scalar>(a: S, b: S) -> S {
+    S::select((a - b).positive(), a, b)
+}
+
 /// 2^n, of −1022 or more and 1023 or less; of a lesser n that of −1022.
 pub(crate) const fn two_to(n: i32) -> f64 {
     let n = if n < -1022 { -1022 } else { n };

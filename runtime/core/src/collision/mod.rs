@@ -13,8 +13,8 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use crate::Scalar;
-use crate::constraint::flag;
 use crate::index::BodyId;
+use crate::scalar::flag;
 use crate::spatial::{Matrix3, Placement, Vector3};
 
 /// A shape of a body.

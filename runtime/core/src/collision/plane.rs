@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::{Placed, Touch};
 use crate::Scalar;
-use crate::constraint::flag;
+use crate::scalar::flag;
 use crate::spatial::Vector3;
 
 /// The squared length below which an axis is along the normal, as in MuJoCo.

@@ -2,7 +2,7 @@
 
 use super::{Placed, Touch};
 use crate::Scalar;
-use crate::constraint::flag;
+use crate::scalar::flag;
 use crate::spatial::Vector3;
 
 /// The least length and determinant, as in MuJoCo.

@@ -3,7 +3,7 @@
 use super::round::balls;
 use super::{Placed, Touch};
 use crate::Scalar;
-use crate::constraint::flag;
+use crate::scalar::flag;
 use crate::spatial::{Vector3, rotate, rotate_back};
 
 /// The side, a cap or the rim, whichever is next.

@@ -13,9 +13,10 @@
 
 use alloc::vec::Vec;
 
-use super::{Cone, Pair, flag};
+use super::{Cone, Pair};
 use crate::Scalar;
 use crate::collision::Touch;
+use crate::scalar::flag;
 use crate::spatial::{Twist, Vector3, Wrench};
 
 /// No contact has more rows.

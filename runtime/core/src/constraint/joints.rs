@@ -7,9 +7,10 @@
 
 use alloc::vec::Vec;
 
-use super::{Bound, Constraints, DryFriction, Limit, flag};
+use super::{Bound, Constraints, DryFriction, Limit};
 use crate::Scalar;
 use crate::algorithm::manifold::{quaternion, three};
+use crate::scalar::flag;
 use crate::spatial::Vector3;
 
 /// A row of J that has few entries.

@@ -178,13 +178,3 @@ impl<S: Scalar> Pair<S> {
         }
     }
 }
-
-/// 1 where the mask holds, else 0.
-pub(crate) fn flag<S: Scalar>(mask: S::Mask) -> S {
-    S::select(mask, S::one(), S::zero())
-}
-
-/// The greater of two numbers.
-pub(crate) fn greater<S: Scalar>(a: S, b: S) -> S {
-    S::select((a - b).positive(), a, b)
-}

@@ -16,26 +16,26 @@ use alloc::vec::Vec;
 
 use super::contact::{self, Contact};
 use super::joints::JointRow;
-use super::{Cone, Constraints, flag};
+use super::{Cone, Constraints};
 use crate::Scalar;
 use crate::algorithm::ltdl::{factor, path_to_root, solve};
 use crate::algorithm::{Placed as Bodies, Workspace, mass_matrix};
 use crate::collision::{Placed, touches};
 use crate::index::{BodyId, ById};
 use crate::model::Model;
-use crate::scalar::two_to;
+use crate::scalar::{flag, two_to};
 use crate::spatial::{ArticulatedInertia, Matrix3, Placement, Twist, Vector3, Wrench};
 
 /// Largest number of steps of Newton's method.
 const MOST: usize = 50;
 /// Largest number of steps of a line search.
 const MOST_ON_A_LINE: usize = 40;
-/// Powers of two, of `f64` and of `f32`: the slope on a line that ends its search, as a part of that
-/// at its start, and a change of α that is none.
+/// Powers of two, of `f64` and of `f32`: the slope on a line that ends its search, as a part of
+/// that at its start, and a change of α that is none.
 const LINE: [i32; 2] = [-30, -10];
 const STILL: [i32; 2] = [-50, -20];
-/// The same: a gradient in parts of its terms that ends the iteration, and one that ends it if it no
-/// longer falls.
+/// The same: a gradient in parts of its terms that ends the iteration, and one that ends it if it
+/// no longer falls.
 const SETTLED: [i32; 2] = [-49, -16];
 const SMALL: [i32; 2] = [-30, -10];
 

@@ -8,7 +8,7 @@
 //! Source: MuJoCo documentation, Modeling: solver parameters.
 
 use crate::Scalar;
-use crate::constraint::greater;
+use crate::scalar::greater;
 
 /// The smallest number that divides, as in MuJoCo.
 const LEAST: f64 = 1e-15;

@@ -32,7 +32,8 @@ impl<S: Scalar> State<S> {
 /// Steps a state in place. `inputs` has what is held during each step: the torques `[nv]`, or the
 /// controls `[nu]` of a step with actuators. `see(k, state)` is called after step k.
 ///
-/// `method` is a row of [`super::steps`], or a step of [`super::of_actuators`] or [`super::of_constraints`]; h in s.
+/// `method` is a row of [`super::steps`], or a step of [`super::of_actuators`] or
+/// [`super::of_constraints`]; h in s.
 ///
 /// # Errors
 /// Vectors of another length than the model says, another robot's workspace, and another function.
