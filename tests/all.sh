@@ -91,6 +91,7 @@ oracles() {
     step python3 tests/mjcf/coming_from.py
     step python3 tests/mjcf/steps.py --file tests/mjcf/models/{steps,actuated,surroundings,drone}.xml
     step python3 tests/mjcf/speed.py --check
+    step python3 tests/mjcf/contact.py --check
     step python3 tests/sdf/oracle.py --sample
     step python3 tests/xacro/oracle.py --sample
 }

@@ -132,11 +132,13 @@ pub trait Scalar:
 }
 
 /// 1 where the mask holds, else 0.
+#[cfg(feature = "alloc")]
 pub(crate) fn flag<S: Scalar>(mask: S::Mask) -> S {
     S::select(mask, S::one(), S::zero())
 }
 
 /// The greater of two numbers.
+#[cfg(feature = "alloc")]
 pub(crate) fn greater<S: Scalar>(a: S, b: S) -> S {
     S::select((a - b).positive(), a, b)
 }

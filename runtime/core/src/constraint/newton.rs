@@ -516,3 +516,83 @@ fn of_triangle<S: Scalar>(k: &[S; 21]) -> ArticulatedInertia<S> {
         linear: symmetric([15, 16, 17, 18, 19, 20]),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::collision::{Form, Shape};
+    use crate::constraint::{Bound, DryFriction, Limit, Pair, Soft};
+    use crate::description::{Base, Description, Inertial, Joint, JointKind, Link, LinkId, Origin};
+
+    const MASS: f64 = 2.0;
+
+    /// A ball of radius 0.1 m on a slide along z.
+    fn ball(constraints: Constraints) -> Model<f64> {
+        let link = |name: &str| Link { name: name.into(), ..Link::default() };
+        let inertial = Inertial { origin: Origin::default(), mass: MASS, inertia: [1.0, 0.0, 0.0, 1.0, 0.0, 1.0] };
+        let heavy = Link { inertial: Some(inertial), ..link("ball") };
+        let joint = Joint {
+            name: "z".into(),
+            kind: JointKind::Prismatic,
+            parent: LinkId(0),
+            child: LinkId(1),
+            axis: [0.0, 0.0, 1.0],
+            ..Joint::default()
+        };
+        let robot = Description { name: "r".into(), links: [link("floor"), heavy].into(), joints: [joint].into(), frames: Vec::new() };
+        Model::new(&robot, Base::Fixed).expect("a model").with_constraints(constraints)
+    }
+
+    fn solved(model: &Model<f64>, q: f64, v: f64, a: f64) -> f64 {
+        let smooth = Smooth { q: &[q], v: &[v], a: &[a], warm: &[] };
+        constrained(model, &mut Workspace::new(model), &smooth).0[0]
+    }
+
+    fn soft() -> Soft {
+        Soft::of([0.02, 1.0], [0.9, 0.9, 0.001, 0.5, 2.0], None).expect("a constant impedance")
+    }
+
+    /// k and b of this impedance.
+    const K: f64 = 1.0 / (0.9 * 0.9 * 0.02 * 0.02);
+    const B: f64 = 2.0 / (0.9 * 0.02);
+
+    /// With one row, a = (1 − d) a₀ + d r where that pushes.
+    #[test]
+    fn a_contact_and_a_limit_are_those_of_the_closed_form() {
+        let floor = Shape { name: "floor".into(), body: BodyId::BASE, placement: Placement::identity(), form: Form::Plane };
+        let shape = Shape { name: "ball".into(), body: BodyId(1), placement: Placement::identity(), form: Form::Sphere { radius: 0.1 } };
+        let pair = Pair {
+            shapes: [0, 1],
+            dimension: 1,
+            friction: [1.0; 5],
+            mu: 1.0,
+            margin: 0.0,
+            soft: soft(),
+            tangential_damping: B,
+            weight: 1.0 / MASS,
+        };
+        let touching = ball(Constraints { shapes: [floor, shape].into(), pairs: [pair].into(), ..Constraints::default() });
+        let limit = Limit { q: 0, v: 0, bound: Bound::Between([0.1, 9.0]), margin: 0.0, soft: soft(), weight: 1.0 / MASS };
+        let limited = ball(Constraints { limits: [limit].into(), ..Constraints::default() });
+        for (q, v) in [(0.095, 0.0), (0.095, -1.0), (0.099, 0.3), (0.0999, 2.0)] {
+            let (a, r) = (-9.81, -B * v - K * 0.9 * (q - 0.1));
+            let expected = if r > a { 0.1 * a + 0.9 * r } else { a };
+            for model in [&touching, &limited] {
+                let found = solved(model, q, v, a);
+                assert!((found - expected).abs() < 1e-12 * expected.abs(), "{q} {v}: {found} {expected}");
+            }
+        }
+        // Not in contact
+        assert_eq!((solved(&touching, 0.11, -1.0, -9.81), solved(&limited, 0.11, -1.0, -9.81)), (-9.81, -9.81));
+    }
+
+    /// It holds what is weaker than it, and slows what is stronger.
+    #[test]
+    fn dry_friction_has_a_greatest_force() {
+        let friction = DryFriction { v: 0, loss: 3.0, soft: soft(), weight: 1.0 / MASS };
+        let model = ball(Constraints { friction: [friction].into(), ..Constraints::default() });
+        assert!((solved(&model, 0.0, 0.0, 1.0) - 0.1).abs() < 1e-14);
+        assert!((solved(&model, 0.0, 0.0, -8.0) - (-8.0 + 3.0 / MASS)).abs() < 1e-14);
+        assert!((solved(&model, 0.0, 5.0, 8.0) - (8.0 - 3.0 / MASS)).abs() < 1e-14);
+    }
+}

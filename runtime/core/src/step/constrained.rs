@@ -51,7 +51,7 @@ impl<S: Scalar> Steps<S> {
         unit: "rad/s²|m/s²",
         group: Group::Constraints,
         needs: Needs::MassMatrix,
-        regrouped: true,
+        regrouped: false,
         contains: &[FunctionId::forward_dynamics_with_wrenches],
         ways: &[
             Variant {

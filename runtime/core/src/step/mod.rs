@@ -187,7 +187,8 @@ macro_rules! steps {
                 unit: "",
                 group: Group::$group,
                 needs: Needs::MassMatrix,
-                regrouped: true,
+                // Passes of models move frames of bodies, and not the shapes in them.
+                regrouped: !matches!(Group::$group, Group::Constraints),
                 contains: &[$(FunctionId::$contains),*],
                 ways: &[
                     Variant {
