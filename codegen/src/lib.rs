@@ -182,7 +182,7 @@ pub fn generate(request: &Request) -> Result<Generated, Diagnostics> {
         ledger.functions.push(program.entry.clone());
         programs.push(program);
     }
-    warnings.extend(ledger.functions.iter().filter_map(|entry| long_code(&request.file, entry)));
+    warnings.extend(programs.iter().filter_map(|program| long_code(&request.file, program)));
     let functions = programs.iter().map(|p| lir::function::Function::of(p, model.shape(), !parameters.is_empty(), can)).collect();
     let module = language::Module {
         request,
@@ -206,8 +206,10 @@ pub fn generate(request: &Request) -> Result<Generated, Diagnostics> {
 const LONG: u64 = 400_000;
 
 /// The warning about such a function.
-fn long_code(file: &str, entry: &ledger::Entry) -> Option<Diagnostic> {
-    let instructions = entry.emitted().instructions();
+fn long_code(file: &str, program: &program::Program) -> Option<Diagnostic> {
+    let (entry, graph) = (&program.entry, &program.graph);
+    // The text of a loop is there once.
+    let instructions = if graph.has_regions() { graph.written() } else { entry.emitted().instructions() };
     let found = format!("{instructions} instructions, for which a compiler takes minutes");
     let expected = "the library's function of the same name, a loop over the joints, for a robot like this";
     let warning = || Diagnostic::error(file, (Default::default(), &entry.function), Code::LongCode, found, expected).into_warning();

@@ -265,6 +265,13 @@ impl Graph {
         self
     }
 
+    /// The number of operations as they are written: those of a region once.
+    pub(crate) fn written(&self) -> u64 {
+        let own = self.nodes().iter().filter(|node| !matches!(node.op, Op::List | Op::Region | Op::RegionValue)).count();
+        let regions = self.nodes().iter().filter(|node| node.op == Op::Region).map(|node| self.region_of(node));
+        own as u64 + regions.map(|region| region.body.written()).sum::<u64>()
+    }
+
     /// The operations of the regions, at their bounds.
     pub(super) fn count_regions(&self, counts: &mut Counts) {
         for region in self.nodes().iter().filter(|node| node.op == Op::Region).map(|node| self.region_of(node)) {

@@ -6,6 +6,7 @@ mod balls;
 mod batches;
 mod c;
 mod choices;
+mod constrained_steps;
 mod derivatives;
 mod effects;
 mod equals_generic;

@@ -1,0 +1,107 @@
+//! Steps with limits, dry friction and contacts: generated code against the library, which
+//! tests/mjcf/contact.py compares with MuJoCo, and their derivatives.
+
+use articulated_codegen::lir::interpret::interpret;
+use articulated_codegen::{Generated, Options, Request, generate};
+use articulated_core::algorithm::Workspace;
+use articulated_core::model::Model;
+use articulated_core::step::{of_constraints, step};
+use articulated_tests::random::Random;
+
+/// Two legs under a trunk that floats: contacts with the floor and of the legs, limits, friction.
+const STANDING: &str = include_str!("../../mjcf/models/standing.xml");
+/// A ball that rolls and slides on a floor.
+const BALL: &str = "<mujoco><option cone='elliptic'/><worldbody><geom type='plane' size='1 1 1'/>\
+    <body><freejoint/><geom size='0.1' friction='0.4' condim='4'/></body></worldbody></mujoco>";
+const NAMES: [&str; 2] = ["constrained_acceleration", "constrained_step_implicit_damping"];
+/// q, v, act, ctrl, warm, h.
+type Given = [Vec<f64>; 6];
+
+fn generated(text: &str, functions: &[&str]) -> Generated {
+    let mut request = Request::new("standing.xml", text);
+    request.options = Options { functions: functions.iter().map(|f| (*f).into()).collect(), ..Options::default() };
+    generate(&request).unwrap()
+}
+
+/// States at this height, most of them in contact, and one in the air.
+fn given(model: &Model<f64>, height: f64, count: usize) -> Vec<Given> {
+    let mut random = Random::new(5);
+    let mut state = |k: usize| {
+        let mut q = model.neutral();
+        let tilt = random.vector(3, -0.05, 0.05);
+        q[2] = if k == 0 { 2.0 } else { height };
+        q[3..6].copy_from_slice(&tilt);
+        q[6] = (1.0 - tilt.iter().map(|x| x * x).sum::<f64>()).sqrt();
+        let rest = q.len() - 7;
+        q[7..].copy_from_slice(&random.vector(rest, -0.5, 0.5));
+        let (nv, nu) = (model.nv(), model.actuators().laws.len());
+        [q, random.vector(nv, -0.5, 0.5), Vec::new(), random.vector(nu, -1.0, 1.0), vec![0.0; nv], vec![2e-3]]
+    };
+    (0..count).map(&mut state).collect()
+}
+
+fn called(name: &str, model: &Model<f64>, given: &Given) -> Vec<f64> {
+    let row = step(name).unwrap();
+    let all: Vec<&[f64]> = given.iter().map(Vec::as_slice).collect();
+    let is_step = row.takes.len() == 6;
+    let mut out = vec![0.0; if is_step { model.nq() + 2 * model.nv() } else { model.nv() }];
+    row.call(model, &mut Workspace::new(model), &all[..row.takes.len()], &mut out).unwrap();
+    out
+}
+
+fn assert_close(what: &str, found: &[f64], expected: &[f64], bound: f64) {
+    let scale = expected.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
+    let far = found.iter().zip(expected).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+    assert!(found.len() == expected.len() && far <= bound * scale, "{what}: {far:e} of {scale:e}");
+}
+
+#[test]
+fn generated_steps_are_those_of_the_library() {
+    assert!(NAMES.iter().all(|name| of_constraints::<f64>().iter().any(|row| row.name == *name)));
+    let generated = generated(STANDING, &NAMES);
+    let model = &generated.model;
+    let mut pushes = 0;
+    for (k, name) in NAMES.iter().enumerate() {
+        for given in given(model, 0.44, 6) {
+            let (expected, input) = (called(name, model, &given), |argument: usize, k: usize| given[argument][k]);
+            assert_close(name, &generated.graphs[k].evaluate(input), &expected, 1e-9);
+            for (_, body) in generated.bodies[k].all() {
+                assert_close(name, &interpret(body, input), &expected, 1e-9);
+            }
+            // In the air the trunk falls freely; on the floor it does not.
+            pushes += usize::from(k == 0 && expected[5] > 0.0);
+        }
+    }
+    assert!(pushes >= 2, "some states are in contact");
+}
+
+/// Derivatives are those of the optimum.
+#[test]
+fn derivatives_are_those_of_differences() {
+    let generated = generated(BALL, &["slope = jacobian(constrained_acceleration, v)"]);
+    let (model, h) = (&generated.model, 1e-7);
+    let n = model.nv();
+    let mut compared = 0;
+    for given in given(model, 0.095, 8) {
+        let at = |k: usize, by: f64| {
+            let mut moved = given.clone();
+            moved[1][k] += by;
+            called(NAMES[0], model, &moved)
+        };
+        let jacobian = generated.graphs[0].evaluate(|argument, k| given[argument][k]);
+        for k in 0..n {
+            let [near, far] = [h, 2.0 * h].map(|h| {
+                let (after, before) = (at(k, h), at(k, -h));
+                after.iter().zip(before).map(|(a, b)| (a - b) / (2.0 * h)).collect::<Vec<f64>>()
+            });
+            // Not across a switch
+            let scale = near.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
+            if near.iter().zip(&far).all(|(a, b)| (a - b).abs() < 1e-5 * scale) {
+                let own: Vec<f64> = (0..n).map(|i| jacobian[i * n + k]).collect();
+                assert_close("jacobian", &own, &near, 1e-4);
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 30, "{compared} columns were compared");
+}
