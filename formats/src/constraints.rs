@@ -12,6 +12,9 @@ use articulated_core::spatial::{Placement, Vector3};
 use crate::LeaveOut;
 use crate::world::{Touching, TouchingPair, Unread, World};
 
+/// Robots with more have no constraints here: their strengths need the inverse of M.
+const MOST_FREEDOMS: usize = 500;
+
 impl World {
     /// Limits, dry friction and contacts of the file on a model of its robot, and what is not
     /// computed of them. Joints that the model does not have, locked ones, have none.
@@ -20,6 +23,15 @@ impl World {
     /// with all its rotors.
     pub fn constraints_of(&self, description: &Description, model: &Model<f64>) -> (Constraints, Vec<Unread>) {
         let Some(touching) = self.touching.as_ref().filter(|_| model.nv() > 0) else { return (Constraints::default(), Vec::new()) };
+        if touching.limits.is_empty() && touching.friction.is_empty() && touching.pairs.is_empty() {
+            return (Constraints::default(), touching.unread.clone());
+        }
+        if model.nv() > MOST_FREEDOMS {
+            let what = format!("constraints of {} degrees of freedom, of which {MOST_FREEDOMS} are computed at most", model.nv());
+            let is_left_out = touching.left_out.contains(&LeaveOut::Constraint);
+            let own = Unread { kind: LeaveOut::Constraint, is_left_out, what, place: At::Nowhere };
+            return (Constraints::default(), [own].into());
+        }
         let rotors = self.rotors(description, model);
         // Of the file alone, whichever effects the model has
         let bare = model.clone().changed(|parts| parts.bodies.iter_mut().for_each(|body| body.effects = Effects::default()));

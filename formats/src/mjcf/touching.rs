@@ -15,8 +15,10 @@ use crate::world::{Touching, TouchingFriction, TouchingLimit, TouchingPair, Touc
 
 /// The least coefficient of friction in MuJoCo.
 const LEAST_FRICTION: f64 = 1e-5;
-/// Maximum number of pairs of shapes.
+/// Maximum number of pairs of shapes, and of those that are examined: functions of constraints are
+/// refused beyond them.
 const MOST_PAIRS: usize = 100_000;
+const MOST_EXAMINED: usize = 20_000_000;
 
 /// What touches. `links`: the name of the link of each body.
 pub(crate) fn touching(
@@ -137,7 +139,11 @@ fn contacts(scope: &mut Scope<'_>, links: &[&str], parents_touch: bool, all: &mu
         own.sort_by_key(|(order, _)| *order);
         own.into_iter().map(|(_, pair)| pair).collect()
     };
-    automatic(scope, (&explicit, &excluded), parents_touch, &mut chosen, log);
+    if !automatic(scope, (&explicit, &excluded), parents_touch, &mut chosen) {
+        let what = format!("very many pairs of geoms, of which {MOST_PAIRS} are computed at most");
+        all.unread.push(Unread { kind: LeaveOut::Contact, is_left_out: false, what, place: Default::default() });
+        chosen.clear();
+    }
     keep(scope, links, chosen, all);
 }
 
@@ -164,15 +170,14 @@ fn surface(scope: &Scope<'_>, shape: usize) -> super::contact::Surface {
     scope.tree.bodies[body].geoms[place].surface
 }
 
-/// The pairs that masks and the tree allow.
+/// The pairs that masks and the tree allow; whether they are not too many.
 fn automatic(
     scope: &Scope<'_>,
     (explicit, excluded): (&BTreeSet<[usize; 2]>, &BTreeSet<[usize; 2]>),
     parents_touch: bool,
     chosen: &mut Vec<TouchingPair>,
-    log: &mut Diagnostics,
-) {
-    let bodies = &scope.tree.bodies;
+) -> bool {
+    let (bodies, mut examined) = (&scope.tree.bodies, 0);
     // The body that each one is fixed to, and the parent of that one, fixed to another
     let mut fixed_to: Vec<usize> = Vec::with_capacity(bodies.len());
     for (index, body) in bodies.iter().enumerate() {
@@ -187,17 +192,16 @@ fn automatic(
         .filter(|(.., geom)| geom.collides())
         .collect();
     for (k, (i, a, first)) in geoms.iter().enumerate() {
+        examined += geoms.len() - k;
+        if examined > MOST_EXAMINED || chosen.len() > MOST_PAIRS {
+            return false;
+        }
         for (j, b, second) in &geoms[k + 1..] {
             let [one, other] = [fixed_to[*a], fixed_to[*b]];
             let is_parent = one != 0 && other != 0 && (one == above(*b) || other == above(*a));
             let is_out = one == other || (is_parent && !parents_touch) || excluded.contains(&[*a.min(b), *a.max(b)]);
             if is_out || explicit.contains(&[*i, *j]) || !first.mask.meets(second.mask) {
                 continue;
-            }
-            if chosen.len() >= MOST_PAIRS {
-                let expected = format!("at most {MOST_PAIRS} pairs of geoms that make contact");
-                second.element.error((&Subject::Document, ""), Code::TooLarge, "very many pairs of geoms", expected, log);
-                return;
             }
             let Both { dimension, friction: [slide, turn, roll], reference, impedance } = first.surface.with(&second.surface);
             chosen.push(TouchingPair {
@@ -211,6 +215,7 @@ fn automatic(
             });
         }
     }
+    true
 }
 
 /// Keeps the shapes that are in a pair.
