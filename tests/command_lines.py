@@ -24,7 +24,7 @@ PAGES = [REPOSITORY / "README.md", REPOSITORY / "python/README.md", *sorted((REP
 QUICK = ("check", "eval", "functions", "generate", "effects", "simulate", "new")
 SLOW = ("--time", "--generated", "--against", "--all", "--package")
 
-MODEL = """<mujoco><compiler angle="radian"/><option gravity="0 0 -9.81"/><worldbody><body name="arm"><joint name="hinge" type="hinge" axis="0 1 0"/>
+MODEL = """<mujoco><compiler angle="radian"/><option gravity="0 0 -9.81"/><worldbody><body name="arm"><joint name="hinge" type="hinge" axis="0 1 0" range="-1 1"/>
 <geom type="capsule" size="0.05 0.3" pos="0 0 -0.3"/></body></worldbody><actuator><motor name="lift" joint="hinge"/></actuator>
 <keyframe><key name="stand" qpos="0.3" ctrl="0.2"/></keyframe></mujoco>"""
 SDF = """<sdf version="1.9"><model name="arm"><link name="base"/><link name="fore"><inertial><mass>1</mass></inertial></link>
