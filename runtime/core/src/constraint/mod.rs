@@ -10,7 +10,7 @@
 //! constraint is soft: r pulls its violation back like a spring with a damper, and it gives way by
 //! an impedance.
 //!
-//! A file of this folder is a law, but [`newton`], which finds the minimum. Shapes that touch are
+//! A file of this folder is a law, but `newton`, which finds the minimum. Shapes that touch are
 //! in [`crate::collision`]. Source: MuJoCo documentation, Computation: constraint model; Todorov,
 //! ICRA 2014.
 
