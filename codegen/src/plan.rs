@@ -93,12 +93,12 @@ pub fn unread_constraints(file: &str, robot: &BuiltRobot, log: &mut Diagnostics)
     let mut unread = world.constraints_of(description, &robot.model).1;
     let place = At::Nowhere;
     let of_loop = |own: &Loop| format!("{} {}", own.kind, quote(&own.name));
-    unread.extend(world.loops.iter().map(|own| Unread { kind: LeaveOut::Constraint, is_left_out: false, what: of_loop(own), place }));
+    unread.extend(world.loops.iter().map(|own| Unread { kind: LeaveOut::Constraint, what: of_loop(own), place }));
     let is_kept =
         |coupling: &Coupling| !robot.model.bodies().iter().any(|body| body.name == coupling.joint && body.coordinates.mimic.is_some());
     let couplings = world.couplings.iter().map(|(coupling, _)| coupling).filter(|coupling| is_kept(coupling));
     let of_coupling = |own: &Coupling| format!("the equation of joint {} (`--coupling file` makes it follow)", quote(&own.joint));
-    unread.extend(couplings.map(|own| Unread { kind: LeaveOut::Constraint, is_left_out: false, what: of_coupling(own), place }));
+    unread.extend(couplings.map(|own| Unread { kind: LeaveOut::Constraint, what: of_coupling(own), place }));
     let left_out = world.touching.as_ref().map(|touching| touching.left_out.clone()).unwrap_or_default();
     let mut warnings = Vec::new();
     // One finding for each kind: a file may have thousands of pairs.

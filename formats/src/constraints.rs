@@ -28,9 +28,7 @@ impl World {
         }
         if model.nv() > MOST_FREEDOMS {
             let what = format!("constraints of {} degrees of freedom, of which {MOST_FREEDOMS} are computed at most", model.nv());
-            let is_left_out = touching.left_out.contains(&LeaveOut::Constraint);
-            let own = Unread { kind: LeaveOut::Constraint, is_left_out, what, place: At::Nowhere };
-            return (Constraints::default(), [own].into());
+            return (Constraints::default(), [Unread { kind: LeaveOut::Constraint, what, place: At::Nowhere }].into());
         }
         let rotors = self.rotors(description, model);
         // Of the file alone, whichever effects the model has
@@ -171,8 +169,7 @@ impl Made<'_> {
     }
 
     fn lost(&mut self, kind: LeaveOut, what: String, place: At) {
-        let is_left_out = self.touching.left_out.contains(&kind);
-        self.unread.push(Unread { kind, is_left_out, what, place });
+        self.unread.push(Unread { kind, what, place });
     }
 
     /// A constraint of a joint that follows others is not computed.

@@ -98,8 +98,6 @@ pub struct Touching {
 pub struct Unread {
     /// The word that leaves it out.
     pub kind: LeaveOut,
-    /// Whether the options do.
-    pub is_left_out: bool,
     /// What it is.
     pub what: String,
     /// Place in the file.

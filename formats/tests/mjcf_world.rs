@@ -506,3 +506,18 @@ fn attached_models_and_copies_bring_their_actuators() {
     let q: Vec<(&str, f64)> = found.keyframes[1].q.iter().map(|(name, q)| (name.as_str(), q[0])).collect();
     assert_eq!(q, [("r-0", 0.0), ("r-1", 0.0), ("l_a", 5.0), ("l_b", 6.0), ("p_b", 0.0)]);
 }
+
+/// A pair has MuJoCo's defaults, not the numbers of its geoms; tendons with limits are listed.
+#[test]
+fn pairs_have_defaults_of_their_own() {
+    let text = "<mujoco><worldbody><geom name='a' size='0.1' condim='1' solref='0.03 1' margin='0.01'/>\
+        <body><joint name='j'/><geom name='b' size='0.1' friction='0.4'/></body></worldbody>\
+        <contact><pair geom1='b' geom2='a' friction='0.7'/></contact>\
+        <tendon><fixed name='t' limited='true' range='0 1'><joint joint='j' coef='1'/></fixed></tendon></mujoco>";
+    let touching = accepted(text).world.touching.unwrap();
+    let [pair] = &touching.pairs[..] else { panic!("{:?}", touching.pairs) };
+    assert_eq!((pair.dimension, pair.reference, pair.margin), (3, [0.02, 1.0], 0.0));
+    assert_eq!(pair.friction, [0.7, 1.0, 0.005, 0.0001, 0.0001]);
+    let what: Vec<&str> = touching.unread.iter().map(|own| own.what.as_str()).collect();
+    assert_eq!(what, ["limits of the tendon t"]);
+}

@@ -9,7 +9,9 @@ use super::values::Values;
 pub(crate) const REFERENCE: [f64; 2] = [0.02, 1.0];
 pub(crate) const IMPEDANCE: [f64; 5] = [0.9, 0.95, 0.001, 0.5, 2.0];
 /// Its defaults of friction: sliding, torsion, rolling.
-const FRICTION: [f64; 3] = [1.0, 0.005, 0.0001];
+pub(crate) const FRICTION: [f64; 3] = [1.0, 0.005, 0.0001];
+/// Its default of `condim`.
+pub(crate) const DIMENSION: i64 = 3;
 /// Numbers of `solmix` below this one are zero.
 const LEAST_MIX: f64 = 1e-15;
 
@@ -48,7 +50,7 @@ pub(crate) fn dimension(values: &Values<'_>, log: &mut Diagnostics) -> Option<i6
 impl Surface {
     pub(crate) fn of(values: &Values<'_>, log: &mut Diagnostics) -> Self {
         Self {
-            dimension: dimension(values, log).unwrap_or(3),
+            dimension: dimension(values, log).unwrap_or(DIMENSION),
             priority: values.integer("priority", log).unwrap_or(0),
             friction: values.at_most("friction", FRICTION, log),
             mix: values.number("solmix", log).unwrap_or(1.0),

@@ -19,6 +19,8 @@ pub(crate) struct Tendon {
     /// Bound or not, m.
     pub(crate) range: [f64; 2],
     pub(crate) armature: f64,
+    /// Its constraint, which is not computed.
+    pub(crate) constraint: Option<&'static str>,
 }
 
 const LIMITED: &str = "forces of the spring and the damper alone: its limits do not bound the motion";
@@ -41,7 +43,13 @@ pub(crate) fn tendons(scope: &mut Scope<'_>, flags: Flags, passive: &mut Vec<Act
             let full = scope.full(index, element);
             scope.add(Sort::Tendon, element, full.as_ref(), (all.len(), index));
             let name = full.unwrap_or_else(|| format!("tendon_{}", all.len()));
-            let tendon = Tendon { name, terms: own.terms(scope, &found, log), range: own.range, armature: own.armature };
+            let tendon = Tendon {
+                name,
+                terms: own.terms(scope, &found, log),
+                range: own.range,
+                armature: own.armature,
+                constraint: own.constraint(),
+            };
             own.force(&tendon, scope, passive, log);
             all.push(tendon);
         }
@@ -140,6 +148,14 @@ impl<'a> Own<'a> {
         }
         self.is_limited &= !flags.no_limit;
         self
+    }
+
+    fn constraint(&self) -> Option<&'static str> {
+        match (self.is_limited, self.friction != 0.0) {
+            (true, _) => Some("limits"),
+            (false, true) => Some("dry friction"),
+            (false, false) => None,
+        }
     }
 
     fn has_higher_terms(&self) -> bool {

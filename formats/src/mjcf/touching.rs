@@ -5,10 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use articulated_core::diagnostic::{Code, Diagnostics, Subject};
 
 use super::bodies::Kind;
-use super::contact::{Both, dimension};
+use super::contact::{Both, DIMENSION, FRICTION, IMPEDANCE, REFERENCE, dimension};
 use super::mass::Mass;
 use super::scope::{Scope, Sort};
 use super::simulation::Simulation;
+use super::tendons::Tendon;
 use super::values::Values;
 use crate::LeaveOut;
 use crate::world::{Touching, TouchingFriction, TouchingLimit, TouchingPair, TouchingShape, Unread};
@@ -25,7 +26,7 @@ pub(crate) fn touching(
     scope: &mut Scope<'_>,
     inertials: &[Option<Mass>],
     links: &[&str],
-    simulation: &Simulation<'_>,
+    (simulation, tendons): (&Simulation<'_>, &[Tendon]),
     log: &mut Diagnostics,
 ) -> Touching {
     let flags = simulation.flags();
@@ -44,12 +45,14 @@ pub(crate) fn touching(
             names.push(geom.name.clone().unwrap_or_else(|| "without a name".to_owned()));
         }
     }
-    let mut unread =
-        |what: String| all.unread.push(Unread { kind: LeaveOut::Constraint, is_left_out: false, what, place: Default::default() });
+    let mut unread = |what: String| all.unread.push(Unread { kind: LeaveOut::Constraint, what, place: Default::default() });
     if let Some(solver) = simulation.solver.filter(|solver| *solver != "Newton") {
         unread(format!("the solver {solver}: Newton's method is used"));
     }
     names.into_iter().for_each(|name| unread(format!("adhesion or surfacevel of the geom {name}")));
+    for (tendon, what) in tendons.iter().filter_map(|tendon| Some((tendon, tendon.constraint?))) {
+        unread(format!("{what} of the tendon {}", tendon.name));
+    }
     for flag in &simulation.constraint_flags {
         unread(format!("the flag {flag}"));
     }
@@ -130,7 +133,7 @@ fn contacts(scope: &mut Scope<'_>, links: &[&str], parents_touch: bool, all: &mu
             }
             let class = part.settings.classes.find(element, "class", log).unwrap_or(0);
             let values = Values::new(element, part.settings.classes.tags(class, "pair"), &Subject::Document);
-            pairs.insert(both, (pairs.len(), pair(scope, both, &values, log)));
+            pairs.insert(both, (pairs.len(), pair(both, &values, log)));
         }
     }
     let explicit: BTreeSet<[usize; 2]> = pairs.keys().copied().collect();
@@ -141,33 +144,24 @@ fn contacts(scope: &mut Scope<'_>, links: &[&str], parents_touch: bool, all: &mu
     };
     if !automatic(scope, (&explicit, &excluded), parents_touch, &mut chosen) {
         let what = format!("very many pairs of geoms, of which {MOST_PAIRS} are computed at most");
-        all.unread.push(Unread { kind: LeaveOut::Contact, is_left_out: false, what, place: Default::default() });
+        all.unread.push(Unread { kind: LeaveOut::Contact, what, place: Default::default() });
         chosen.clear();
     }
     keep(scope, links, chosen, all);
 }
 
-/// The numbers of a tag `<pair>`; what it does not have comes from both geoms.
-fn pair(scope: &Scope<'_>, shapes: [usize; 2], values: &Values<'_>, log: &mut Diagnostics) -> TouchingPair {
-    let [first, second] = shapes.map(|shape| surface(scope, shape));
-    let Both { dimension: own, friction: [slide, turn, roll], reference, impedance } = first.with(&second);
-    // Without margins of its own the greater of both
-    let margin = values.number("margin", log).unwrap_or(first.margin.max(second.margin));
-    let friction = values.at_most("friction", [slide, slide, turn, roll, roll], log);
+/// The numbers of a tag `<pair>`; what it does not have are MuJoCo's defaults, not those of the geoms.
+fn pair(shapes: [usize; 2], values: &Values<'_>, log: &mut Diagnostics) -> TouchingPair {
+    let [slide, turn, roll] = FRICTION;
     TouchingPair {
         shapes,
-        dimension: dimension(values, log).unwrap_or(own) as usize,
-        friction,
-        reference: values.at_most("solref", reference, log),
+        dimension: dimension(values, log).unwrap_or(DIMENSION) as usize,
+        friction: values.at_most("friction", [slide, slide, turn, roll, roll], log),
+        reference: values.at_most("solref", REFERENCE, log),
         reference_across: values.at_most("solreffriction", [0.0; 2], log),
-        impedance: values.at_most("solimp", impedance, log),
-        margin,
+        impedance: values.at_most("solimp", IMPEDANCE, log),
+        margin: values.number("margin", log).unwrap_or(0.0),
     }
-}
-
-fn surface(scope: &Scope<'_>, shape: usize) -> super::contact::Surface {
-    let (body, place) = scope.geoms[shape];
-    scope.tree.bodies[body].geoms[place].surface
 }
 
 /// The pairs that masks and the tree allow; whether they are not too many.

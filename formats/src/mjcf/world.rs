@@ -56,8 +56,7 @@ pub(crate) fn world(
     spring_dampers(&scope, flags, &mut lowered.description, &armatures, log);
     add_armatures(&scope, &mut lowered.description, armatures.get(tendons.len()..).unwrap_or_default());
     equalities(&mut scope, &tendons, flags.no_equality, &mut world, log);
-    let mut touching = touching::touching(&mut scope, inertials, &links, simulation, log);
-    touching.unread.iter_mut().for_each(|own| own.is_left_out = leave_out.contains(&own.kind));
+    let mut touching = touching::touching(&mut scope, inertials, &links, (simulation, &tendons), log);
     touching.left_out.clone_from(leave_out);
     world.touching = Some(touching);
     states::keyframes(&mut scope, &controls, has_unread_joints, &mut world, log);

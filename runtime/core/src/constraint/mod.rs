@@ -20,7 +20,6 @@ mod newton;
 mod soft;
 mod weights;
 
-use alloc::string::String;
 use alloc::vec::Vec;
 
 pub use contact::MOST_ROWS;
@@ -140,11 +139,6 @@ impl<S: Scalar> Constraints<S> {
             shapes: self.shapes.iter().map(|shape| shape.map(f)).collect(),
             pairs: self.pairs.iter().map(|pair| pair.map(f)).collect(),
         }
-    }
-
-    /// Names of both shapes of a pair.
-    pub fn names_of(&self, pair: &Pair<S>) -> [&String; 2] {
-        pair.shapes.map(|shape| &self.shapes[shape].name)
     }
 }
 
