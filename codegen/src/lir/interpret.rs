@@ -18,6 +18,7 @@ pub fn interpret(body: &Body, input: impl Fn(usize, usize) -> f64) -> Vec<f64> {
         input,
         out: vec![f64::NAN; numbers],
         values: HashMap::new(),
+        columns: HashMap::new(),
         slots: HashMap::new(),
         kept: vec![[f64::NAN; MOST]; body.kept],
     };
@@ -34,6 +35,7 @@ struct Machine<'a, F> {
     input: F,
     out: Vec<f64>,
     values: HashMap<Temp, Value>,
+    columns: HashMap<Temp, Vec<Value>>,
     slots: HashMap<Slot, Value>,
     kept: Vec<Value>,
 }
@@ -84,6 +86,10 @@ impl<F: Fn(usize, usize) -> f64> Machine<'_, F> {
         for (temp, of) in &region.captured {
             self.values.insert(*temp, self.operand(*of));
         }
+        for (name, values) in &region.columns {
+            let column = values.iter().map(|value| self.operand(*value)).collect();
+            self.columns.insert(*name, column);
+        }
         match &region.turns {
             Turns::Until { most, mask, held } => {
                 let ends = (0..*most).any(|_| {
@@ -97,8 +103,11 @@ impl<F: Fn(usize, usize) -> f64> Machine<'_, F> {
                     self.turn(region);
                 }
             }
-            Turns::Each { table, row, results, turns, read, stored, .. } => {
+            Turns::Each { table, row, fixed, results, turns, read, stored, .. } => {
                 for turn in 0..*turns {
+                    for (temp, column) in fixed {
+                        self.values.insert(*temp, self.columns[column][turn]);
+                    }
                     for (k, temp) in row.iter().enumerate() {
                         let place = turn * row.len() + k;
                         let value = match table {

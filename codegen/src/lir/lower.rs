@@ -1,6 +1,7 @@
 //! A graph as statements.
 
 mod regions;
+mod tables;
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 

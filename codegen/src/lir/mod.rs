@@ -258,6 +258,8 @@ pub enum Turns {
         table: Table,
         /// The values of a row in a turn.
         row: Vec<Temp>,
+        /// More values of a row: each with the value of [`Region::columns`] that names its column.
+        fixed: Vec<(Temp, Temp)>,
         /// The results of a turn, operands of the body.
         results: Vec<Operand>,
         /// The number of turns.
@@ -279,6 +281,9 @@ pub struct Region {
     pub carried: Vec<Carried>,
     /// The values of before that its body reads, each with its name there.
     pub captured: Vec<(Temp, Operand)>,
+    /// Columns of tables of regions in its body, which are the same whenever those run: a name, and
+    /// a number for each turn.
+    pub columns: Vec<(Temp, Vec<Operand>)>,
     /// The statements of a turn.
     pub body: Vec<Stmt>,
     /// The values that it defines for the statements after it, each with its value then.
@@ -471,7 +476,8 @@ impl Region {
             Turns::Each { table: Table::Values(values), .. } => values,
             Turns::Each { .. } => &[],
         };
-        self.carried.iter().map(|carried| &carried.start).chain(self.captured.iter().map(|(_, of)| of)).chain(more)
+        let columns = self.columns.iter().flat_map(|(_, values)| values);
+        self.carried.iter().map(|carried| &carried.start).chain(self.captured.iter().map(|(_, of)| of)).chain(columns).chain(more)
     }
 
     fn given_mut(&mut self) -> impl Iterator<Item = &mut Operand> {
@@ -481,7 +487,8 @@ impl Region {
             Turns::Each { table: Table::Values(values), .. } => values,
             Turns::Each { .. } => &mut [],
         };
-        self.carried.iter_mut().map(|carried| &mut carried.start).chain(self.captured.iter_mut().map(|(_, of)| of)).chain(more)
+        let columns = self.columns.iter_mut().flat_map(|(_, values)| values);
+        self.carried.iter_mut().map(|carried| &mut carried.start).chain(self.captured.iter_mut().map(|(_, of)| of)).chain(columns).chain(more)
     }
 
     /// The values that statements after it read.

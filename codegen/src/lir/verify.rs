@@ -1,6 +1,6 @@
 //! Invariants of a body.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use super::{Body, Expr, Operand, Region, Stmt, Table, Temp, Turns};
 use crate::graph::Op;
@@ -40,6 +40,8 @@ pub fn verify(body: &Body) -> Result<(), String> {
 struct Known {
     values: HashSet<Temp>,
     masks: HashSet<Temp>,
+    /// Columns of tables, each with its length.
+    columns: HashMap<Temp, usize>,
     slots: HashSet<super::Slot>,
     kept: HashSet<usize>,
 }
@@ -81,13 +83,17 @@ impl Known {
         let is_where = matches!(region.turns, Turns::Where(_));
         let given: Vec<&Operand> = region.given().collect();
         given[..given.len() - usize::from(is_where)].iter().try_for_each(|operand| self.value(operand))?;
-        let mut known = Self::default();
+        let mut known = Self { columns: self.columns.clone(), ..Self::default() };
+        known.columns.extend(region.columns.iter().map(|(name, values)| (*name, values.len())));
         let mut define = |temp: Temp| if known.values.insert(temp) { Ok(()) } else { Err(format!("{temp:?} is defined twice")) };
         region.carried.iter().map(|c| c.temp).chain(region.captured.iter().map(|(temp, _)| *temp)).try_for_each(&mut define)?;
         match &region.turns {
             Turns::Where(mask) if !self.is_mask(mask) => return Err("it runs where no mask holds".to_owned()),
-            Turns::Each { row, table, turns, .. } => {
-                row.iter().copied().try_for_each(&mut define)?;
+            Turns::Each { row, fixed, table, turns, .. } => {
+                row.iter().copied().chain(fixed.iter().map(|(temp, _)| *temp)).try_for_each(&mut define)?;
+                if let Some((_, column)) = fixed.iter().find(|(_, column)| self.columns.get(column) != Some(turns)) {
+                    return Err(format!("no column {column:?} for {turns} rows"));
+                }
                 if let Table::Values(values) = table
                     && values.len() != turns * row.len()
                 {

@@ -31,7 +31,9 @@ pub fn sink_into_reduction(graph: &Graph) -> Graph {
             Some(sum)
         })
         .collect();
-    dce(&Rebuild::graph(graph, &gone, |rebuild, k| sums[k].as_ref().map(|sum| sum.built(rebuild))))
+    let new = dce(&Rebuild::graph(graph, &gone, |rebuild, k| sums[k].as_ref().map(|sum| sum.built(rebuild))));
+    // A negated value with other uses can need a negation more.
+    if cost(&new) > cost(graph) { graph.clone() } else { new }
 }
 
 /// Whether each node has the same value in all lanes.
@@ -129,6 +131,19 @@ mod tests {
         let reduction = g.apply(Op::ReduceAdd, &[x]);
         let difference = g.apply(Op::Sub, &[product, reduction]);
         assert!(ends_in_a_sum_over_lanes(&passed(g, &[difference])));
+    }
+
+    #[test]
+    fn a_negated_value_with_other_uses_stays_where_it_would_be_negated_twice() {
+        let mut g = Graph::in_lanes(4);
+        let [x, _, product] = leaves(&mut g);
+        let z = g.lane_input(0, &[1, 0, 3, 2]);
+        let sum = g.apply(Op::Add, &[x, z]);
+        let negative = g.apply(Op::Neg, &[sum]);
+        let reduction = g.apply(Op::ReduceAdd, &[negative]);
+        let difference = g.apply(Op::Sub, &[reduction, product]);
+        let other = g.apply(Op::Broadcast, &[negative]);
+        passed(g, &[difference, other]);
     }
 
     #[test]

@@ -12,6 +12,10 @@ impl Printer<'_> {
         for Carried { temp, start, .. } in &region.carried {
             let _ = writeln!(out, "    {real} {} = {};", name(*temp), self.vector(start));
         }
+        for (column, values) in &region.columns {
+            let list: Vec<String> = values.iter().map(|value| self.vector(value)).collect();
+            let _ = writeln!(out, "    const {real} {}_column[{}] = {{{}}};", name(*column), values.len(), list.join(", "));
+        }
         let mut inside = String::new();
         for (temp, of) in &region.captured {
             let _ = writeln!(inside, "    const {real} {} = {};", name(*temp), self.vector(of));
@@ -53,8 +57,11 @@ impl Printer<'_> {
                 let condition = if is_states { self.call("any", &mask) } else { mask.clone() };
                 let _ = writeln!(out, "    if ({condition}) {{");
             }
-            Turns::Each { name: number, table, row, results, turns, read, stored } => {
+            Turns::Each { name: number, table, row, fixed, results, turns, read, stored } => {
                 let (turn, is_read) = (format!("x{number}_turn"), !read.is_empty());
+                for (temp, column) in fixed {
+                    let _ = writeln!(inside, "    const {real} {} = {}_column[{turn}];", name(*temp), name(*column));
+                }
                 if !row.is_empty() {
                     inside = self.rows(out, (table, row), (*number, &turn), *turns) + &inside;
                 }

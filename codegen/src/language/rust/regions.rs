@@ -15,6 +15,10 @@ impl Printer<'_> {
         for Carried { temp, start, .. } in &region.carried {
             let _ = writeln!(out, "    let mut {} = {};", name(*temp), self.operand(start));
         }
+        for (column, values) in &region.columns {
+            let list: Vec<String> = values.iter().map(|value| self.operand(value)).collect();
+            let _ = writeln!(out, "    let {}_column = [{}];", name(*column), list.join(", "));
+        }
         let mut inside = String::new();
         for (temp, of) in &region.captured {
             let _ = writeln!(inside, "    let {} = {};", name(*temp), self.operand(of));
@@ -60,8 +64,11 @@ impl Printer<'_> {
                     let _ = writeln!(out, "    if {mask} {{\n{}    }}", indented(&inside));
                 }
             }
-            Turns::Each { name: number, table, row, results, turns, read, stored } => {
+            Turns::Each { name: number, table, row, fixed, results, turns, read, stored } => {
                 let (turn, is_read) = (format!("x{number}_turn"), !read.is_empty());
+                for (temp, column) in fixed {
+                    let _ = writeln!(inside, "    let {} = {}_column[{turn}];", name(*temp), name(*column));
+                }
                 if !row.is_empty() {
                     inside = self.rows(out, (table, row), (*number, &turn)) + &inside;
                 }
@@ -79,7 +86,7 @@ impl Printer<'_> {
                     self.store_turn(&mut inside, *first, results, &turn);
                 }
                 self.end_of_turn(&mut inside, region, |_, new| new.to_owned());
-                let turn = if is_read || stored.is_some() || !row.is_empty() { &turn } else { "_" };
+                let turn = if is_read || stored.is_some() || !row.is_empty() || !fixed.is_empty() { &turn } else { "_" };
                 let _ = writeln!(out, "    for {turn} in 0..{turns} {{\n{}    }}", indented(&inside));
                 for (turn, k, temp) in read {
                     let _ = writeln!(out, "    {define}{} = x{number}_results[{turn}][{k}];", name(*temp));

@@ -45,6 +45,7 @@ impl Lowering<'_> {
                 name: first as u32,
                 table: self.table(rest, row),
                 row: (0..row).map(|k| input(ROW, k)).collect(),
+                fixed: Vec::new(),
                 results: (0..results).map(|j| end(region.carried + j)).collect(),
                 turns,
                 read: Vec::new(),
@@ -53,7 +54,8 @@ impl Lowering<'_> {
         };
         let is_input = |statement: &Stmt| matches!(statement, Stmt::Let(_, Expr::Input { .. }));
         let body = inner.definitions().into_iter().flatten().filter(|statement| !is_input(statement)).collect();
-        let mut made = Region { turns, carried, captured, body, after: Vec::new() };
+        let mut made = Region { turns, carried, captured, columns: Vec::new(), body, after: Vec::new() };
+        made.lift_columns();
         for (value, node) in self.graph.nodes().iter().enumerate() {
             if node.op != Op::RegionValue || node.args[0] as usize != k {
                 continue;

@@ -33,6 +33,12 @@ pub(super) struct Contact<S> {
     moments: [Vector3<S>; 3],
     /// r.
     reference: Vec<S>,
+    law: Law<S>,
+}
+
+/// What s is made of.
+#[derive(Clone, Debug)]
+pub(super) struct Law<S> {
     /// D.
     curvature: S,
     mu: S,
@@ -47,8 +53,13 @@ pub(super) struct Cost<S> {
 }
 
 /// How many numbers a contact is as a row of a table.
-pub(super) fn length(dimension: usize) -> usize {
-    1 + 9 + 9 + dimension + 2 + dimension - 1
+pub(super) const fn length(dimension: usize) -> usize {
+    of_law(dimension) + 9 + 9 + dimension
+}
+
+/// How many of them are whether it acts, and its law. These are first.
+pub(super) const fn of_law(dimension: usize) -> usize {
+    1 + 2 + dimension - 1
 }
 
 impl<S: Scalar> Contact<S> {
@@ -62,9 +73,7 @@ impl<S: Scalar> Contact<S> {
             frame,
             moments,
             reference: Vec::new(),
-            curvature: S::one(),
-            mu: pair.mu,
-            friction: pair.friction[..pair.dimension - 1].to_vec(),
+            law: Law { curvature: S::one(), mu: pair.mu, friction: pair.friction[..pair.dimension - 1].to_vec() },
         };
         let rates: Vec<S> = (0..pair.dimension).map(|k| contact.along(k, twist)).collect();
         let (normal, give) = pair.soft.row(touch.distance - pair.margin, rates[0], pair.weight);
@@ -74,7 +83,7 @@ impl<S: Scalar> Contact<S> {
             Cone::Pyramid if pair.dimension > 1 => S::from_f64(2.0) * pair.mu * pair.mu * give,
             _ => give,
         };
-        contact.curvature = S::one() / give;
+        contact.law.curvature = S::one() / give;
         contact
     }
 
@@ -86,25 +95,22 @@ impl<S: Scalar> Contact<S> {
 
     /// As a row of a table.
     pub(super) fn put(&self, row: &mut Vec<S>) {
-        row.push(self.acts);
+        row.extend_from_slice(&[self.acts, self.law.curvature, self.law.mu]);
+        row.extend_from_slice(&self.law.friction);
         self.frame.iter().chain(&self.moments).for_each(|axis| row.extend_from_slice(axis.as_slice()));
         row.extend_from_slice(&self.reference);
-        row.extend_from_slice(&[self.curvature, self.mu]);
-        row.extend_from_slice(&self.friction);
     }
 
     /// Of such a row.
     pub(super) fn of(row: &[S], dimension: usize) -> Self {
-        let axis = |k: usize| Vector3::new(row[1 + 3 * k], row[2 + 3 * k], row[3 + 3 * k]);
-        let rest = &row[19..];
+        let axes = &row[of_law(dimension)..];
+        let axis = |k: usize| Vector3::new(axes[3 * k], axes[3 * k + 1], axes[3 * k + 2]);
         Self {
             acts: row[0],
             frame: core::array::from_fn(axis),
             moments: core::array::from_fn(|k| axis(3 + k)),
-            reference: rest[..dimension].to_vec(),
-            curvature: rest[dimension],
-            mu: rest[dimension + 1],
-            friction: rest[dimension + 2..][..dimension - 1].to_vec(),
+            reference: axes[18..][..dimension].to_vec(),
+            law: Law::of(row, dimension),
         }
     }
 
@@ -138,6 +144,42 @@ impl<S: Scalar> Contact<S> {
 
     /// s at u.
     pub(super) fn cost(&self, cone: Cone, u: &[S]) -> Cost<S> {
+        self.law.cost(cone, u)
+    }
+
+    /// K = Bᵀ s″ B, its upper triangle row by row.
+    pub(super) fn inertia(&self, s: &[[S; MOST_ROWS]; MOST_ROWS]) -> [S; 21] {
+        let d = self.dimension();
+        let rows: Vec<[S; 6]> = (0..d).map(|k| self.row(k).to_array()).collect();
+        let mut inertia = [S::zero(); 21];
+        for (k, row) in rows.iter().enumerate() {
+            let other: [S; 6] = core::array::from_fn(|j| (0..d).fold(S::zero(), |sum, l| sum + s[k][l] * rows[l][j]));
+            let upper = (0..6).flat_map(|i| (i..6).map(move |j| (i, j)));
+            upper.zip(&mut inertia).for_each(|((i, j), sum)| *sum += row[i] * other[j]);
+        }
+        inertia
+    }
+}
+
+impl<S: Scalar> Law<S> {
+    /// Of the row of a contact.
+    pub(super) fn of(row: &[S], dimension: usize) -> Self {
+        Self { curvature: row[1], mu: row[2], friction: row[3..][..dimension - 1].to_vec() }
+    }
+
+    /// Slope and curvature of s(u + α v) over α.
+    pub(super) fn along(&self, cone: Cone, u: &[S], v: &[S], alpha: S) -> [S; 2] {
+        let at: Vec<S> = u.iter().zip(v).map(|(u, v)| *u + alpha * *v).collect();
+        let Cost { slope, curvature, .. } = self.cost(cone, &at);
+        let mut sums = [S::zero(); 2];
+        for (k, v_k) in v.iter().enumerate() {
+            sums[0] += slope[k] * *v_k;
+            sums[1] += v.iter().zip(curvature[k]).fold(S::zero(), |sum, (v, c)| sum + c * *v) * *v_k;
+        }
+        sums
+    }
+
+    fn cost(&self, cone: Cone, u: &[S]) -> Cost<S> {
         match cone {
             Cone::Ellipse if u.len() > 1 => self.ellipse(u),
             _ => self.pyramid(u),
@@ -216,16 +258,8 @@ impl<S: Scalar> Contact<S> {
 mod tests {
     use super::*;
 
-    fn contact(dimension: usize) -> Contact<f64> {
-        Contact {
-            acts: 1.0,
-            frame: [Vector3::x(), Vector3::y(), Vector3::z()],
-            moments: [Vector3::zeros(); 3],
-            reference: [0.0; MOST_ROWS][..dimension].to_vec(),
-            curvature: 70.0,
-            mu: 0.8,
-            friction: [0.9, 0.9, 0.05, 0.01, 0.01][..dimension - 1].to_vec(),
-        }
+    fn law(dimension: usize) -> Law<f64> {
+        Law { curvature: 70.0, mu: 0.8, friction: [0.9, 0.9, 0.05, 0.01, 0.01][..dimension - 1].to_vec() }
     }
 
     /// Slopes and curvatures are those of the value, in all zones, and the value is continuous.
@@ -233,7 +267,7 @@ mod tests {
     fn slopes_and_curvatures_are_derivatives_of_the_cost() {
         for cone in [Cone::Pyramid, Cone::Ellipse] {
             for dimension in [1, 3, 4, 6] {
-                let one = contact(dimension);
+                let one = law(dimension);
                 for k in 0..400_u32 {
                     let x = |j: u32| f64::from((k * 37 + j * 101 + 13) % 97) / 48.5 - 1.0;
                     let u: Vec<f64> = (0..dimension as u32).map(x).collect();

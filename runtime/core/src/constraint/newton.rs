@@ -11,10 +11,11 @@
 //! x is the acceleration with those of origins of floating joints as d²p/dt²: J̇ v is not in the
 //! law. Source: Todorov, ICRA 2014; MuJoCo documentation, Computation: primal solvers.
 
+use alloc::collections::BTreeSet;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::contact::{self, Contact};
+use super::contact::{self, Contact, Law};
 use super::joints::JointRow;
 use super::{Cone, Constraints};
 use crate::Scalar;
@@ -56,11 +57,11 @@ pub(crate) fn constrained<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, sm
     // δ = 0 solves H δ + g(x, p) = 0. Its derivative is −H⁻¹ ∂g/∂p, that of x(p) by the implicit
     // function theorem.
     S::hold(&mut x);
-    let mut hessian = problem.curvature(&x);
+    let mut hessian = problem.at(&x, true).hessian;
     S::hold(&mut hessian);
     let mut correction = vec![S::zero(); x.len()];
     let residual = |_: &mut (), correction: &[S], r: &mut [S]| {
-        let (slope, _) = problem.slope(&x);
+        let slope = problem.at(&x, false).slope;
         let product = times(&hessian, &problem.parents, correction);
         r.iter_mut().zip(slope).zip(product).for_each(|((r, g), own)| *r = g + own);
     };
@@ -82,20 +83,29 @@ struct Column<S> {
     axis: Twist<S>,
 }
 
-/// Contacts of one dimension: of one body with the world, or of pairs of bodies.
+/// Contacts of one dimension: of bodies with the world, or of pairs of bodies.
 struct Group<S> {
-    /// `None`: pairs of bodies. Each has a sign for each column: in which way it moves the contact.
-    body: Option<BodyId>,
     dimension: usize,
-    count: usize,
-    table: Vec<S>,
+    are_pairs: bool,
+    /// The bodies of each contact; the first may be the base.
+    bodies: Vec<[BodyId; 2]>,
+    /// A row of numbers for each contact.
+    rows: Vec<S>,
 }
 
-/// Twists of all bodies about the origin, or of each column alone.
-struct Motion<S> {
-    bodies: ById<BodyId, Twist<S>>,
-    columns: Vec<Twist<S>>,
+/// The problem at an x.
+struct At<S> {
+    /// g.
+    slope: Vec<S>,
+    /// The sizes of its terms.
+    size: Vec<S>,
+    /// H, on and below its diagonal; empty if not asked for.
+    hessian: Vec<S>,
+    /// J x − r of the contacts of each group.
+    residuals: Vec<Vec<S>>,
 }
+
+type Twists<S> = ById<BodyId, Twist<S>>;
 
 struct Problem<'a, S: 'static> {
     model: &'a Model<S>,
@@ -136,15 +146,12 @@ impl<'a, S: Scalar> Problem<'a, S> {
             groups: Vec::new(),
         };
         problem.find_contacts(constraints, &placed, origin, smooth.v);
-        // Pairs couple branches: all are one chain.
-        if problem.groups.iter().any(|group| group.body.is_none()) {
-            problem.parents = (0..nv).collect();
-        }
+        problem.parents = problem.ways();
         problem
     }
 
     fn find_contacts(&mut self, constraints: &Constraints<S>, placed: &Bodies<'_, S>, origin: Vector3<S>, v: &[S]) {
-        let twists = self.motion(v).bodies;
+        let twists = self.motion(v);
         let place = |shape: usize| {
             let shape = &constraints.shapes[shape];
             let at = match shape.body.is_base() {
@@ -165,176 +172,207 @@ impl<'a, S: Scalar> Problem<'a, S> {
     }
 
     fn add(&mut self, bodies: [BodyId; 2], dimension: usize, contact: Contact<S>) {
-        let (moving, contact) = match bodies {
-            [BodyId::BASE, second] => (Some(second), contact),
-            [first, BodyId::BASE] => (Some(first), contact.reversed()),
-            _ => (None, contact),
+        let (bodies, contact) = match bodies {
+            [first, BodyId::BASE] => ([BodyId::BASE, first], contact.reversed()),
+            _ => (bodies, contact),
         };
-        let known = self.groups.iter().position(|group| group.body == moving && group.dimension == dimension);
+        let are_pairs = !bodies[0].is_base();
+        let known = self.groups.iter().position(|group| group.are_pairs == are_pairs && group.dimension == dimension);
         let index = known.unwrap_or_else(|| {
-            self.groups.push(Group { body: moving, dimension, count: 0, table: Vec::new() });
+            self.groups.push(Group { dimension, are_pairs, bodies: Vec::new(), rows: Vec::new() });
             self.groups.len() - 1
         });
         let group = &mut self.groups[index];
-        group.count += 1;
-        contact.put(&mut group.table);
-        if moving.is_none() {
-            let signs = self.columns.iter().map(|column| {
-                let [first, second] = bodies.map(|body| self.model.is_on_the_way(column.body, body));
-                match (first, second) {
-                    (true, false) => -S::one(),
-                    (false, true) => S::one(),
-                    _ => S::zero(),
-                }
-            });
-            group.table.extend(signs);
-        }
+        group.bodies.push(bodies);
+        contact.put(&mut group.rows);
     }
 
-    /// Motion at these rates.
-    fn motion(&self, x: &[S]) -> Motion<S> {
-        let mut bodies: ById<BodyId, Twist<S>> = vec![Twist::zero(); self.model.bodies.len()].into();
-        let columns: Vec<Twist<S>> = self.columns.iter().map(|column| column.axis.times(x[column.at])).collect();
-        let mut next = self.columns.iter().zip(&columns).peekable();
+    /// In which way each column moves a contact of these bodies.
+    fn signs([first, second]: [BodyId; 2], model: &Model<S>, columns: &[Column<S>]) -> Vec<i32> {
+        let moves = |column: &Column<S>, body: BodyId| i32::from(!body.is_base() && model.is_on_the_way(column.body, body));
+        columns.iter().map(|column| moves(column, second) - moves(column, first)).collect()
+    }
+
+    /// Entries of H, on and below its diagonal, to which the contacts of a group of pairs add.
+    fn entries(&self, group: &Group<S>) -> Vec<[usize; 2]> {
+        let mut entries = BTreeSet::new();
+        for bodies in &group.bodies {
+            let signs = Self::signs(*bodies, self.model, &self.columns);
+            let own: Vec<usize> = self.columns.iter().zip(signs).filter(|(_, sign)| *sign != 0).map(|(column, _)| column.at).collect();
+            for i in &own {
+                entries.extend(own.iter().filter(|j| *j <= i).map(|j| [*i, *j]));
+            }
+        }
+        entries.into_iter().collect()
+    }
+
+    /// The way to the base of each degree of freedom in H: contacts of two bodies couple branches.
+    /// A factorisation from the last row up leaves zeros off these ways.
+    fn ways(&self) -> Vec<usize> {
+        let n = self.branches.len();
+        let mut before: Vec<BTreeSet<usize>> = (0..n).map(|i| path_to_root(&self.branches, i).collect()).collect();
+        for [i, j] in self.groups.iter().filter(|group| group.are_pairs).flat_map(|group| self.entries(group)) {
+            if j < i {
+                before[i].insert(j);
+            }
+        }
+        let mut parents = vec![0; n];
+        for i in (0..n).rev() {
+            let mut own = core::mem::take(&mut before[i]);
+            if let Some(parent) = own.pop_last() {
+                parents[i] = parent + 1;
+                before[parent].append(&mut own);
+            }
+        }
+        parents
+    }
+
+    /// The twists of all bodies about the origin at these rates.
+    fn motion(&self, x: &[S]) -> Twists<S> {
+        let mut bodies: Twists<S> = vec![Twist::zero(); self.model.bodies.len()].into();
+        let mut next = self.columns.iter().peekable();
         for body in self.model.outward() {
             let mut twist = bodies[self.model.bodies[body].parent];
-            while let Some((_, own)) = next.next_if(|(column, _)| column.body == body) {
-                twist = twist + *own;
+            while let Some(column) = next.next_if(|column| column.body == body) {
+                twist = twist + column.axis.times(x[column.at]);
             }
             bodies[body] = twist;
         }
-        Motion { bodies, columns }
+        bodies
     }
 
     /// Visits the contacts of a group that act, with the relative twists of N motions:
-    /// `visit(contact, twists, signs of the columns, state)`.
+    /// `visit(contact, twists, state)` has its results behind the state, zeros elsewhere.
     fn each<const N: usize>(
         group: &Group<S>,
-        motions: [&Motion<S>; N],
-        state: &mut [S],
-        visit: impl Fn(&Contact<S>, [Twist<S>; N], &[S], &mut [S]),
+        motions: [&Twists<S>; N],
+        [carried, results]: [&mut [S]; 2],
+        visit: impl Fn(&Contact<S>, [Twist<S>; N], &mut [S]),
     ) {
-        let length = contact::length(group.dimension);
-        S::for_each(group.count, &group.table, state, &mut [], |row, state, _| {
-            S::when(row[0].positive(), state, |state| {
-                let (contact, signs) = (Contact::of(row, group.dimension), &row[length..]);
-                let relative = motions.map(|motion| match group.body {
-                    Some(body) => motion.bodies[body],
-                    None => {
-                        let columns = motion.columns.iter().zip(signs);
-                        columns.fold(Twist::zero(), |sum, (own, sign)| sum + own.times(*sign))
-                    }
-                });
-                visit(&contact, relative, signs, state);
+        let (d, count) = (group.dimension, group.bodies.len());
+        let length = contact::length(d);
+        let mut table = Vec::with_capacity(count * (length + 6 * N));
+        for (bodies, row) in group.bodies.iter().zip(group.rows.chunks(length)) {
+            table.extend_from_slice(row);
+            for twists in motions {
+                let relative = twists[bodies[1]] - twists[bodies[0]];
+                table.extend(relative.angular.iter().chain(&relative.linear));
+            }
+        }
+        S::for_each(count, &table, carried, results, |row, carried, results| {
+            let mut state = [&*carried, &*results].concat();
+            S::when(row[0].positive(), &mut state, |state| {
+                let three = |at: usize| Vector3::new(row[at], row[at + 1], row[at + 2]);
+                let twist = |k: usize| Twist { angular: three(length + 6 * k), linear: three(length + 6 * k + 3) };
+                visit(&Contact::of(row, d), core::array::from_fn(twist), state);
             });
+            let (before, after) = state.split_at(carried.len());
+            carried.copy_from_slice(before);
+            results.copy_from_slice(after);
         });
     }
 
-    /// g, and the sum of the sizes of its terms, both with M's diagonal as weights.
-    fn slope(&self, x: &[S]) -> (Vec<S>, Vec<S>) {
+    /// g, both with M's diagonal as weights its size, H, and the residuals of contacts.
+    fn at(&self, x: &[S], with_hessian: bool) -> At<S> {
+        let n = x.len();
         let smooth = times(&self.mass, &self.branches, &self.beyond(x));
-        let mut forces = vec![S::zero(); smooth.len()];
+        let (mut forces, mut hessian) = (vec![S::zero(); n], self.mass.clone());
         for row in &self.rows {
-            let slope = row.cost(row.along(x) - row.reference).slope;
-            row.entries.iter().for_each(|(k, entry)| forces[*k] += *entry * slope);
+            let cost = row.cost(row.along(x) - row.reference);
+            for (i, a) in &row.entries {
+                forces[*i] += *a * cost.slope;
+                row.entries.iter().filter(|(j, _)| j <= i).for_each(|(j, b)| hessian[i * n + j] += cost.curvature * *a * *b);
+            }
         }
         let motion = self.motion(x);
         let mut wrenches: ById<BodyId, Wrench<S>> = vec![Wrench::zero(); self.model.bodies.len()].into();
+        let mut inertias: ById<BodyId, Option<ArticulatedInertia<S>>> = vec![None; self.model.bodies.len()].into();
+        let mut residuals = Vec::new();
         for group in &self.groups {
-            let on_contact = |contact: &Contact<S>, twist: Twist<S>| {
-                let cost = contact.cost(self.cone, &contact.residual(&twist));
-                (0..group.dimension).fold(Wrench::zero(), |sum, k| sum + contact.row(k).times(cost.slope[k]))
+            let d = group.dimension;
+            // The residual, the wrench, then K or s″
+            let more = match (with_hessian, group.are_pairs) {
+                (false, _) => 0,
+                (true, false) => 21,
+                (true, true) => d * (d + 1) / 2,
             };
-            match group.body {
-                Some(body) => {
-                    let mut state = [S::zero(); 6];
-                    Self::each(group, [&motion], &mut state, |contact, [twist], _, state| {
-                        let w = on_contact(contact, twist);
-                        state.iter_mut().zip(w.moment.iter().chain(&w.force)).for_each(|(sum, x)| *sum += *x);
-                    });
-                    let [a, b, c, x, y, z] = state;
-                    wrenches[body] += Wrench { moment: Vector3::new(a, b, c), force: Vector3::new(x, y, z) };
+            let width = d + 6 + more;
+            let mut found = vec![S::zero(); group.bodies.len() * width];
+            Self::each(group, [&motion], [&mut [], &mut found], |contact, [twist], state| {
+                let residual = contact.residual(&twist);
+                let cost = contact.cost(self.cone, &residual);
+                let wrench = (0..d).fold(Wrench::zero(), |sum, k| sum + contact.row(k).times(cost.slope[k]));
+                state[..d].copy_from_slice(&residual);
+                state[d..d + 6].copy_from_slice(&wrench.to_array());
+                let curvature = match (with_hessian, group.are_pairs) {
+                    (false, _) => Vec::new(),
+                    (true, false) => contact.inertia(&cost.curvature).to_vec(),
+                    (true, true) => (0..d).flat_map(|k| cost.curvature[k][..=k].to_vec()).collect(),
+                };
+                state[d + 6..].copy_from_slice(&curvature);
+            });
+            let mut own = Vec::new();
+            for ([first, second], found) in group.bodies.iter().zip(found.chunks(width)) {
+                own.extend_from_slice(&found[..d]);
+                let at = |k: usize| Vector3::new(found[d + k], found[d + k + 1], found[d + k + 2]);
+                let wrench = Wrench { moment: at(0), force: at(3) };
+                wrenches[*second] += wrench;
+                if !first.is_base() {
+                    wrenches[*first] += wrench.times(-S::one());
+                } else if with_hessian {
+                    *inertias[*second].get_or_insert(ArticulatedInertia::zero()) += of_triangle(&found[d + 6..]);
                 }
-                None => Self::each(group, [&motion], &mut forces, |contact, [twist], signs, state| {
-                    let w = on_contact(contact, twist);
-                    self.columns.iter().zip(signs).for_each(|(column, sign)| state[column.at] += *sign * w.power(&column.axis));
-                }),
             }
+            if with_hessian && group.are_pairs {
+                let curvatures: Vec<&[S]> = found.chunks(width).map(|found| &found[d + 6..]).collect();
+                self.add_pairs(group, &curvatures, &mut hessian);
+            }
+            residuals.push(own);
         }
         for body in self.model.inward() {
             let own = wrenches[body];
             self.columns.iter().filter(|column| column.body == body).for_each(|column| forces[column.at] += own.power(&column.axis));
             wrenches[self.model.bodies[body].parent] += own;
         }
+        if with_hessian {
+            self.project(&mut inertias, &mut hessian);
+        }
         let slope = smooth.iter().zip(&forces).map(|(a, b)| *a + *b).collect();
         let size = smooth.iter().zip(&forces).map(|(a, b)| a.abs() + b.abs()).collect();
-        (slope, size)
+        At { slope, size, hessian, residuals }
     }
 
-    /// H, on and below its diagonal.
-    fn curvature(&self, x: &[S]) -> Vec<S> {
-        let n = x.len();
-        let mut hessian = self.mass.clone();
-        for row in &self.rows {
-            let curvature = row.cost(row.along(x) - row.reference).curvature;
-            for (i, a) in &row.entries {
-                row.entries.iter().filter(|(j, _)| j <= i).for_each(|(j, b)| hessian[i * n + j] += curvature * *a * *b);
-            }
+    /// Adds Jᵀ s″ J of contacts of two bodies that push, with s″ of each on and below its diagonal.
+    fn add_pairs(&self, group: &Group<S>, curvatures: &[&[S]], hessian: &mut [S]) {
+        let (n, d, length) = (self.start.len(), group.dimension, contact::length(group.dimension));
+        let all: Vec<Vec<i32>> = group.bodies.iter().map(|bodies| Self::signs(*bodies, self.model, &self.columns)).collect();
+        let moving: Vec<usize> = (0..self.columns.len()).filter(|c| all.iter().any(|signs| signs[*c] != 0)).collect();
+        let entries = self.entries(group);
+        let mut table = Vec::new();
+        for ((row, curvature), signs) in group.rows.chunks(length).zip(curvatures).zip(&all) {
+            table.extend_from_slice(row);
+            table.extend_from_slice(curvature);
+            table.extend(moving.iter().map(|c| S::from_f64(f64::from(signs[*c]))));
         }
-        let motion = self.motion(x);
-        let mut inertias: ById<BodyId, Option<ArticulatedInertia<S>>> = vec![None; self.model.bodies.len()].into();
-        for group in &self.groups {
-            let d = group.dimension;
-            let of = |contact: &Contact<S>, twist: Twist<S>| contact.cost(self.cone, &contact.residual(&twist)).curvature;
-            match group.body {
-                Some(body) => {
-                    let mut state = [S::zero(); 21];
-                    Self::each(group, [&motion], &mut state, |contact, [twist], _, state| {
-                        let (s, rows) = (of(contact, twist), (0..d).map(|k| six(&contact.row(k))));
-                        let rows: Vec<[S; 6]> = rows.collect();
-                        // K += Σ_k b_k (Σ_l s″_kl b_l)ᵀ
-                        for (k, row) in rows.iter().enumerate() {
-                            let other: [S; 6] = core::array::from_fn(|j| (0..d).fold(S::zero(), |sum, l| sum + s[k][l] * rows[l][j]));
-                            let mut place = 0;
-                            for i in 0..6 {
-                                for x in &other[i..] {
-                                    state[place] += row[i] * *x;
-                                    place += 1;
-                                }
-                            }
-                        }
-                    });
-                    *inertias[body].get_or_insert(ArticulatedInertia::zero()) += of_triangle(&state);
+        let mut state: Vec<S> = entries.iter().map(|[i, j]| hessian[i * n + j]).collect();
+        S::for_each(all.len(), &table, &mut state, &mut [], |row, state, _| {
+            let (curvature, signs) = row[length..].split_at(d * (d + 1) / 2);
+            S::when(curvature[0].positive(), state, |state| {
+                let contact = Contact::of(row, d);
+                let mut rows = vec![vec![S::zero(); n]; d];
+                for (c, sign) in moving.iter().zip(signs) {
+                    let Column { at, axis, .. } = &self.columns[*c];
+                    (0..d).for_each(|k| rows[k][*at] += *sign * contact.along(k, axis));
                 }
-                None => {
-                    let mut state: Vec<S> = (0..n).flat_map(|i| hessian[i * n..][..=i].to_vec()).collect();
-                    Self::each(group, [&motion], &mut state, |contact, [twist], signs, state| {
-                        let s = of(contact, twist);
-                        let mut rows = vec![vec![S::zero(); n]; d];
-                        for (column, sign) in self.columns.iter().zip(signs) {
-                            (0..d).for_each(|k| rows[k][column.at] += *sign * contact.along(k, &column.axis));
-                        }
-                        for k in 0..d {
-                            let other: Vec<S> = (0..n).map(|j| (0..d).fold(S::zero(), |sum, l| sum + s[k][l] * rows[l][j])).collect();
-                            let mut place = 0;
-                            for i in 0..n {
-                                for x in &other[..=i] {
-                                    state[place] += rows[k][i] * *x;
-                                    place += 1;
-                                }
-                            }
-                        }
-                    });
-                    let mut place = 0;
-                    for i in 0..n {
-                        hessian[i * n..][..=i].copy_from_slice(&state[place..][..=i]);
-                        place += i + 1;
-                    }
+                let s = |k: usize, l: usize| curvature[k.max(l) * (k.max(l) + 1) / 2 + k.min(l)];
+                let pushed = |k: usize, j: usize| (0..d).fold(S::zero(), |sum, l| sum + s(k, l) * rows[l][j]);
+                let pushed: Vec<Vec<S>> = (0..d).map(|k| (0..n).map(|j| pushed(k, j)).collect()).collect();
+                for ([i, j], entry) in entries.iter().zip(state) {
+                    *entry += (0..d).fold(S::zero(), |sum, k| sum + rows[k][*i] * pushed[k][*j]);
                 }
-            }
-        }
-        self.project(&mut inertias, &mut hessian);
-        hessian
+            });
+        });
+        entries.iter().zip(state).for_each(|([i, j], entry)| hessian[i * n + j] = entry);
     }
 
     /// Adds what inertias on bodies are in joints: Sᵀ K S.
@@ -369,52 +407,67 @@ impl<'a, S: Scalar> Problem<'a, S> {
         let motion = self.motion(x);
         let mut state = [cost];
         for group in &self.groups {
-            Self::each(group, [&motion], &mut state, |contact, [twist], _, state| {
+            Self::each(group, [&motion], [&mut state, &mut []], |contact, [twist], state| {
                 state[0] += contact.cost(self.cone, &contact.residual(&twist)).value;
             });
         }
         state[0]
     }
 
-    /// Slope and curvature of the cost at x + α dx, along dx.
-    fn along(&self, [at, by]: [&Motion<S>; 2], rows: &[[S; 2]], [slope, curvature]: [S; 2], alpha: S) -> [S; 2] {
-        let mut state = [slope + alpha * curvature, curvature];
-        for (row, [own, along]) in self.rows.iter().zip(rows) {
-            let cost = row.cost(*own + alpha * *along);
-            state[0] += cost.slope * *along;
-            state[1] += cost.curvature * *along * *along;
-        }
-        for group in &self.groups {
-            let d = group.dimension;
-            Self::each(group, [at, by], &mut state, |contact, [twist, dx], _, state| {
-                let along = contact.rates(&dx);
-                let u: Vec<S> = contact.residual(&twist).iter().zip(&along).map(|(u, du)| *u + alpha * *du).collect();
-                let cost = contact.cost(self.cone, &u);
-                for k in 0..d {
-                    state[0] += cost.slope[k] * along[k];
-                    state[1] += (0..d).fold(S::zero(), |sum, l| sum + cost.curvature[k][l] * along[l]) * along[k];
-                }
-            });
-        }
-        state
-    }
-
     /// α where the slope along dx is zero, by Newton's method within bounds.
-    fn line(&self, x: &[S], dx: &[S]) -> S {
+    fn line(&self, x: &[S], dx: &[S], at: &At<S>) -> S {
         let (zero, one, half) = (S::zero(), S::one(), S::from_f64(0.5));
-        let (at, by) = (self.motion(x), self.motion(dx));
+        let by = self.motion(dx);
         let rows: Vec<[S; 2]> = self.rows.iter().map(|row| [row.along(x) - row.reference, row.along(dx)]).collect();
         let pushed = times(&self.mass, &self.branches, dx);
         let dot = |a: &[S], b: &[S]| a.iter().zip(b).fold(zero, |sum, (a, b)| sum + *a * *b);
         let smooth = [dot(&pushed, &self.beyond(x)), dot(&pushed, dx)];
-        let [first, _] = self.along([&at, &by], &rows, smooth, zero);
-        let [enough, still] = [LINE, STILL].map(|n| bound(first, n));
+        // Each contact along the line
+        let tables: Vec<Vec<S>> = self
+            .groups
+            .iter()
+            .zip(&at.residuals)
+            .map(|(group, residuals)| {
+                let d = group.dimension;
+                let mut rates = vec![zero; group.bodies.len() * d];
+                Self::each(group, [&by], [&mut [], &mut rates], |contact, [dx], state| state.copy_from_slice(&contact.rates(&dx)));
+                let mut table = Vec::new();
+                for (k, row) in group.rows.chunks(contact::length(d)).enumerate() {
+                    table.extend_from_slice(&row[..contact::of_law(d)]);
+                    table.extend_from_slice(&residuals[k * d..][..d]);
+                    table.extend_from_slice(&rates[k * d..][..d]);
+                }
+                table
+            })
+            .collect();
+        let along = |alpha: S| {
+            let [slope, curvature] = smooth;
+            let mut state = [slope + alpha * curvature, curvature];
+            for (row, [own, along]) in self.rows.iter().zip(&rows) {
+                let cost = row.cost(*own + alpha * *along);
+                state[0] += cost.slope * *along;
+                state[1] += cost.curvature * *along * *along;
+            }
+            for (group, table) in self.groups.iter().zip(&tables) {
+                let (d, law) = (group.dimension, contact::of_law(group.dimension));
+                S::for_each(group.bodies.len(), table, &mut state, &mut [], |row, state, _| {
+                    S::when(row[0].positive(), state, |state| {
+                        let [slope, curvature] = Law::of(row, d).along(self.cone, &row[law..][..d], &row[law + d..], alpha);
+                        state[0] += slope;
+                        state[1] += curvature;
+                    });
+                });
+            }
+            state
+        };
+        let first = dot(&at.slope, dx);
+        let [enough, still] = [LINE, STILL].map(|n| bound(first.abs(), n));
         let enough = enough * first.abs();
         // α, and bounds below and above it; above is 0 where there is none yet.
         let mut state = [one, zero, zero];
         let _ = S::repeat(MOST_ON_A_LINE, &mut state, |state| {
             let [alpha, below, above] = [state[0], state[1], state[2]];
-            let [slope, curvature] = self.along([&at, &by], &rows, smooth, alpha);
+            let [slope, curvature] = along(alpha);
             let is_before = (-slope).positive();
             let (below, above) = (S::select(is_before, alpha, below), S::select(is_before, above, alpha));
             let divisor = S::select(curvature.positive(), curvature, one);
@@ -436,42 +489,42 @@ impl<'a, S: Scalar> Problem<'a, S> {
     }
 
     /// Σ g² / M, and the same of the sizes of its terms.
-    fn squares(&self, (slope, size): &(Vec<S>, Vec<S>)) -> [S; 2] {
-        let n = slope.len();
+    fn squares(&self, at: &At<S>) -> [S; 2] {
+        let n = self.start.len();
         let of = |x: &[S]| x.iter().enumerate().fold(S::zero(), |sum, (i, x)| sum + *x * *x / self.mass[i * n + i]);
-        [of(slope), of(size)]
+        [of(&at.slope), of(&at.size)]
     }
 
     /// The x at which the cost is least.
     fn minimum(&self, warm: &[S]) -> Vec<S> {
-        let nv = self.start.len();
+        let (nv, one) = (self.start.len(), S::one());
         let mut state = self.start.to_vec();
         if !warm.is_empty() {
             let is_better = (self.cost(self.start) - self.cost(warm)).positive();
             state.iter_mut().zip(warm).for_each(|(x, warm)| *x = S::select(is_better, *warm, *x));
         }
-        let [square, size] = self.squares(&self.slope(&state));
-        // The last square of the gradient
-        state.push(square);
-        let [settled, small] = [SETTLED, SMALL].map(|n| bound(size, n.map(|n| 2 * n)));
-        S::when((square - settled * size).positive(), &mut state, |state| {
-            let _converged = S::repeat(MOST, state, |state| {
-                let (x, last) = state.split_at_mut(nv);
-                let mut hessian = self.curvature(x);
-                let (mut dx, _) = self.slope(x);
+        // The last square of the gradient; −1: there is none.
+        state.push(-one);
+        let _converged = S::repeat(MOST, &mut state, |state| {
+            let (x, last) = state.split_at_mut(nv);
+            let at = self.at(x, true);
+            let [square, size] = self.squares(&at);
+            let [settled, small] = [SETTLED, SMALL].map(|n| bound(size, n.map(|n| 2 * n)));
+            // Also of zeros, and of what is no number
+            let is_settled = one - flag::<S>((square - settled * size).positive());
+            let is_small = flag::<S>((small * size - square).positive());
+            let falls = S::select((-last[0]).positive(), one, flag::<S>((last[0] - square - square).positive()));
+            let is_done = flag::<S>((is_settled + is_small * (one - falls)).positive());
+            last[0] = square;
+            S::when((one - is_done).positive(), x, |x| {
+                let mut dx: Vec<S> = at.slope.iter().map(|g| -*g).collect();
+                let mut hessian = at.hessian.clone();
                 factor(&mut hessian, &self.parents);
                 solve(&hessian, &self.parents, &mut dx);
-                dx.iter_mut().for_each(|dx| *dx = -*dx);
-                let alpha = self.line(x, &dx);
+                let alpha = self.line(x, &dx, &at);
                 x.iter_mut().zip(&dx).for_each(|(x, dx)| *x += alpha * *dx);
-                let [square, size] = self.squares(&self.slope(x));
-                // Also of zeros, and of what is no number
-                let is_settled = S::one() - flag::<S>((square - settled * size).positive());
-                let is_small = flag::<S>((small * size - square).positive());
-                let falls = flag::<S>((last[0] - square - square).positive());
-                last[0] = square;
-                (is_settled + is_small * (S::one() - falls)).positive()
             });
+            is_done.positive()
         });
         state.truncate(nv);
         state
@@ -483,11 +536,11 @@ impl<'a, S: Scalar> Problem<'a, S> {
     }
 }
 
-/// A bound of each precision, of which one counts: generated code is the same for both, so that x,
-/// a number of the state, tells how many bits there are.
+/// A bound of each precision, of which one counts: generated code is the same for both. The square
+/// of 2^−100 is zero in `f32` alone. x, 0 or more, is a number that no pass knows.
 fn bound<S: Scalar>(x: S, [wide, narrow]: [i32; 2]) -> S {
-    let change = (x + x * S::from_f64(two_to(-40))) - x;
-    S::select(change.abs().positive(), S::from_f64(two_to(wide)), S::from_f64(two_to(narrow)))
+    let small = S::select(x.positive(), S::one(), S::from_f64(0.5)) * S::from_f64(two_to(-100));
+    S::select((small * small).positive(), S::from_f64(two_to(wide)), S::from_f64(two_to(narrow)))
 }
 
 /// M y of a symmetric matrix by its entries on and below the diagonal.
@@ -503,12 +556,8 @@ fn times<S: Scalar>(matrix: &[S], parents: &[usize], y: &[S]) -> Vec<S> {
     product
 }
 
-fn six<S: Scalar>(w: &Wrench<S>) -> [S; 6] {
-    [w.moment.x, w.moment.y, w.moment.z, w.force.x, w.force.y, w.force.z]
-}
-
 /// The inertia of an upper triangle, row by row.
-fn of_triangle<S: Scalar>(k: &[S; 21]) -> ArticulatedInertia<S> {
+fn of_triangle<S: Scalar>(k: &[S]) -> ArticulatedInertia<S> {
     let symmetric = |[a, b, c, d, e, f]: [usize; 6]| Matrix3::new(k[a], k[b], k[c], k[b], k[d], k[e], k[c], k[e], k[f]);
     ArticulatedInertia {
         angular: symmetric([0, 1, 2, 6, 7, 11]),
