@@ -11,7 +11,7 @@
 //! x is the acceleration with those of origins of floating joints as d²p/dt²: J̇ v is not in the
 //! law. Source: Todorov, ICRA 2014; MuJoCo documentation, Computation: primal solvers.
 
-use alloc::collections::BTreeSet;
+use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -57,11 +57,11 @@ pub(crate) fn constrained<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, sm
     // δ = 0 solves H δ + g(x, p) = 0. Its derivative is −H⁻¹ ∂g/∂p, that of x(p) by the implicit
     // function theorem.
     S::hold(&mut x);
-    let mut hessian = problem.at(&x, true).hessian;
+    let mut hessian = problem.curvature(&x);
     S::hold(&mut hessian);
     let mut correction = vec![S::zero(); x.len()];
     let residual = |_: &mut (), correction: &[S], r: &mut [S]| {
-        let slope = problem.at(&x, false).slope;
+        let (slope, _) = problem.slope(&x);
         let product = times(&hessian, &problem.parents, correction);
         r.iter_mut().zip(slope).zip(product).for_each(|((r, g), own)| *r = g + own);
     };
@@ -83,26 +83,15 @@ struct Column<S> {
     axis: Twist<S>,
 }
 
-/// Contacts of one dimension: of bodies with the world, or of pairs of bodies.
+/// Contacts of one dimension: of one body with the world, or of pairs of bodies.
 struct Group<S> {
+    /// `None`: pairs of bodies.
+    body: Option<BodyId>,
     dimension: usize,
-    are_pairs: bool,
     /// The bodies of each contact; the first may be the base.
     bodies: Vec<[BodyId; 2]>,
     /// A row of numbers for each contact.
     rows: Vec<S>,
-}
-
-/// The problem at an x.
-struct At<S> {
-    /// g.
-    slope: Vec<S>,
-    /// The sizes of its terms.
-    size: Vec<S>,
-    /// H, on and below its diagonal; empty if not asked for.
-    hessian: Vec<S>,
-    /// J x − r of the contacts of each group.
-    residuals: Vec<Vec<S>>,
 }
 
 type Twists<S> = ById<BodyId, Twist<S>>;
@@ -176,10 +165,10 @@ impl<'a, S: Scalar> Problem<'a, S> {
             [first, BodyId::BASE] => ([BodyId::BASE, first], contact.reversed()),
             _ => (bodies, contact),
         };
-        let are_pairs = !bodies[0].is_base();
-        let known = self.groups.iter().position(|group| group.are_pairs == are_pairs && group.dimension == dimension);
+        let body = bodies[0].is_base().then_some(bodies[1]);
+        let known = self.groups.iter().position(|group| group.body == body && group.dimension == dimension);
         let index = known.unwrap_or_else(|| {
-            self.groups.push(Group { dimension, are_pairs, bodies: Vec::new(), rows: Vec::new() });
+            self.groups.push(Group { body, dimension, bodies: Vec::new(), rows: Vec::new() });
             self.groups.len() - 1
         });
         let group = &mut self.groups[index];
@@ -211,7 +200,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
     fn ways(&self) -> Vec<usize> {
         let n = self.branches.len();
         let mut before: Vec<BTreeSet<usize>> = (0..n).map(|i| path_to_root(&self.branches, i).collect()).collect();
-        for [i, j] in self.groups.iter().filter(|group| group.are_pairs).flat_map(|group| self.entries(group)) {
+        for [i, j] in self.groups.iter().filter(|group| group.body.is_none()).flat_map(|group| self.entries(group)) {
             if j < i {
                 before[i].insert(j);
             }
@@ -242,29 +231,35 @@ impl<'a, S: Scalar> Problem<'a, S> {
     }
 
     /// Visits the contacts of a group that act, with the relative twists of N motions:
-    /// `visit(contact, twists, state)` has its results behind the state, zeros elsewhere.
+    /// `visit(contact, twists, more, state)` has its results behind the state, zeros elsewhere.
+    /// `more`: so many more numbers of each contact.
     fn each<const N: usize>(
         group: &Group<S>,
         motions: [&Twists<S>; N],
+        more: &[Vec<S>],
         [carried, results]: [&mut [S]; 2],
-        visit: impl Fn(&Contact<S>, [Twist<S>; N], &mut [S]),
+        visit: impl Fn(&Contact<S>, [Twist<S>; N], &[S], &mut [S]),
     ) {
-        let (d, count) = (group.dimension, group.bodies.len());
-        let length = contact::length(d);
-        let mut table = Vec::with_capacity(count * (length + 6 * N));
-        for (bodies, row) in group.bodies.iter().zip(group.rows.chunks(length)) {
+        let (d, count, length) = (group.dimension, group.bodies.len(), contact::length(group.dimension));
+        let mut table = Vec::new();
+        for (k, ([first, second], row)) in group.bodies.iter().zip(group.rows.chunks(length)).enumerate() {
             table.extend_from_slice(row);
-            for twists in motions {
-                let relative = twists[bodies[1]] - twists[bodies[0]];
+            for twists in motions.into_iter().filter(|_| group.body.is_none()) {
+                let relative = twists[*second] - twists[*first];
                 table.extend(relative.angular.iter().chain(&relative.linear));
             }
+            table.extend(more.get(k).into_iter().flatten());
         }
         S::for_each(count, &table, carried, results, |row, carried, results| {
             let mut state = [&*carried, &*results].concat();
             S::when(row[0].positive(), &mut state, |state| {
                 let three = |at: usize| Vector3::new(row[at], row[at + 1], row[at + 2]);
-                let twist = |k: usize| Twist { angular: three(length + 6 * k), linear: three(length + 6 * k + 3) };
-                visit(&Contact::of(row, d), core::array::from_fn(twist), state);
+                let twist = |k: usize| match group.body {
+                    Some(body) => motions[k][body],
+                    None => Twist { angular: three(length + 6 * k), linear: three(length + 6 * k + 3) },
+                };
+                let more = &row[length + if group.body.is_none() { 6 * N } else { 0 }..];
+                visit(&Contact::of(row, d), core::array::from_fn(twist), more, state);
             });
             let (before, after) = state.split_at(carried.len());
             carried.copy_from_slice(before);
@@ -272,105 +267,97 @@ impl<'a, S: Scalar> Problem<'a, S> {
         });
     }
 
-    /// g, both with M's diagonal as weights its size, H, and the residuals of contacts.
-    fn at(&self, x: &[S], with_hessian: bool) -> At<S> {
-        let n = x.len();
+    /// g, and the sum of the sizes of its terms, both with M's diagonal as weights.
+    fn slope(&self, x: &[S]) -> (Vec<S>, Vec<S>) {
         let smooth = times(&self.mass, &self.branches, &self.beyond(x));
-        let (mut forces, mut hessian) = (vec![S::zero(); n], self.mass.clone());
+        let mut forces = vec![S::zero(); smooth.len()];
         for row in &self.rows {
-            let cost = row.cost(row.along(x) - row.reference);
-            for (i, a) in &row.entries {
-                forces[*i] += *a * cost.slope;
-                row.entries.iter().filter(|(j, _)| j <= i).for_each(|(j, b)| hessian[i * n + j] += cost.curvature * *a * *b);
-            }
+            let slope = row.cost(row.along(x) - row.reference).slope;
+            row.entries.iter().for_each(|(k, entry)| forces[*k] += *entry * slope);
         }
         let motion = self.motion(x);
         let mut wrenches: ById<BodyId, Wrench<S>> = vec![Wrench::zero(); self.model.bodies.len()].into();
-        let mut inertias: ById<BodyId, Option<ArticulatedInertia<S>>> = vec![None; self.model.bodies.len()].into();
-        let mut residuals = Vec::new();
         for group in &self.groups {
-            let d = group.dimension;
-            // The residual, the wrench, then K or s″
-            let more = match (with_hessian, group.are_pairs) {
-                (false, _) => 0,
-                (true, false) => 21,
-                (true, true) => d * (d + 1) / 2,
+            let on_contact = |contact: &Contact<S>, twist: Twist<S>| {
+                let cost = contact.cost(self.cone, &contact.residual(&twist));
+                (0..group.dimension).fold(Wrench::zero(), |sum, k| sum + contact.row(k).times(cost.slope[k])).to_array()
             };
-            let width = d + 6 + more;
-            let mut found = vec![S::zero(); group.bodies.len() * width];
-            Self::each(group, [&motion], [&mut [], &mut found], |contact, [twist], state| {
-                let residual = contact.residual(&twist);
-                let cost = contact.cost(self.cone, &residual);
-                let wrench = (0..d).fold(Wrench::zero(), |sum, k| sum + contact.row(k).times(cost.slope[k]));
-                state[..d].copy_from_slice(&residual);
-                state[d..d + 6].copy_from_slice(&wrench.to_array());
-                let curvature = match (with_hessian, group.are_pairs) {
-                    (false, _) => Vec::new(),
-                    (true, false) => contact.inertia(&cost.curvature).to_vec(),
-                    (true, true) => (0..d).flat_map(|k| cost.curvature[k][..=k].to_vec()).collect(),
-                };
-                state[d + 6..].copy_from_slice(&curvature);
-            });
-            let mut own = Vec::new();
-            for ([first, second], found) in group.bodies.iter().zip(found.chunks(width)) {
-                own.extend_from_slice(&found[..d]);
-                let at = |k: usize| Vector3::new(found[d + k], found[d + k + 1], found[d + k + 2]);
-                let wrench = Wrench { moment: at(0), force: at(3) };
-                wrenches[*second] += wrench;
-                if !first.is_base() {
-                    wrenches[*first] += wrench.times(-S::one());
-                } else if with_hessian {
-                    *inertias[*second].get_or_insert(ArticulatedInertia::zero()) += of_triangle(&found[d + 6..]);
+            let wrench = |six: &[S]| Wrench { moment: Vector3::new(six[0], six[1], six[2]), force: Vector3::new(six[3], six[4], six[5]) };
+            if let Some(body) = group.body {
+                let mut sum = [S::zero(); 6];
+                Self::each(group, [&motion], &[], [&mut sum, &mut []], |contact, [twist], _, state| {
+                    state.iter_mut().zip(on_contact(contact, twist)).for_each(|(sum, x)| *sum += x);
+                });
+                wrenches[body] += wrench(&sum);
+            } else {
+                let mut found = vec![S::zero(); 6 * group.bodies.len()];
+                Self::each(group, [&motion], &[], [&mut [], &mut found], |contact, [twist], _, state| {
+                    state.copy_from_slice(&on_contact(contact, twist));
+                });
+                for ([first, second], found) in group.bodies.iter().zip(found.chunks(6)) {
+                    wrenches[*second] += wrench(found);
+                    wrenches[*first] += wrench(found).times(-S::one());
                 }
             }
-            if with_hessian && group.are_pairs {
-                let curvatures: Vec<&[S]> = found.chunks(width).map(|found| &found[d + 6..]).collect();
-                self.add_pairs(group, &curvatures, &mut hessian);
-            }
-            residuals.push(own);
         }
         for body in self.model.inward() {
             let own = wrenches[body];
             self.columns.iter().filter(|column| column.body == body).for_each(|column| forces[column.at] += own.power(&column.axis));
             wrenches[self.model.bodies[body].parent] += own;
         }
-        if with_hessian {
-            self.project(&mut inertias, &mut hessian);
-        }
         let slope = smooth.iter().zip(&forces).map(|(a, b)| *a + *b).collect();
         let size = smooth.iter().zip(&forces).map(|(a, b)| a.abs() + b.abs()).collect();
-        At { slope, size, hessian, residuals }
+        (slope, size)
     }
 
-    /// Adds Jᵀ s″ J of contacts of two bodies that push, with s″ of each on and below its diagonal.
-    fn add_pairs(&self, group: &Group<S>, curvatures: &[&[S]], hessian: &mut [S]) {
-        let (n, d, length) = (self.start.len(), group.dimension, contact::length(group.dimension));
+    /// H, on and below its diagonal.
+    fn curvature(&self, x: &[S]) -> Vec<S> {
+        let n = x.len();
+        let mut hessian = self.mass.clone();
+        for row in &self.rows {
+            let curvature = row.cost(row.along(x) - row.reference).curvature;
+            for (i, a) in &row.entries {
+                row.entries.iter().filter(|(j, _)| j <= i).for_each(|(j, b)| hessian[i * n + j] += curvature * *a * *b);
+            }
+        }
+        let motion = self.motion(x);
+        let mut inertias: ById<BodyId, Option<ArticulatedInertia<S>>> = vec![None; self.model.bodies.len()].into();
+        for group in &self.groups {
+            let Some(body) = group.body else {
+                self.add_pairs(group, &motion, &mut hessian);
+                continue;
+            };
+            let mut sum = [S::zero(); 21];
+            Self::each(group, [&motion], &[], [&mut sum, &mut []], |contact, [twist], _, state| {
+                let cost = contact.cost(self.cone, &contact.residual(&twist));
+                state.iter_mut().zip(contact.inertia(&cost.curvature)).for_each(|(sum, x)| *sum += x);
+            });
+            *inertias[body].get_or_insert(ArticulatedInertia::zero()) += of_triangle(&sum);
+        }
+        self.project(&mut inertias, &mut hessian);
+        hessian
+    }
+
+    /// Adds Jᵀ s″ J of contacts of two bodies.
+    fn add_pairs(&self, group: &Group<S>, motion: &Twists<S>, hessian: &mut [S]) {
+        let (n, d) = (self.start.len(), group.dimension);
         let all: Vec<Vec<i32>> = group.bodies.iter().map(|bodies| Self::signs(*bodies, self.model, &self.columns)).collect();
         let moving: Vec<usize> = (0..self.columns.len()).filter(|c| all.iter().any(|signs| signs[*c] != 0)).collect();
+        let signs: Vec<Vec<S>> = all.iter().map(|signs| moving.iter().map(|c| S::from_f64(f64::from(signs[*c]))).collect()).collect();
         let entries = self.entries(group);
-        let mut table = Vec::new();
-        for ((row, curvature), signs) in group.rows.chunks(length).zip(curvatures).zip(&all) {
-            table.extend_from_slice(row);
-            table.extend_from_slice(curvature);
-            table.extend(moving.iter().map(|c| S::from_f64(f64::from(signs[*c]))));
-        }
         let mut state: Vec<S> = entries.iter().map(|[i, j]| hessian[i * n + j]).collect();
-        S::for_each(all.len(), &table, &mut state, &mut [], |row, state, _| {
-            let (curvature, signs) = row[length..].split_at(d * (d + 1) / 2);
-            S::when(curvature[0].positive(), state, |state| {
-                let contact = Contact::of(row, d);
-                let mut rows = vec![vec![S::zero(); n]; d];
-                for (c, sign) in moving.iter().zip(signs) {
-                    let Column { at, axis, .. } = &self.columns[*c];
-                    (0..d).for_each(|k| rows[k][*at] += *sign * contact.along(k, axis));
-                }
-                let s = |k: usize, l: usize| curvature[k.max(l) * (k.max(l) + 1) / 2 + k.min(l)];
-                let pushed = |k: usize, j: usize| (0..d).fold(S::zero(), |sum, l| sum + s(k, l) * rows[l][j]);
-                let pushed: Vec<Vec<S>> = (0..d).map(|k| (0..n).map(|j| pushed(k, j)).collect()).collect();
-                for ([i, j], entry) in entries.iter().zip(state) {
-                    *entry += (0..d).fold(S::zero(), |sum, k| sum + rows[k][*i] * pushed[k][*j]);
-                }
-            });
+        Self::each(group, [motion], &signs, [&mut state, &mut []], |contact, [twist], signs, state| {
+            let s = contact.cost(self.cone, &contact.residual(&twist)).curvature;
+            let mut rows = vec![vec![S::zero(); n]; d];
+            for (c, sign) in moving.iter().zip(signs) {
+                let Column { at, axis, .. } = &self.columns[*c];
+                (0..d).for_each(|k| rows[k][*at] += *sign * contact.along(k, axis));
+            }
+            let pushed = |k: usize, j: usize| (0..d).fold(S::zero(), |sum, l| sum + s[k][l] * rows[l][j]);
+            let pushed: Vec<Vec<S>> = (0..d).map(|k| (0..n).map(|j| pushed(k, j)).collect()).collect();
+            for ([i, j], entry) in entries.iter().zip(state) {
+                *entry += (0..d).fold(S::zero(), |sum, k| sum + rows[k][*i] * pushed[k][*j]);
+            }
         });
         entries.iter().zip(state).for_each(|([i, j], entry)| hessian[i * n + j] = entry);
     }
@@ -407,7 +394,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
         let motion = self.motion(x);
         let mut state = [cost];
         for group in &self.groups {
-            Self::each(group, [&motion], [&mut state, &mut []], |contact, [twist], state| {
+            Self::each(group, [&motion], &[], [&mut state, &mut []], |contact, [twist], _, state| {
                 state[0] += contact.cost(self.cone, &contact.residual(&twist)).value;
             });
         }
@@ -415,31 +402,27 @@ impl<'a, S: Scalar> Problem<'a, S> {
     }
 
     /// α where the slope along dx is zero, by Newton's method within bounds.
-    fn line(&self, x: &[S], dx: &[S], at: &At<S>) -> S {
+    fn line(&self, x: &[S], dx: &[S], slope: &[S]) -> S {
         let (zero, one, half) = (S::zero(), S::one(), S::from_f64(0.5));
-        let by = self.motion(dx);
+        let (at, by) = (self.motion(x), self.motion(dx));
         let rows: Vec<[S; 2]> = self.rows.iter().map(|row| [row.along(x) - row.reference, row.along(dx)]).collect();
         let pushed = times(&self.mass, &self.branches, dx);
         let dot = |a: &[S], b: &[S]| a.iter().zip(b).fold(zero, |sum, (a, b)| sum + *a * *b);
         let smooth = [dot(&pushed, &self.beyond(x)), dot(&pushed, dx)];
-        // Each contact along the line
-        let tables: Vec<Vec<S>> = self
-            .groups
-            .iter()
-            .zip(&at.residuals)
-            .map(|(group, residuals)| {
-                let d = group.dimension;
-                let mut rates = vec![zero; group.bodies.len() * d];
-                Self::each(group, [&by], [&mut [], &mut rates], |contact, [dx], state| state.copy_from_slice(&contact.rates(&dx)));
-                let mut table = Vec::new();
-                for (k, row) in group.rows.chunks(contact::length(d)).enumerate() {
-                    table.extend_from_slice(&row[..contact::of_law(d)]);
-                    table.extend_from_slice(&residuals[k * d..][..d]);
-                    table.extend_from_slice(&rates[k * d..][..d]);
-                }
-                table
-            })
-            .collect();
+        // Each contact along the line, those of one dimension together
+        let mut tables: BTreeMap<usize, Vec<S>> = BTreeMap::new();
+        for group in &self.groups {
+            let d = group.dimension;
+            let mut found = vec![zero; 2 * d * group.bodies.len()];
+            Self::each(group, [&at, &by], &[], [&mut [], &mut found], |contact, [twist, dx], _, state| {
+                state[..d].copy_from_slice(&contact.residual(&twist));
+                state[d..].copy_from_slice(&contact.rates(&dx));
+            });
+            let table = tables.entry(d).or_default();
+            for (row, found) in group.rows.chunks(contact::length(d)).zip(found.chunks(2 * d)) {
+                table.extend(row[..contact::of_law(d)].iter().chain(found));
+            }
+        }
         let along = |alpha: S| {
             let [slope, curvature] = smooth;
             let mut state = [slope + alpha * curvature, curvature];
@@ -448,9 +431,9 @@ impl<'a, S: Scalar> Problem<'a, S> {
                 state[0] += cost.slope * *along;
                 state[1] += cost.curvature * *along * *along;
             }
-            for (group, table) in self.groups.iter().zip(&tables) {
-                let (d, law) = (group.dimension, contact::of_law(group.dimension));
-                S::for_each(group.bodies.len(), table, &mut state, &mut [], |row, state, _| {
+            for (&d, table) in &tables {
+                let law = contact::of_law(d);
+                S::for_each(table.len() / (law + 2 * d), table, &mut state, &mut [], |row, state, _| {
                     S::when(row[0].positive(), state, |state| {
                         let [slope, curvature] = Law::of(row, d).along(self.cone, &row[law..][..d], &row[law + d..], alpha);
                         state[0] += slope;
@@ -460,7 +443,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
             }
             state
         };
-        let first = dot(&at.slope, dx);
+        let first = dot(slope, dx);
         let [enough, still] = [LINE, STILL].map(|n| bound(first.abs(), n));
         let enough = enough * first.abs();
         // α, and bounds below and above it; above is 0 where there is none yet.
@@ -489,10 +472,10 @@ impl<'a, S: Scalar> Problem<'a, S> {
     }
 
     /// Σ g² / M, and the same of the sizes of its terms.
-    fn squares(&self, at: &At<S>) -> [S; 2] {
-        let n = self.start.len();
+    fn squares(&self, (slope, size): &(Vec<S>, Vec<S>)) -> [S; 2] {
+        let n = slope.len();
         let of = |x: &[S]| x.iter().enumerate().fold(S::zero(), |sum, (i, x)| sum + *x * *x / self.mass[i * n + i]);
-        [of(&at.slope), of(&at.size)]
+        [of(slope), of(size)]
     }
 
     /// The x at which the cost is least.
@@ -507,8 +490,8 @@ impl<'a, S: Scalar> Problem<'a, S> {
         state.push(-one);
         let _converged = S::repeat(MOST, &mut state, |state| {
             let (x, last) = state.split_at_mut(nv);
-            let at = self.at(x, true);
-            let [square, size] = self.squares(&at);
+            let slope = self.slope(x);
+            let [square, size] = self.squares(&slope);
             let [settled, small] = [SETTLED, SMALL].map(|n| bound(size, n.map(|n| 2 * n)));
             // Also of zeros, and of what is no number
             let is_settled = one - flag::<S>((square - settled * size).positive());
@@ -517,11 +500,11 @@ impl<'a, S: Scalar> Problem<'a, S> {
             let is_done = flag::<S>((is_settled + is_small * (one - falls)).positive());
             last[0] = square;
             S::when((one - is_done).positive(), x, |x| {
-                let mut dx: Vec<S> = at.slope.iter().map(|g| -*g).collect();
-                let mut hessian = at.hessian.clone();
+                let mut dx: Vec<S> = slope.0.iter().map(|g| -*g).collect();
+                let mut hessian = self.curvature(x);
                 factor(&mut hessian, &self.parents);
                 solve(&hessian, &self.parents, &mut dx);
-                let alpha = self.line(x, &dx, &at);
+                let alpha = self.line(x, &dx, &slope.0);
                 x.iter_mut().zip(&dx).for_each(|(x, dx)| *x += alpha * *dx);
             });
             is_done.positive()
