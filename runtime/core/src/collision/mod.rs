@@ -121,6 +121,19 @@ impl<S: Scalar> Shape<S> {
     }
 }
 
+impl<S: Scalar> Form<S> {
+    /// The radius of a sphere around it; of a plane 0.
+    fn radius(&self) -> S {
+        match self {
+            Self::Plane => S::zero(),
+            Self::Sphere { radius } => *radius,
+            Self::Capsule { radius, half } => *radius + *half,
+            Self::Cylinder { radius, half } => (*radius * *radius + *half * *half).sqrt(),
+            Self::Box { half: [a, b, c] } => (*a * *a + *b * *b + *c * *c).sqrt(),
+        }
+    }
+}
+
 impl<S> Form<S> {
     /// Its name.
     pub fn name(&self) -> &'static str {
@@ -159,6 +172,20 @@ impl<S> Form<S> {
         }
     }
 }
+
+/// Positive where two shapes may be less than `reach` apart, by spheres around them. The first may
+/// be a plane.
+pub(crate) fn are_near<S: Scalar>([first, second]: &[Placed<'_, S>; 2], reach: S) -> S {
+    let apart = second.position - first.position;
+    let most = (first.form.radius() + second.form.radius()) * S::from_f64(SLACK) + reach;
+    match first.form {
+        Form::Plane => most - first.axis(2).dot(&apart),
+        _ => most * most - apart.dot(&apart),
+    }
+}
+
+/// Spheres around shapes are larger by this factor, so that rounding does not count.
+const SLACK: f64 = 1.0 + 1e-6;
 
 /// The places where two shapes may touch, the one of lower rank first, as many as
 /// [`Form::places`] says. `reach`: a place beyond this distance does not count, m.

@@ -75,20 +75,24 @@ pub(super) fn capsules<S: Scalar>(
     let place = |x: S, y: S, exists: S| balls([(first.position + e * x, a), (second.position + f * y, b)], axes, exists);
     // Parallel: the ends of the first, then those of the second, two at most.
     let ends = [(one, clipped(y_at(one), one)), (-one, clipped(y_at(-one), one)), (x_at(one), one), (x_at(-one), -one)];
-    let (mut found, mut chosen) = (zero, [(zero, zero, zero); 2]);
-    for (x, y) in ends {
-        let one_place = place(x, y, one);
-        let counts = one - flag::<S>((one_place.distance - reach).positive());
-        for (k, (own_x, own_y, exists)) in chosen.iter_mut().enumerate() {
-            // The first free one takes it.
-            let takes = counts * flag::<S>((S::from_f64(0.5) - (found - S::from_f64(k as f64)).abs()).positive());
-            *own_x = S::select(takes.positive(), x, *own_x);
-            *own_y = S::select(takes.positive(), y, *own_y);
-            *exists += takes;
+    // Both places: x, y, and whether it exists
+    let mut chosen = [x, y, one, zero, zero, zero];
+    S::when((one - is_crossed).positive(), &mut chosen, |chosen| {
+        let mut found = zero;
+        chosen.fill(zero);
+        for (x, y) in ends {
+            let one_place = place(x, y, one);
+            let counts = one - flag::<S>((one_place.distance - reach).positive());
+            for (k, own) in chosen.chunks_mut(3).enumerate() {
+                // The first free one takes it.
+                let takes = counts * flag::<S>((S::from_f64(0.5) - (found - S::from_f64(k as f64)).abs()).positive());
+                own[0] = S::select(takes.positive(), x, own[0]);
+                own[1] = S::select(takes.positive(), y, own[1]);
+                own[2] += takes;
+            }
+            found += counts;
         }
-        found += counts;
-    }
-    let [(x0, y0, exists0), (x1, y1, exists1)] = chosen;
-    let pick = |a: S, b: S| S::select(crosses, a, b);
-    [place(pick(x, x0), pick(y, y0), pick(one, exists0)), place(x1, y1, pick(zero, exists1))]
+    });
+    let [x0, y0, exists0, x1, y1, exists1] = chosen;
+    [place(x0, y0, exists0), place(x1, y1, exists1)]
 }

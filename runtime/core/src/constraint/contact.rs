@@ -16,7 +16,6 @@ use alloc::vec::Vec;
 use super::{Cone, Pair};
 use crate::Scalar;
 use crate::collision::Touch;
-use crate::scalar::flag;
 use crate::spatial::{Twist, Vector3, Wrench};
 
 /// No contact has more rows.
@@ -25,8 +24,6 @@ pub const MOST_ROWS: usize = 6;
 /// Numbers of a contact that do not change while the accelerations are found.
 #[derive(Clone, Debug)]
 pub(super) struct Contact<S> {
-    /// 1 where the contact acts, else 0.
-    pub(super) acts: S,
     /// The normal and two axes across it.
     frame: [Vector3<S>; 3],
     /// Their moments about the origin.
@@ -69,7 +66,6 @@ impl<S: Scalar> Contact<S> {
         let frame = touch.frame();
         let moments = frame.map(|axis| touch.point.cross(&axis));
         let mut contact = Self {
-            acts: flag::<S>((pair.margin - touch.distance).positive()) * touch.exists,
             frame,
             moments,
             reference: Vec::new(),
@@ -93,12 +89,13 @@ impl<S: Scalar> Contact<S> {
         self
     }
 
-    /// As a row of a table.
-    pub(super) fn put(&self, row: &mut Vec<S>) {
-        row.extend_from_slice(&[self.acts, self.law.curvature, self.law.mu]);
+    /// As a row of a table, which begins with 1: it acts. Zeros are a contact that does not.
+    pub(super) fn row_of_table(&self) -> Vec<S> {
+        let mut row = [S::one(), self.law.curvature, self.law.mu].to_vec();
         row.extend_from_slice(&self.law.friction);
         self.frame.iter().chain(&self.moments).for_each(|axis| row.extend_from_slice(axis.as_slice()));
         row.extend_from_slice(&self.reference);
+        row
     }
 
     /// Of such a row.
@@ -106,7 +103,6 @@ impl<S: Scalar> Contact<S> {
         let axes = &row[of_law(dimension)..];
         let axis = |k: usize| Vector3::new(axes[3 * k], axes[3 * k + 1], axes[3 * k + 2]);
         Self {
-            acts: row[0],
             frame: core::array::from_fn(axis),
             moments: core::array::from_fn(|k| axis(3 + k)),
             reference: axes[18..][..dimension].to_vec(),

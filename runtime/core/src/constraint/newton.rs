@@ -21,7 +21,7 @@ use super::{Cone, Constraints};
 use crate::Scalar;
 use crate::algorithm::ltdl::{factor, path_to_root, solve};
 use crate::algorithm::{Placed as Bodies, Workspace, mass_matrix};
-use crate::collision::{Placed, touches};
+use crate::collision::{Form, Placed, are_near, touches};
 use crate::index::{BodyId, ById};
 use crate::model::Model;
 use crate::scalar::{flag, two_to};
@@ -83,15 +83,22 @@ struct Column<S> {
     axis: Twist<S>,
 }
 
-/// Contacts of one dimension: of one body with the world, or of pairs of bodies.
+/// Contacts of one dimension of two bodies, of which the first may be the base.
 struct Group<S> {
-    /// `None`: pairs of bodies.
-    body: Option<BodyId>,
+    bodies: [BodyId; 2],
     dimension: usize,
-    /// The bodies of each contact; the first may be the base.
-    bodies: Vec<[BodyId; 2]>,
     /// A row of numbers for each contact.
     rows: Vec<S>,
+}
+
+impl<S> Group<S> {
+    fn is_of_world(&self) -> bool {
+        self.bodies[0].is_base()
+    }
+
+    fn count(&self) -> usize {
+        self.rows.len() / contact::length(self.dimension)
+    }
 }
 
 type Twists<S> = ById<BodyId, Twist<S>>;
@@ -151,48 +158,43 @@ impl<'a, S: Scalar> Problem<'a, S> {
             Placed { form: &shape.form, rotation, position }
         };
         for pair in &constraints.pairs {
-            let [first, second] = pair.shapes;
-            let bodies = [first, second].map(|shape| constraints.shapes[shape].body);
+            let both = pair.shapes.map(place);
+            let bodies = pair.shapes.map(|shape| constraints.shapes[shape].body);
             let relative = twists[bodies[1]] - twists[bodies[0]];
-            for touch in touches(&place(first), &place(second), pair.margin) {
-                self.add(bodies, pair.dimension, Contact::new(pair, self.cone, &touch, &relative));
-            }
+            let is_reversed = bodies[1].is_base();
+            let length = contact::length(pair.dimension);
+            let mut rows = vec![S::zero(); length * Form::places(both[0].form, both[1].form).unwrap_or(0)];
+            S::when(are_near(&both, pair.margin).positive(), &mut rows, |rows| {
+                for (touch, row) in touches(&both[0], &both[1], pair.margin).iter().zip(rows.chunks_mut(length)) {
+                    let acts = flag::<S>((pair.margin - touch.distance).positive()) * touch.exists;
+                    S::when(acts.positive(), row, |row| {
+                        let contact = Contact::new(pair, self.cone, touch, &relative);
+                        row.copy_from_slice(&if is_reversed { contact.reversed() } else { contact }.row_of_table());
+                    });
+                }
+            });
+            self.add(if is_reversed { [bodies[1], bodies[0]] } else { bodies }, pair.dimension, &rows);
         }
     }
 
-    fn add(&mut self, bodies: [BodyId; 2], dimension: usize, contact: Contact<S>) {
-        let (bodies, contact) = match bodies {
-            [first, BodyId::BASE] => ([BodyId::BASE, first], contact.reversed()),
-            _ => (bodies, contact),
-        };
-        let body = bodies[0].is_base().then_some(bodies[1]);
-        let known = self.groups.iter().position(|group| group.body == body && group.dimension == dimension);
-        let index = known.unwrap_or_else(|| {
-            self.groups.push(Group { body, dimension, bodies: Vec::new(), rows: Vec::new() });
-            self.groups.len() - 1
-        });
-        let group = &mut self.groups[index];
-        group.bodies.push(bodies);
-        contact.put(&mut group.rows);
+    fn add(&mut self, bodies: [BodyId; 2], dimension: usize, rows: &[S]) {
+        match self.groups.iter_mut().find(|group| group.bodies == bodies && group.dimension == dimension) {
+            Some(group) => group.rows.extend_from_slice(rows),
+            None => self.groups.push(Group { bodies, dimension, rows: rows.to_vec() }),
+        }
     }
 
-    /// In which way each column moves a contact of these bodies.
-    fn signs([first, second]: [BodyId; 2], model: &Model<S>, columns: &[Column<S>]) -> Vec<i32> {
-        let moves = |column: &Column<S>, body: BodyId| i32::from(!body.is_base() && model.is_on_the_way(column.body, body));
-        columns.iter().map(|column| moves(column, second) - moves(column, first)).collect()
+    /// The columns that move a contact of a group, each with whether it moves the first body.
+    fn moving(&self, group: &Group<S>) -> Vec<(&Column<S>, bool)> {
+        let moves = |column: &Column<S>, body: BodyId| !body.is_base() && self.model.is_on_the_way(column.body, body);
+        let both = self.columns.iter().map(|column| (column, group.bodies.map(|body| moves(column, body))));
+        both.filter(|(_, [first, second])| first != second).map(|(column, [first, _])| (column, first)).collect()
     }
 
-    /// Entries of H, on and below its diagonal, to which the contacts of a group of pairs add.
+    /// Entries of H, on and below its diagonal, to which the contacts of a group add.
     fn entries(&self, group: &Group<S>) -> Vec<[usize; 2]> {
-        let mut entries = BTreeSet::new();
-        for bodies in &group.bodies {
-            let signs = Self::signs(*bodies, self.model, &self.columns);
-            let own: Vec<usize> = self.columns.iter().zip(signs).filter(|(_, sign)| *sign != 0).map(|(column, _)| column.at).collect();
-            for i in &own {
-                entries.extend(own.iter().filter(|j| *j <= i).map(|j| [*i, *j]));
-            }
-        }
-        entries.into_iter().collect()
+        let own: BTreeSet<usize> = self.moving(group).iter().map(|(column, _)| column.at).collect();
+        own.iter().flat_map(|i| own.range(..=*i).map(|j| [*i, *j])).collect()
     }
 
     /// The way to the base of each degree of freedom in H: contacts of two bodies couple branches.
@@ -200,7 +202,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
     fn ways(&self) -> Vec<usize> {
         let n = self.branches.len();
         let mut before: Vec<BTreeSet<usize>> = (0..n).map(|i| path_to_root(&self.branches, i).collect()).collect();
-        for [i, j] in self.groups.iter().filter(|group| group.body.is_none()).flat_map(|group| self.entries(group)) {
+        for [i, j] in self.groups.iter().filter(|group| !group.is_of_world()).flat_map(|group| self.entries(group)) {
             if j < i {
                 before[i].insert(j);
             }
@@ -231,35 +233,19 @@ impl<'a, S: Scalar> Problem<'a, S> {
     }
 
     /// Visits the contacts of a group that act, with the relative twists of N motions:
-    /// `visit(contact, twists, more, state)` has its results behind the state, zeros elsewhere.
-    /// `more`: so many more numbers of each contact.
+    /// `visit(contact, twists, state)` has its results behind the state, zeros elsewhere.
     fn each<const N: usize>(
         group: &Group<S>,
         motions: [&Twists<S>; N],
-        more: &[Vec<S>],
         [carried, results]: [&mut [S]; 2],
-        visit: impl Fn(&Contact<S>, [Twist<S>; N], &[S], &mut [S]),
+        visit: impl Fn(&Contact<S>, [Twist<S>; N], &mut [S]),
     ) {
-        let (d, count, length) = (group.dimension, group.bodies.len(), contact::length(group.dimension));
-        let mut table = Vec::new();
-        for (k, ([first, second], row)) in group.bodies.iter().zip(group.rows.chunks(length)).enumerate() {
-            table.extend_from_slice(row);
-            for twists in motions.into_iter().filter(|_| group.body.is_none()) {
-                let relative = twists[*second] - twists[*first];
-                table.extend(relative.angular.iter().chain(&relative.linear));
-            }
-            table.extend(more.get(k).into_iter().flatten());
-        }
-        S::for_each(count, &table, carried, results, |row, carried, results| {
+        let [first, second] = group.bodies;
+        S::for_each(group.count(), &group.rows, carried, results, |row, carried, results| {
             let mut state = [&*carried, &*results].concat();
             S::when(row[0].positive(), &mut state, |state| {
-                let three = |at: usize| Vector3::new(row[at], row[at + 1], row[at + 2]);
-                let twist = |k: usize| match group.body {
-                    Some(body) => motions[k][body],
-                    None => Twist { angular: three(length + 6 * k), linear: three(length + 6 * k + 3) },
-                };
-                let more = &row[length + if group.body.is_none() { 6 * N } else { 0 }..];
-                visit(&Contact::of(row, d), core::array::from_fn(twist), more, state);
+                let relative = motions.map(|twists| twists[second] - twists[first]);
+                visit(&Contact::of(row, group.dimension), relative, state);
             });
             let (before, after) = state.split_at(carried.len());
             carried.copy_from_slice(before);
@@ -276,30 +262,27 @@ impl<'a, S: Scalar> Problem<'a, S> {
             row.entries.iter().for_each(|(k, entry)| forces[*k] += *entry * slope);
         }
         let motion = self.motion(x);
-        let mut wrenches: ById<BodyId, Wrench<S>> = vec![Wrench::zero(); self.model.bodies.len()].into();
+        let mut wrenches: ById<BodyId, [S; 6]> = vec![[S::zero(); 6]; self.model.bodies.len()].into();
         for group in &self.groups {
-            let on_contact = |contact: &Contact<S>, twist: Twist<S>| {
+            let [first, second] = group.bodies;
+            let mut sums = wrenches[second].to_vec();
+            sums.extend(wrenches[first].iter().filter(|_| !group.is_of_world()));
+            Self::each(group, [&motion], [&mut sums, &mut []], |contact, [twist], sums| {
                 let cost = contact.cost(self.cone, &contact.residual(&twist));
-                (0..group.dimension).fold(Wrench::zero(), |sum, k| sum + contact.row(k).times(cost.slope[k])).to_array()
-            };
-            let wrench = |six: &[S]| Wrench { moment: Vector3::new(six[0], six[1], six[2]), force: Vector3::new(six[3], six[4], six[5]) };
-            if let Some(body) = group.body {
-                let mut sum = [S::zero(); 6];
-                Self::each(group, [&motion], &[], [&mut sum, &mut []], |contact, [twist], _, state| {
-                    state.iter_mut().zip(on_contact(contact, twist)).for_each(|(sum, x)| *sum += x);
-                });
-                wrenches[body] += wrench(&sum);
-            } else {
-                let mut found = vec![S::zero(); 6 * group.bodies.len()];
-                Self::each(group, [&motion], &[], [&mut [], &mut found], |contact, [twist], _, state| {
-                    state.copy_from_slice(&on_contact(contact, twist));
-                });
-                for ([first, second], found) in group.bodies.iter().zip(found.chunks(6)) {
-                    wrenches[*second] += wrench(found);
-                    wrenches[*first] += wrench(found).times(-S::one());
-                }
+                let wrench = (0..group.dimension).fold(Wrench::zero(), |sum, k| sum + contact.row(k).times(cost.slope[k])).to_array();
+                let (on_second, on_first) = sums.split_at_mut(6);
+                on_second.iter_mut().zip(wrench).for_each(|(sum, x)| *sum += x);
+                on_first.iter_mut().zip(wrench).for_each(|(sum, x)| *sum -= x);
+            });
+            let (on_second, on_first) = sums.split_at(6);
+            wrenches[second].copy_from_slice(on_second);
+            if !group.is_of_world() {
+                wrenches[first].copy_from_slice(on_first);
             }
         }
+        let three = |x: &[S]| Vector3::new(x[0], x[1], x[2]);
+        let of = |six: [S; 6]| Wrench { moment: three(&six[..3]), force: three(&six[3..]) };
+        let mut wrenches: ById<BodyId, Wrench<S>> = wrenches.iter().map(|six| of(*six)).collect::<Vec<_>>().into();
         for body in self.model.inward() {
             let own = wrenches[body];
             self.columns.iter().filter(|column| column.body == body).for_each(|column| forces[column.at] += own.power(&column.axis));
@@ -323,16 +306,16 @@ impl<'a, S: Scalar> Problem<'a, S> {
         let motion = self.motion(x);
         let mut inertias: ById<BodyId, Option<ArticulatedInertia<S>>> = vec![None; self.model.bodies.len()].into();
         for group in &self.groups {
-            let Some(body) = group.body else {
+            if !group.is_of_world() {
                 self.add_pairs(group, &motion, &mut hessian);
                 continue;
-            };
+            }
             let mut sum = [S::zero(); 21];
-            Self::each(group, [&motion], &[], [&mut sum, &mut []], |contact, [twist], _, state| {
+            Self::each(group, [&motion], [&mut sum, &mut []], |contact, [twist], sum| {
                 let cost = contact.cost(self.cone, &contact.residual(&twist));
-                state.iter_mut().zip(contact.inertia(&cost.curvature)).for_each(|(sum, x)| *sum += x);
+                sum.iter_mut().zip(contact.inertia(&cost.curvature)).for_each(|(sum, x)| *sum += x);
             });
-            *inertias[body].get_or_insert(ArticulatedInertia::zero()) += of_triangle(&sum);
+            *inertias[group.bodies[1]].get_or_insert(ArticulatedInertia::zero()) += of_triangle(&sum);
         }
         self.project(&mut inertias, &mut hessian);
         hessian
@@ -340,18 +323,16 @@ impl<'a, S: Scalar> Problem<'a, S> {
 
     /// Adds Jᵀ s″ J of contacts of two bodies.
     fn add_pairs(&self, group: &Group<S>, motion: &Twists<S>, hessian: &mut [S]) {
-        let (n, d) = (self.start.len(), group.dimension);
-        let all: Vec<Vec<i32>> = group.bodies.iter().map(|bodies| Self::signs(*bodies, self.model, &self.columns)).collect();
-        let moving: Vec<usize> = (0..self.columns.len()).filter(|c| all.iter().any(|signs| signs[*c] != 0)).collect();
-        let signs: Vec<Vec<S>> = all.iter().map(|signs| moving.iter().map(|c| S::from_f64(f64::from(signs[*c]))).collect()).collect();
-        let entries = self.entries(group);
+        let (n, d, entries, moving) = (self.start.len(), group.dimension, self.entries(group), self.moving(group));
         let mut state: Vec<S> = entries.iter().map(|[i, j]| hessian[i * n + j]).collect();
-        Self::each(group, [motion], &signs, [&mut state, &mut []], |contact, [twist], signs, state| {
+        Self::each(group, [motion], [&mut state, &mut []], |contact, [twist], state| {
             let s = contact.cost(self.cone, &contact.residual(&twist)).curvature;
             let mut rows = vec![vec![S::zero(); n]; d];
-            for (c, sign) in moving.iter().zip(signs) {
-                let Column { at, axis, .. } = &self.columns[*c];
-                (0..d).for_each(|k| rows[k][*at] += *sign * contact.along(k, axis));
+            for (Column { at, axis, .. }, is_first) in &moving {
+                for (k, row) in rows.iter_mut().enumerate() {
+                    let entry = contact.along(k, axis);
+                    row[*at] += if *is_first { -entry } else { entry };
+                }
             }
             let pushed = |k: usize, j: usize| (0..d).fold(S::zero(), |sum, l| sum + s[k][l] * rows[l][j]);
             let pushed: Vec<Vec<S>> = (0..d).map(|k| (0..n).map(|j| pushed(k, j)).collect()).collect();
@@ -394,7 +375,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
         let motion = self.motion(x);
         let mut state = [cost];
         for group in &self.groups {
-            Self::each(group, [&motion], &[], [&mut state, &mut []], |contact, [twist], _, state| {
+            Self::each(group, [&motion], [&mut state, &mut []], |contact, [twist], state| {
                 state[0] += contact.cost(self.cone, &contact.residual(&twist)).value;
             });
         }
@@ -409,16 +390,16 @@ impl<'a, S: Scalar> Problem<'a, S> {
         let pushed = times(&self.mass, &self.branches, dx);
         let dot = |a: &[S], b: &[S]| a.iter().zip(b).fold(zero, |sum, (a, b)| sum + *a * *b);
         let smooth = [dot(&pushed, &self.beyond(x)), dot(&pushed, dx)];
-        // Each contact along the line, those of one dimension together
-        let mut tables: BTreeMap<usize, Vec<S>> = BTreeMap::new();
-        for group in &self.groups {
+        // Each contact along the line: those with the world together, if they have one dimension
+        let mut tables: BTreeMap<(usize, Option<usize>), Vec<S>> = BTreeMap::new();
+        for (number, group) in self.groups.iter().enumerate() {
             let d = group.dimension;
-            let mut found = vec![zero; 2 * d * group.bodies.len()];
-            Self::each(group, [&at, &by], &[], [&mut [], &mut found], |contact, [twist, dx], _, state| {
+            let mut found = vec![zero; 2 * d * group.count()];
+            Self::each(group, [&at, &by], [&mut [], &mut found], |contact, [twist, dx], state| {
                 state[..d].copy_from_slice(&contact.residual(&twist));
                 state[d..].copy_from_slice(&contact.rates(&dx));
             });
-            let table = tables.entry(d).or_default();
+            let table = tables.entry((d, (!group.is_of_world()).then_some(number))).or_default();
             for (row, found) in group.rows.chunks(contact::length(d)).zip(found.chunks(2 * d)) {
                 table.extend(row[..contact::of_law(d)].iter().chain(found));
             }
@@ -431,7 +412,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
                 state[0] += cost.slope * *along;
                 state[1] += cost.curvature * *along * *along;
             }
-            for (&d, table) in &tables {
+            for (&(d, _), table) in &tables {
                 let law = contact::of_law(d);
                 S::for_each(table.len() / (law + 2 * d), table, &mut state, &mut [], |row, state, _| {
                     S::when(row[0].positive(), state, |state| {
