@@ -24,10 +24,10 @@ pub const MOST_ROWS: usize = 6;
 /// Numbers of a contact that do not change while the accelerations are found.
 #[derive(Clone, Debug)]
 pub(super) struct Contact<S> {
-    /// The normal and two axes across it.
-    frame: [Vector3<S>; 3],
+    /// The normal, and two axes across it if the contact has friction.
+    frame: Vec<Vector3<S>>,
     /// Their moments about the origin.
-    moments: [Vector3<S>; 3],
+    moments: Vec<Vector3<S>>,
     /// r.
     reference: Vec<S>,
     law: Law<S>,
@@ -51,20 +51,24 @@ pub(super) struct Cost<S> {
 
 /// How many numbers a contact is as a row of a table.
 pub(super) const fn length(dimension: usize) -> usize {
-    of_law(dimension) + 9 + 9 + dimension
+    of_law(dimension) + 6 * axes(dimension) + dimension
 }
 
 /// How many of them are whether it acts, and its law. These are first.
 pub(super) const fn of_law(dimension: usize) -> usize {
-    1 + 2 + dimension - 1
+    if dimension == 1 { 2 } else { 2 + dimension }
+}
+
+const fn axes(dimension: usize) -> usize {
+    if dimension == 1 { 1 } else { 3 }
 }
 
 impl<S: Scalar> Contact<S> {
     /// A pair that touches. `twist`: of the second body seen from the first, about the same origin
     /// as the touch, in the same axes.
     pub(super) fn new(pair: &Pair<S>, cone: Cone, touch: &Touch<S>, twist: &Twist<S>) -> Self {
-        let frame = touch.frame();
-        let moments = frame.map(|axis| touch.point.cross(&axis));
+        let frame = touch.frame()[..axes(pair.dimension)].to_vec();
+        let moments = frame.iter().map(|axis| touch.point.cross(axis)).collect();
         let mut contact = Self {
             frame,
             moments,
@@ -91,8 +95,11 @@ impl<S: Scalar> Contact<S> {
 
     /// As a row of a table, which begins with 1: it acts. Zeros are a contact that does not.
     pub(super) fn row_of_table(&self) -> Vec<S> {
-        let mut row = [S::one(), self.law.curvature, self.law.mu].to_vec();
-        row.extend_from_slice(&self.law.friction);
+        let mut row = [S::one(), self.law.curvature].to_vec();
+        if self.dimension() > 1 {
+            row.push(self.law.mu);
+            row.extend_from_slice(&self.law.friction);
+        }
         self.frame.iter().chain(&self.moments).for_each(|axis| row.extend_from_slice(axis.as_slice()));
         row.extend_from_slice(&self.reference);
         row
@@ -100,12 +107,12 @@ impl<S: Scalar> Contact<S> {
 
     /// Of such a row.
     pub(super) fn of(row: &[S], dimension: usize) -> Self {
-        let axes = &row[of_law(dimension)..];
-        let axis = |k: usize| Vector3::new(axes[3 * k], axes[3 * k + 1], axes[3 * k + 2]);
+        let (count, rest) = (axes(dimension), &row[of_law(dimension)..]);
+        let axis = |k: usize| Vector3::new(rest[3 * k], rest[3 * k + 1], rest[3 * k + 2]);
         Self {
-            frame: core::array::from_fn(axis),
-            moments: core::array::from_fn(|k| axis(3 + k)),
-            reference: axes[18..][..dimension].to_vec(),
+            frame: (0..count).map(axis).collect(),
+            moments: (count..2 * count).map(axis).collect(),
+            reference: rest[6 * count..][..dimension].to_vec(),
             law: Law::of(row, dimension),
         }
     }
@@ -160,7 +167,10 @@ impl<S: Scalar> Contact<S> {
 impl<S: Scalar> Law<S> {
     /// Of the row of a contact.
     pub(super) fn of(row: &[S], dimension: usize) -> Self {
-        Self { curvature: row[1], mu: row[2], friction: row[3..][..dimension - 1].to_vec() }
+        match dimension {
+            1 => Self { curvature: row[1], mu: S::zero(), friction: Vec::new() },
+            _ => Self { curvature: row[1], mu: row[2], friction: row[3..][..dimension - 1].to_vec() },
+        }
     }
 
     /// Slope and curvature of s(u + α v) over α.
