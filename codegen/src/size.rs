@@ -4,7 +4,10 @@
 //! of joints quadratically, and one that inverts the mass matrix cubically. A test compares
 //! predictions with generated code.
 
-use articulated_core::algorithm::{FunctionId, Shape};
+use std::collections::BTreeSet;
+
+use articulated_core::algorithm::{FunctionId, Group, Shape};
+use articulated_core::constraint::Pair;
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::index::{BodyId, ById};
 use articulated_core::model::Model;
@@ -43,6 +46,8 @@ struct Tree {
     frame_squares: f64,
     /// Whether there are mimic joints: then forward dynamics factorises the mass matrix.
     has_followers: bool,
+    /// Instructions of the accelerations with constraints.
+    constraints: f64,
 }
 
 impl Tree {
@@ -72,6 +77,7 @@ impl Tree {
             frame_pairs: of_frames.clone().sum(),
             frame_squares: of_frames.map(|depth| depth * depth).sum(),
             has_followers: model.has_followers(),
+            constraints: constraints(model),
         }
     }
 
@@ -114,8 +120,46 @@ impl Tree {
         let contains = part.function.contains;
         let own = if contains.is_empty() { of(part.function.id) } else { contains.iter().map(|id| of(*id)).sum() };
         let frames = if part.function.asks_for_frames() { self.frames } else { 0.0 };
-        own + 100.0 * self.bodies + 20.0 * frames
+        let constraints = match part.function.group {
+            Group::Constraints if part.function.name.contains("rk4") => 4.0 * self.constraints,
+            Group::Constraints => self.constraints,
+            _ => 0.0,
+        };
+        own + constraints + 100.0 * self.bodies + 20.0 * frames
     }
+}
+
+/// Instructions of the accelerations with constraints: those of each pair of shapes, of each pair
+/// of bodies that may touch, and of a factorisation in which such bodies are coupled.
+fn constraints(model: &Model<f64>) -> f64 {
+    let all = model.constraints();
+    if all.is_empty() {
+        return 0.0;
+    }
+    let moved = |body: BodyId| -> BTreeSet<usize> { model.freedoms_of(body).into_iter().collect() };
+    let bodies_of = |pair: &Pair| pair.shapes.map(|shape| all.shapes[shape].body);
+    let groups: BTreeSet<[BodyId; 2]> = all.pairs.iter().map(|pair| bodies_of(pair)).collect();
+    let mut coupled: Vec<BTreeSet<usize>> = model.bodies().with_ids().map(|(body, _)| moved(body)).collect();
+    let mut sum = 250.0 * all.pairs.len() as f64 + 40.0 * (all.limits.len() + all.friction.len()) as f64;
+    for bodies in groups {
+        let [first, second] = bodies.map(moved);
+        let own: BTreeSet<usize> = first.symmetric_difference(&second).copied().collect();
+        let is_pair = !bodies[0].is_base() && !bodies[1].is_base();
+        sum += if is_pair { 550.0 + 1.5 * (own.len() * own.len()) as f64 } else { 800.0 };
+        if is_pair {
+            coupled.push(own);
+        }
+    }
+    // Sets that share a degree of freedom are one.
+    let mut merged: Vec<BTreeSet<usize>> = Vec::new();
+    for mut set in coupled {
+        let (touching, apart): (Vec<_>, Vec<_>) = merged.into_iter().partition(|other| !other.is_disjoint(&set));
+        touching.into_iter().for_each(|mut other| set.append(&mut other));
+        merged = apart;
+        merged.push(set);
+    }
+    let cube = |n: usize| (n * n * n) as f64 / 6.0;
+    sum + merged.iter().map(|set| cube(set.len()) + 3.0 * (set.len() * set.len()) as f64).sum::<f64>()
 }
 
 /// Predicted source of a function, megabytes.

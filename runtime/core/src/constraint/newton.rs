@@ -1,4 +1,4 @@
-//! The minimum of the problem of constraints, by Newton's method with an exact line search.
+//! The minimum of the problem of constraints, by Newton's method with a line search.
 //!
 //! ```text
 //! g = M (x − x₀) + Jᵀ s′(J x − r)      H = M + Jᵀ s″ J      x ← x − α H⁻¹ g
@@ -31,9 +31,10 @@ use crate::spatial::{ArticulatedInertia, Matrix3, Placement, Twist, Vector3, Wre
 const MOST: usize = 50;
 /// Largest number of steps of a line search.
 const MOST_ON_A_LINE: usize = 40;
-/// Powers of two, of `f64` and of `f32`: the slope on a line that ends its search, as a part of
-/// that at its start, and a change of α that is none.
-const LINE: [i32; 2] = [-30, -10];
+/// The slope on a line that ends its search, as a part of that at its start: less would cost more
+/// than it saves.
+const LINE: f64 = 1.0 / 256.0;
+/// Powers of two, of `f64` and of `f32`: a change of α that is none.
 const STILL: [i32; 2] = [-50, -20];
 /// The same: a gradient in parts of its terms that ends the iteration, and one that ends it if it
 /// no longer falls.
@@ -425,8 +426,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
             state
         };
         let first = dot(slope, dx);
-        let [enough, still] = [LINE, STILL].map(|n| bound(first.abs(), n));
-        let enough = enough * first.abs();
+        let (enough, still) = (S::from_f64(LINE) * first.abs(), bound(first.abs(), STILL));
         // α, and bounds below and above it; above is 0 where there is none yet.
         let mut state = [one, zero, zero];
         let _ = S::repeat(MOST_ON_A_LINE, &mut state, |state| {
