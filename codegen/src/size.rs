@@ -138,7 +138,7 @@ fn constraints(model: &Model<f64>) -> f64 {
     }
     let moved = |body: BodyId| -> BTreeSet<usize> { model.freedoms_of(body).into_iter().collect() };
     let bodies_of = |pair: &Pair| pair.shapes.map(|shape| all.shapes[shape].body);
-    let groups: BTreeSet<[BodyId; 2]> = all.pairs.iter().map(|pair| bodies_of(pair)).collect();
+    let groups: BTreeSet<[BodyId; 2]> = all.pairs.iter().map(bodies_of).collect();
     let mut coupled: Vec<BTreeSet<usize>> = model.bodies().with_ids().map(|(body, _)| moved(body)).collect();
     let mut sum = 250.0 * all.pairs.len() as f64 + 40.0 * (all.limits.len() + all.friction.len()) as f64;
     for bodies in groups {

@@ -488,7 +488,12 @@ impl Region {
             Turns::Each { .. } => &mut [],
         };
         let columns = self.columns.iter_mut().flat_map(|(_, values)| values);
-        self.carried.iter_mut().map(|carried| &mut carried.start).chain(self.captured.iter_mut().map(|(_, of)| of)).chain(columns).chain(more)
+        self.carried
+            .iter_mut()
+            .map(|carried| &mut carried.start)
+            .chain(self.captured.iter_mut().map(|(_, of)| of))
+            .chain(columns)
+            .chain(more)
     }
 
     /// The values that statements after it read.

@@ -150,7 +150,8 @@ fn contacts(scope: &mut Scope<'_>, links: &[&str], parents_touch: bool, all: &mu
     keep(scope, links, chosen, all);
 }
 
-/// The numbers of a tag `<pair>`; what it does not have are MuJoCo's defaults, not those of the geoms.
+/// The numbers of a tag `<pair>`; what it does not have are MuJoCo's defaults, not those of the
+/// geoms.
 fn pair(shapes: [usize; 2], values: &Values<'_>, log: &mut Diagnostics) -> TouchingPair {
     let [slide, turn, roll] = FRICTION;
     TouchingPair {
