@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use articulated_codegen::nearest;
 use articulated_codegen::scene::{self, Bundled, Prepared, Scene};
-use articulated_formats::{FORMATS, Formats, MOST_BYTES, nearest_file, read_file};
+use articulated_formats::{FORMATS, Formats, LeaveOut, MOST_BYTES, nearest_file, read_file};
 use articulated_lab::session::Session;
 use articulated_scene::folder_of;
 
@@ -21,6 +21,11 @@ pub(crate) fn is_scene(path: &Path) -> bool {
 /// The scene, and the folder of its file. A bundled one has precedence over a file of its name,
 /// like a bundled robot: `./name` is the file.
 pub(crate) fn open(path: &Path) -> Result<(Prepared, PathBuf), Failure> {
+    open_without(path, &[])
+}
+
+/// The same without these kinds of what a robot's file has.
+fn open_without(path: &Path, leave_out: &[LeaveOut]) -> Result<(Prepared, PathBuf), Failure> {
     if let Some(bundled) = path.to_str().and_then(articulated_models::scene) {
         let scene = Scene::read(&bundled.file(), bundled.toml)?;
         return Ok((scene::open_in(scene, Path::new(""), &robots())?, PathBuf::new()));
@@ -31,7 +36,7 @@ pub(crate) fn open(path: &Path) -> Result<(Prepared, PathBuf), Failure> {
     }
     if is_robot(path) {
         let folder = folder_of(path);
-        let scene = Scene::made_for(name, &robot_scene::text(path)?)?;
+        let scene = Scene::made_for(name, &robot_scene::text(path, leave_out)?)?;
         return Ok((scene::open_in(scene, folder, &robots())?, folder.to_owned()));
     }
     Ok((scene::open(path, &robots())?, path.parent().map(Path::to_owned).unwrap_or_default()))
@@ -50,14 +55,22 @@ pub(crate) fn is_robot(path: &Path) -> bool {
 
 /// The scene with its robot. Warnings about the robot are printed.
 pub(crate) fn session(path: &Path) -> Result<Session, Failure> {
-    let session = quiet_session(path)?;
+    session_without(path, &[])
+}
+
+/// The same without these kinds of what a robot's file has.
+pub(crate) fn session_without(path: &Path, leave_out: &[LeaveOut]) -> Result<Session, Failure> {
+    let session = session_of(path, open_without(path, leave_out)?)?;
     session.robot_warnings.iter().for_each(|line| console::warn(line));
     Ok(session)
 }
 
 /// The same without warnings.
 pub(crate) fn quiet_session(path: &Path) -> Result<Session, Failure> {
-    let (prepared, folder) = open(path)?;
+    session_of(path, open(path)?)
+}
+
+fn session_of(path: &Path, (prepared, folder): (Prepared, PathBuf)) -> Result<Session, Failure> {
     let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     Ok(Session::new(name, prepared, folder)?)
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use articulated_core::description::Joint;
 use articulated_core::model::GRAVITY;
-use articulated_formats::{Environment, Options, Reading, included, read_file, read_with};
+use articulated_formats::{Environment, LeaveOut, Options, Reading, included, read_file, read_with};
 use articulated_scene::{folder_of, smooth_in_file};
 
 use crate::failure::Failure;
@@ -16,11 +16,16 @@ const END: f64 = 5.0;
 
 /// A scene, as TOML, with the smooth forces of the file. Its comments list the other forces.
 /// Errors: those of the file.
-pub(crate) fn text(path: &Path) -> Result<String, Failure> {
-    let reading = read(path)?;
+pub(crate) fn text(path: &Path, leave_out: &[LeaveOut]) -> Result<String, Failure> {
+    let reading = read(path, leave_out)?;
     let (joints, world) = (&reading.description.joints, &reading.world);
     let name = quoted(&path.file_name().unwrap_or(path.as_os_str()).to_string_lossy());
-    let mut out = format!("# The smooth motion of {name}.\nfile = {name}\n\n[effects]\n");
+    let mut out = format!("# The smooth motion of {name}.\nfile = {name}\n");
+    if !leave_out.is_empty() {
+        let kinds: Vec<String> = leave_out.iter().map(|kind| quoted(kind.name())).collect();
+        let _ = writeln!(out, "leave_out = [{}]", kinds.join(", "));
+    }
+    out += "\n[effects]\n";
     for row in smooth_in_file(joints, world) {
         let _ = writeln!(out, "{} = \"file\"", row.name);
     }
@@ -130,18 +135,18 @@ const OTHERS: [(&str, &str, Has); 2] = [
     }),
 ];
 
-fn read(path: &Path) -> Result<Reading, Failure> {
+fn read(path: &Path, leave_out: &[LeaveOut]) -> Result<Reading, Failure> {
     let file = path.display().to_string();
     let bytes =
         read_file(path, articulated_formats::MOST_BYTES).map_err(|error| Failure::input([format!("{file}: cannot be read: {error}")]))?;
-    let options = Options { file, ..Options::default() };
+    let options = Options { file, leave_out: leave_out.iter().copied().collect(), ..Options::default() };
     let included = included(&Environment, &PathBuf::new(), &bytes, &options);
     Ok(read_with(&included, &bytes, &options)?)
 }
 
 /// A note about the scene made from a robot's file: it lists all that is left out.
 pub(crate) fn note(path: &Path) -> Result<Option<String>, Failure> {
-    let reading = read(path)?;
+    let reading = read(path, &[])?;
     let collides = reading.description.links.iter().any(|link| !link.collision.is_empty());
     let left = left_out(&reading.description.joints, collides);
     let file = path.strip_prefix(folder_of(path)).unwrap_or(path).display();

@@ -103,7 +103,7 @@ pub(crate) fn run(arguments: &RolloutArguments, format: Format) -> Result<u8, Fa
     let method = method(arguments, world.stepping.as_ref(), kind)?;
     if method.takes.contains(&WARM) {
         let mut log = Diagnostics::new(&robot.file);
-        let unread = articulated_codegen::unread_constraints(&robot.file, &built, &mut log);
+        let unread = articulated_codegen::unread_constraints(&robot.file, (&built.reading.description, world, &model), &mut log);
         unread.iter().for_each(|warning| console::warn(&warning.to_string()));
         log.result(Some(()))?;
     }

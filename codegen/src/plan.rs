@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Function, Group, Needs, functions};
-use articulated_core::description::Coupling;
+use articulated_core::description::Description;
 use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Spanned, quote};
 use articulated_core::effect::Effect;
 use articulated_core::model::Model;
 use articulated_formats::world::{Loop, Unread, World};
-use articulated_formats::{LeaveOut, OnLockedJoint, Reading};
+use articulated_formats::{LeaveOut, OnLockedJoint};
 use articulated_scene::{BuiltRobot, Why, smooth_in_file};
 
 use crate::function_spec::{FunctionSpec, wrong_entry};
@@ -60,7 +60,9 @@ pub(crate) fn plan(request: &Request, members: &BTreeMap<String, String>, log: &
     robot.reading.warnings.extend(without);
     let has_group = |group: Group| entries.iter().any(|(_, function)| function.parts.iter().any(|part| part.function.group == group));
     if has_group(Group::Constraints) {
-        robot.reading.warnings.extend(unread_constraints(&request.file, &robot, log));
+        let of_robot = (&robot.reading.description, &robot.reading.world, &robot.model);
+        let warnings = unread_constraints(&request.file, of_robot, log);
+        robot.reading.warnings.extend(warnings);
     }
     if has_group(Group::Actuators) || has_group(Group::Constraints) {
         let warnings = locked_actuators(&request.file, &robot.reading.world, &robot.model);
@@ -88,17 +90,16 @@ pub fn locked_actuators(file: &str, world: &World, model: &Model<f64>) -> Vec<Di
 
 /// Reports constraints of the file that are not computed: errors, or the warnings that are returned
 /// where an option leaves them out.
-pub fn unread_constraints(file: &str, robot: &BuiltRobot, log: &mut Diagnostics) -> Vec<Diagnostic> {
-    let Reading { description, world, .. } = &robot.reading;
-    let mut unread = world.constraints_of(description, &robot.model).1;
+pub fn unread_constraints(
+    file: &str,
+    (description, world, model): (&Description, &World, &Model<f64>),
+    log: &mut Diagnostics,
+) -> Vec<Diagnostic> {
+    let mut unread = world.constraints_of(description, model).1;
     let place = At::Nowhere;
     let of_loop = |own: &Loop| format!("{} {}", own.kind, quote(&own.name));
-    unread.extend(world.loops.iter().map(|own| Unread { kind: LeaveOut::Constraint, what: of_loop(own), place }));
-    let is_kept =
-        |coupling: &Coupling| !robot.model.bodies().iter().any(|body| body.name == coupling.joint && body.coordinates.mimic.is_some());
-    let couplings = world.couplings.iter().map(|(coupling, _)| coupling).filter(|coupling| is_kept(coupling));
-    let of_coupling = |own: &Coupling| format!("the equation of joint {} (`--coupling file` makes it follow)", quote(&own.joint));
-    unread.extend(couplings.map(|own| Unread { kind: LeaveOut::Constraint, what: of_coupling(own), place }));
+    let loops = world.loops.iter().filter(|own| !own.is_computed);
+    unread.extend(loops.map(|own| Unread { kind: LeaveOut::Constraint, what: of_loop(own), place }));
     let left_out = world.touching.as_ref().map(|touching| touching.left_out.clone()).unwrap_or_default();
     let mut warnings = Vec::new();
     // One finding for each kind: a file may have thousands of pairs.

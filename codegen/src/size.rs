@@ -140,7 +140,7 @@ fn constraints(model: &Model<f64>) -> f64 {
     let bodies_of = |pair: &Pair| pair.shapes.map(|shape| all.shapes[shape].body);
     let groups: BTreeSet<[BodyId; 2]> = all.pairs.iter().map(bodies_of).collect();
     let mut coupled: Vec<BTreeSet<usize>> = model.bodies().with_ids().map(|(body, _)| moved(body)).collect();
-    let mut sum = 250.0 * all.pairs.len() as f64 + 40.0 * (all.limits.len() + all.friction.len()) as f64;
+    let mut sum = 250.0 * all.pairs.len() as f64 + 40.0 * (all.limits.len() + all.friction.len() + all.sums.len()) as f64;
     for bodies in groups {
         let [first, second] = bodies.map(moved);
         let own: BTreeSet<usize> = first.symmetric_difference(&second).copied().collect();

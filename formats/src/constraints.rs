@@ -1,7 +1,7 @@
 //! The constraints of a file on a model of its robot.
 
 use articulated_core::collision::{Form, Shape};
-use articulated_core::constraint::{Bound, Cone, Constraints, DryFriction, Limit, Pair, Soft, weights};
+use articulated_core::constraint::{Bound, Cone, Constraints, DryFriction, Limit, Pair, Soft, Sum, SumLaw, Term, weights};
 use articulated_core::description::{Description, Joint, Origin};
 use articulated_core::diagnostic::At;
 use articulated_core::effect::{Applied, EffectId, Effects};
@@ -10,7 +10,7 @@ use articulated_core::model::Model;
 use articulated_core::spatial::{Placement, Vector3};
 
 use crate::LeaveOut;
-use crate::world::{Touching, TouchingPair, Unread, World};
+use crate::world::{Touching, TouchingLaw, TouchingPair, TouchingSum, Unread, World};
 
 /// Robots with more have no constraints here: their strengths need the inverse of M.
 const MOST_FREEDOMS: usize = 500;
@@ -23,7 +23,7 @@ impl World {
     /// with all its rotors.
     pub fn constraints_of(&self, description: &Description, model: &Model<f64>) -> (Constraints, Vec<Unread>) {
         let Some(touching) = self.touching.as_ref().filter(|_| model.nv() > 0) else { return (Constraints::default(), Vec::new()) };
-        if touching.limits.is_empty() && touching.friction.is_empty() && touching.pairs.is_empty() {
+        if touching.limits.is_empty() && touching.friction.is_empty() && touching.sums.is_empty() && touching.pairs.is_empty() {
             return (Constraints::default(), touching.unread.clone());
         }
         if model.nv() > MOST_FREEDOMS {
@@ -70,6 +70,14 @@ impl World {
     }
 }
 
+fn other(law: &SumLaw) -> &[Term] {
+    if let SumLaw::Equation { other, .. } = law { other } else { &[] }
+}
+
+fn lengths(terms: &[Term]) -> Vec<(usize, f64)> {
+    terms.iter().map(|term| (term.v, term.factor)).collect()
+}
+
 struct Made<'a> {
     touching: &'a Touching,
     model: &'a Model<f64>,
@@ -89,7 +97,10 @@ impl Made<'_> {
             (body, (placement.rotation * Vector3::from(*center) + placement.position).into())
         });
         let centers: Vec<(BodyId, [f64; 3])> = centers.collect();
-        let mut weights = weights(self.heavy, &self.reference, &centers);
+        let sums: Vec<(&TouchingSum, Vec<Term>, SumLaw)> =
+            touching.sums.iter().filter_map(|sum| self.sum(sum).map(|(terms, law)| (sum, terms, law))).collect();
+        let of_lengths: Vec<Vec<(usize, f64)>> = sums.iter().flat_map(|(_, terms, law)| [lengths(terms), lengths(other(law))]).collect();
+        let mut weights = weights(self.heavy, &self.reference, &centers, &of_lengths);
         // Bodies that slide alone have the inverse of their mass.
         for (k, (_, _, slides)) in touching.bodies.iter().enumerate() {
             if *slides && !centers[k].0.is_base() {
@@ -129,6 +140,15 @@ impl Made<'_> {
                 weight: weights.freedoms[v],
             }));
         }
+        for ((own, terms, law), of_tendons) in sums.into_iter().zip(weights.sums.chunks(2)) {
+            let Some(soft) = self.soft(own.reference, own.impedance, &own.what) else { continue };
+            // Of joints, that of each degree of freedom, whatever is between them
+            let weight = match own.is_of_tendons {
+                true => of_tendons.iter().sum(),
+                false => terms.iter().chain(other(&law)).map(|term| weights.freedoms[term.v]).sum(),
+            };
+            all.sums.push(Sum { terms, law, soft, weight });
+        }
         let mut places: Vec<Option<usize>> = vec![None; touching.shapes.len()];
         for pair in &touching.pairs {
             let bodies = pair.shapes.map(|shape| placed(&touching.shapes[shape].link).0);
@@ -166,6 +186,33 @@ impl Made<'_> {
             });
         }
         all
+    }
+
+    /// The terms and the law of a sum on the model. `None`: it is applied to the model, or not
+    /// computed.
+    fn sum(&mut self, own: &TouchingSum) -> Option<(Vec<Term>, SumLaw)> {
+        let is_follower = |joint: &String| self.model.bodies().iter().any(|body| body.name == *joint && body.coordinates.mimic.is_some());
+        if own.coupling.as_ref().is_some_and(is_follower) {
+            return None;
+        }
+        let of = |(joint, factor): &(String, f64)| {
+            let joint = self.model.joints().iter().find(|own| own.name == *joint)?;
+            Some(Term { q: joint.q.0, v: joint.v.0, factor: *factor })
+        };
+        let all = |terms: &[(String, f64)]| terms.iter().map(of).collect::<Option<Vec<Term>>>();
+        let terms = all(&own.terms);
+        let law = match &own.law {
+            TouchingLaw::Between { range, margin } => Some(SumLaw::Between { range: *range, margin: *margin }),
+            TouchingLaw::DryFriction(loss) => Some(SumLaw::DryFriction(*loss)),
+            TouchingLaw::Equation { other, references, coefficients } => {
+                all(other).map(|other| SumLaw::Equation { other, references: *references, coefficients: *coefficients })
+            }
+        };
+        let found = terms.zip(law);
+        if found.is_none() {
+            self.lost(LeaveOut::Constraint, format!("{}, with a joint that is locked or follows others", own.what), At::Nowhere);
+        }
+        found
     }
 
     fn lost(&mut self, kind: LeaveOut, what: String, place: At) {

@@ -84,6 +84,8 @@ pub struct Touching {
     pub limits: Vec<TouchingLimit>,
     /// Dry friction of joints.
     pub friction: Vec<TouchingFriction>,
+    /// Constraints of fixed tendons, and equations of joints and tendons.
+    pub sums: Vec<TouchingSum>,
     /// For each body of the file its link, its centre of mass in the link's frame, m, and whether
     /// it moves on slides alone, where MuJoCo takes its mass for its inertia.
     pub bodies: Vec<(String, [f64; 3], bool)>,
@@ -164,6 +166,48 @@ pub struct TouchingFriction {
     pub reference: [f64; 2],
     /// `solimp`.
     pub impedance: [f64; 5],
+}
+
+/// A constraint of a sum of coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TouchingSum {
+    /// What it is, for messages.
+    pub what: String,
+    /// Joints with their factors.
+    pub terms: Vec<(String, f64)>,
+    /// What holds for the sum.
+    pub law: TouchingLaw,
+    /// Whether it is one of tendons, whose strength is that of their lengths.
+    pub is_of_tendons: bool,
+    /// The joint that follows others by this equation where it is applied to the model.
+    pub coupling: Option<String>,
+    /// `solref`.
+    pub reference: [f64; 2],
+    /// `solimp`.
+    pub impedance: [f64; 5],
+}
+
+/// What holds for a sum of coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TouchingLaw {
+    /// It is between two numbers; the bounds act from a margin before them on.
+    Between {
+        /// The bounds.
+        range: [f64; 2],
+        /// The margin.
+        margin: f64,
+    },
+    /// Its dry friction.
+    DryFriction(f64),
+    /// It is a polynomial of another sum.
+    Equation {
+        /// The other sum; may be empty.
+        other: Vec<(String, f64)>,
+        /// Both sums in the reference pose.
+        references: [f64; 2],
+        /// The coefficients, of degree 0 to 4.
+        coefficients: [f64; 5],
+    },
 }
 
 /// How the simulator of a file steps its motion.
@@ -305,6 +349,8 @@ pub struct Loop {
     pub kind: String,
     /// Its links or joints.
     pub between: Vec<String>,
+    /// Whether functions with constraints keep it.
+    pub is_computed: bool,
     /// Place in the file.
     pub place: At,
 }

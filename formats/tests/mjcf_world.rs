@@ -7,7 +7,7 @@ use std::io::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
 
 use articulated_core::diagnostic::{At, Code};
-use articulated_formats::world::{Actuator, World};
+use articulated_formats::world::{Actuator, TouchingLaw, World};
 use articulated_formats::{Options, Reading, Sources, read, read_with};
 
 fn options() -> Options {
@@ -507,17 +507,45 @@ fn attached_models_and_copies_bring_their_actuators() {
     assert_eq!(q, [("r-0", 0.0), ("r-1", 0.0), ("l_a", 5.0), ("l_b", 6.0), ("p_b", 0.0)]);
 }
 
-/// A pair has MuJoCo's defaults, not the numbers of its geoms; tendons with limits are listed.
+/// A pair has MuJoCo's defaults, not the numbers of its geoms; spatial tendons with limits are
+/// listed.
 #[test]
 fn pairs_have_defaults_of_their_own() {
     let text = "<mujoco><worldbody><geom name='a' size='0.1' condim='1' solref='0.03 1' margin='0.01'/>\
         <body><joint name='j'/><geom name='b' size='0.1' friction='0.4'/></body></worldbody>\
         <contact><pair geom1='b' geom2='a' friction='0.7'/></contact>\
-        <tendon><fixed name='t' limited='true' range='0 1'><joint joint='j' coef='1'/></fixed></tendon></mujoco>";
-    let touching = accepted(text).world.touching.unwrap();
+        <tendon><spatial name='t' limited='true' range='0 1'><site site='p'/><site site='o'/></spatial></tendon></mujoco>";
+    let text = text.replace("<body>", "<site name='p'/><body><site name='o'/>");
+    let touching = accepted(&text).world.touching.unwrap();
     let [pair] = &touching.pairs[..] else { panic!("{:?}", touching.pairs) };
     assert_eq!((pair.dimension, pair.reference, pair.margin), (3, [0.02, 1.0], 0.0));
     assert_eq!(pair.friction, [0.7, 1.0, 0.005, 0.0001, 0.0001]);
     let what: Vec<&str> = touching.unread.iter().map(|own| own.what.as_str()).collect();
     assert_eq!(what, ["limits of the tendon t"]);
+}
+
+/// Sums of coordinates: limits and dry friction of fixed tendons, and equations, of any degree.
+#[test]
+fn tendons_and_equations_are_constraints_of_sums() {
+    let text = "<mujoco><compiler angle='radian'/><worldbody><body><joint name='a' ref='0.2'/><geom size='0.1'/>\
+        <body><joint name='b'/><geom size='0.1'/></body></body></worldbody>\
+        <tendon><fixed name='t' limited='true' range='-1 2' margin='0.1' frictionloss='3' solreflimit='0.05 1'>\
+        <joint joint='a' coef='2'/><joint joint='b' coef='-1'/></fixed></tendon>\
+        <equality><joint name='e' joint1='b' joint2='a' polycoef='0.1 1 2' solref='0.03 1'/><tendon tendon1='t'/>\
+        <joint joint1='a' active='false'/></equality></mujoco>";
+    let read = accepted(text);
+    let touching = read.world.touching.unwrap();
+    let [limit, friction, quadratic, held] = &touching.sums[..] else { panic!("{:?}", touching.sums) };
+    let terms = |own: &[(&str, f64)]| own.iter().map(|(joint, factor)| ((*joint).to_owned(), *factor)).collect::<Vec<_>>();
+    let t = terms(&[("a", 2.0), ("b", -1.0)]);
+    assert_eq!((&limit.terms, limit.reference), (&t, [0.05, 1.0]));
+    assert_eq!(limit.law, TouchingLaw::Between { range: [-1.0, 2.0], margin: 0.1 });
+    assert_eq!((&friction.terms, &friction.law), (&t, &TouchingLaw::DryFriction(3.0)));
+    assert_eq!((&quadratic.terms, quadratic.reference, &quadratic.coupling), (&terms(&[("b", 1.0)]), [0.03, 1.0], &None));
+    let coefficients = [0.1, 1.0, 2.0, 0.0, 0.0];
+    assert_eq!(quadratic.law, TouchingLaw::Equation { other: terms(&[("a", 1.0)]), references: [0.0, 0.2], coefficients });
+    let TouchingLaw::Equation { other, references, .. } = &held.law else { panic!("{held:?}") };
+    assert_eq!((&held.terms, other.len(), *references), (&t, 0, [0.4, 0.0]));
+    assert_eq!(held.coupling.as_deref(), Some("a"));
+    assert!(read.world.loops.iter().all(|own| own.is_computed) && touching.unread.is_empty());
 }

@@ -2,12 +2,14 @@
 
 use std::path::PathBuf;
 
+use articulated_formats::LeaveOut;
 use clap::{ArgGroup, Args};
 
 use crate::arguments::Package;
 
 #[derive(Args, Debug, Default)]
 #[command(group = ArgGroup::new("written").args(["output", "mcap"]).multiple(true))]
+#[command(group = ArgGroup::new("of_file").args(["smooth", "constraints"]))]
 pub(crate) struct SimulateArguments {
     /// A bundled scene's name, the path of a scene, or the path of a robot's file (URDF, xacro, MJCF
     /// or SDF), whose smooth motion is simulated
@@ -18,8 +20,14 @@ pub(crate) struct SimulateArguments {
     /// with constraints off
     #[arg(long, conflicts_with_all = ["print_scene", "all", "generated", "against", "integrator", "rtol", "atol"])]
     pub(crate) smooth: bool,
+    /// The same with limits, dry friction and contacts of the file, by MuJoCo's law
+    #[arg(long, conflicts_with_all = ["print_scene", "all", "generated", "against", "integrator", "rtol", "atol"])]
+    pub(crate) constraints: bool,
+    /// Leave out kinds of constraints that are not computed, with a warning: contact, constraint
+    #[arg(long, value_name = "KINDS", value_delimiter = ',', requires = "constraints")]
+    pub(crate) leave_out: Vec<LeaveOut>,
     /// Start with this keyframe of the file, and its controls, instead of `home`
-    #[arg(long, value_name = "NAME", requires = "smooth")]
+    #[arg(long, value_name = "NAME", requires = "of_file")]
     pub(crate) keyframe: Option<String>,
     /// Print the scene that a robot's file is simulated as, to begin a scene of your own
     #[arg(long, conflicts_with_all = ["all", "output", "mcap", "generated", "against", "end", "integrator", "step", "rtol", "atol", "every"])]

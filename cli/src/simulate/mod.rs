@@ -10,12 +10,12 @@ mod mcap;
 mod method;
 mod monitor;
 pub(crate) mod motion;
+mod of_file;
 mod page;
 mod plot;
 mod recording;
 mod settings;
 mod size;
-mod smooth;
 mod summary;
 mod table;
 mod text;
@@ -34,8 +34,8 @@ use arguments::SimulateArguments;
 use compiled::Compiler;
 use files::Files;
 use motion::Motion;
+use of_file::OfFile;
 use size::Size;
-use smooth::Smooth;
 use summary::Summary;
 
 /// Output of `--print-scene` as JSON.
@@ -55,16 +55,17 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
                 scene.display()
             )]));
         }
-        let text = robot_scene::text(scene)?;
+        let text = robot_scene::text(scene, &[])?;
         console::report(format, || text.clone(), || crate::json(&PrintedScene { scene: &text }))?;
         return Ok(OK);
     }
-    if arguments.smooth && !named_scene::is_robot(scene) {
+    let of_file = [(arguments.smooth, "--smooth"), (arguments.constraints, "--constraints")].into_iter().find(|(given, _)| *given);
+    if let Some((_, option)) = of_file.filter(|_| !named_scene::is_robot(scene)) {
         let expected = "a URDF, xacro, MJCF or SDF: a scene has its own integrator";
-        return Err(Failure::usage(format!("{}: --smooth: found no file of a robot, expected {expected}", scene.display())));
+        return Err(Failure::usage(format!("{}: {option}: found no file of a robot, expected {expected}", scene.display())));
     }
-    let session = named_scene::session(scene)?;
-    if named_scene::is_robot(scene) {
+    let session = named_scene::session_without(scene, &arguments.leave_out)?;
+    if named_scene::is_robot(scene) && !arguments.constraints {
         robot_scene::note(scene)?.iter().for_each(|line| console::note(line));
     }
     has_room(&session.scene.file, session.model.nv())?;
@@ -75,14 +76,14 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     }
     motion::solvable(&session)?;
     let keyframe = arguments.keyframe.as_deref();
-    let smooth = arguments.smooth.then(|| Smooth::of(&session, keyframe, arguments.step, &mut settings)).transpose()?;
+    let of_file = of_file.map(|_| OfFile::of(&session, arguments.constraints, keyframe, arguments.step, &mut settings)).transpose()?;
     let compiler = arguments.generated.then(Compiler::find).transpose()?;
     let size = Size::look_ahead(session.model.shape(), &mut settings, arguments)?;
     let files = arguments.output.as_deref().map(|path| Files::at(path, &arguments.package, &settings, files::OPTIONS)).transpose()?;
     arguments.mcap.as_deref().map_or(Ok(()), |path| output::file("--mcap", path))?;
     let progress = Progress::of_whole(format!("{}: motion", session.name));
-    let (mut motion, code) = match (&compiler, &smooth) {
-        (_, Some(smooth)) => (smooth.run(&session, &settings, &progress)?, "generic"),
+    let (mut motion, code) = match (&compiler, &of_file) {
+        (_, Some(of_file)) => (of_file.run(&session, &settings, &progress)?, "generic"),
         (Some(compiler), None) => (compiler.run(&session, &initial, &settings, &progress)?, "generated"),
         (None, None) => (by_generic_code(&session, &initial, &settings, &progress)?, "generic"),
     };

@@ -40,6 +40,8 @@ pub(super) struct Motion {
     pub(super) warnings: Vec<String>,
     /// The steps of a robot's file, in place of an integrator.
     pub(super) of_file: Option<Method>,
+    /// Whether it has limits, dry friction and contacts of the file.
+    pub(super) has_constraints: bool,
 }
 
 /// The warnings about a scene's motion. Errors: everything that keeps the motion from starting, or
@@ -110,6 +112,7 @@ pub(super) fn run(
         error,
         warnings,
         of_file: None,
+        has_constraints: false,
     })
 }
 

@@ -28,6 +28,10 @@ pub(super) struct Summary {
     /// warning, and the status stays `ok`.
     #[serde(skip)]
     pub(super) is_of_file: bool,
+    /// Whether it has limits, dry friction and contacts of the file: then there is no balance of
+    /// energy.
+    #[serde(skip)]
+    pub(super) has_constraints: bool,
     pub(super) start_s: f64,
     /// The time that was reached.
     pub(super) end_s: f64,
@@ -98,7 +102,8 @@ pub(super) struct Energy {
     pub(super) potential_end: f64,
     pub(super) work: f64,
     pub(super) dissipated: f64,
-    /// Energy from events that map the state; negative if they took energy.
+    /// Energy from events that map the state, or from constraints; negative if they took energy.
+    /// That of constraints is all that work and dissipation do not explain.
     pub(super) from_events: f64,
     /// Kinetic energy that the ball of the scene's impact got, if it was hit.
     pub(super) ball: Option<f64>,
@@ -209,6 +214,7 @@ impl Summary {
                 atol: settings.atol,
             }),
             is_of_file: motion.of_file.is_some(),
+            has_constraints: motion.has_constraints,
             start_s: settings.start,
             end_s: motion.reached,
             requested_end_s: settings.end,

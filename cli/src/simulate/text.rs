@@ -71,7 +71,9 @@ fn table(s: &Summary) -> Table {
     row("  potential", number(e.potential_start), number(e.potential_end), "J");
     row("work of the motors", none(), number(e.work), "J");
     row("dissipated", none(), number(e.dissipated), "J");
-    if e.from_events != 0.0 || e.ball.is_some() {
+    if s.has_constraints {
+        row("brought by constraints", none(), number(e.from_events), "J");
+    } else if e.from_events != 0.0 || e.ball.is_some() {
         row("brought by events", none(), number(e.from_events), "J");
     }
     if let Some(ball) = e.ball {
@@ -80,8 +82,10 @@ fn table(s: &Summary) -> Table {
     if let Some(speed) = s.ball_speed_m_per_s {
         row("  speed of the ball", none(), number(speed), "m/s");
     }
-    row("largest imbalance", none(), number(e.largest_imbalance), "J");
-    row("  over the largest energy moved", none(), number(e.relative_imbalance), "");
+    if !s.has_constraints {
+        row("largest imbalance", none(), number(e.largest_imbalance), "J");
+        row("  over the largest energy moved", none(), number(e.relative_imbalance), "");
+    }
     let length = |p: &[f64]| number(p.iter().fold(0.0_f64, |length, x| length.hypot(*x)));
     row("angular momentum about the centre of mass", length(&p.start[..3]), length(&p.end[..3]), "kg·m²/s");
     row("  largest change", none(), number(p.largest_change_angular), "kg·m²/s");

@@ -427,6 +427,49 @@ end = 5.0
     assert!((20.0 * (0.5 - q) + 3.7 * 0.25 * q.cos()).abs() < 1e-3, "{q}");
 }
 
+/// At rest (1 − d) g = k d² |p|: the ball sinks in by p. Its energy went to the contact.
+#[test]
+fn a_ball_falls_onto_the_floor_of_its_file() {
+    const BALL: &str = r#"<mujoco model="ball">
+  <option timestep="0.005"/>
+  <worldbody>
+    <geom name="floor" type="plane" size="1 1 1" condim="1" solimp="0.9 0.9 0.001"/>
+    <body name="ball" pos="0 0 0.3"><freejoint/><geom type="sphere" size="0.1" mass="2" condim="1" solimp="0.9 0.9 0.001"/></body>
+  </worldbody>
+</mujoco>"#;
+    let file = File::new("ball.xml", BALL.as_bytes());
+    let out = tempfile::tempdir().unwrap();
+    let ended = run(&["simulate", file.name(), "--constraints", "--end", "3", "-o", out.path().to_str().unwrap()]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    assert!(ended.err.contains("steps of 0.005 s by constrained_step_"), "{}", ended.err);
+    assert!(ended.out.contains("brought by constraints") && !ended.out.contains("imbalance"), "{}", ended.out);
+    let table = std::fs::read_to_string(out.path().join("recording.csv")).unwrap();
+    let column = |name: &str| {
+        let place = table.lines().next().unwrap().split(',').position(|own| own == name).unwrap_or_else(|| panic!("{name}"));
+        table.lines().last().unwrap().split(',').nth(place).unwrap().parse::<f64>().unwrap()
+    };
+    let depth = 0.1 * 9.81 * 0.02 * 0.02;
+    let height = table.lines().last().unwrap().split(',').nth(3).unwrap().parse::<f64>().unwrap();
+    assert!((height - (0.1 - depth)).abs() < 1e-9, "{height}");
+    assert!((column("from_events") - 2.0 * 9.81 * (height - 0.3)).abs() < 1e-6, "{}", column("from_events"));
+
+    // Without the option it falls on, and the note says so.
+    assert!(run(&["simulate", file.name()]).err.contains("the smooth motion, without contacts"));
+    let told = |words: &[&str]| run(&[&["simulate"], words].concat());
+    assert!(told(&["pendulum", "--constraints"]).err.contains("--constraints: found no file of a robot"));
+    assert!(told(&[file.name(), "--constraints", "--smooth"]).err.contains("cannot be used with"));
+    let free = File::new("free.xml", BALL.replace("condim=\"1\" solimp", "contype=\"0\" conaffinity=\"0\" solimp").as_bytes());
+    assert!(told(&[free.name(), "--constraints"]).err.contains("no constraint"), "{}", told(&[free.name(), "--constraints"]).err);
+    // An ellipsoid touches by no law here.
+    let egg = File::new("egg.xml", BALL.replace("</freejoint>", "").replace("type=\"sphere\" size=\"0.1\"", "type=\"ellipsoid\" size=\"0.1 0.1 0.2\"").as_bytes());
+    let refused = told(&[egg.name(), "--constraints"]);
+    assert!(refused.status == 1 && refused.err.contains("`--leave-out contact`"), "{}", refused.err);
+    let two = BALL.replace("<freejoint/>", "<freejoint/><geom type=\"ellipsoid\" size=\"0.1 0.1 0.05\" mass=\"1\"/>");
+    let two = File::new("two.xml", two.as_bytes());
+    let without = told(&[two.name(), "--constraints", "--leave-out", "contact", "--end", "0.1"]);
+    assert!(without.status == 0 && without.err.contains("`leave_out` has \"contact\""), "{}", without.err);
+}
+
 #[test]
 fn what_cannot_be_found_or_run_is_said() {
     let ended = run(&["simulate", "quadruped_drp"]);

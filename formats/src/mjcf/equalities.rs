@@ -4,19 +4,27 @@ use articulated_core::description::Coupling;
 use articulated_core::diagnostic::{Code, Diagnostics, Subject};
 
 use super::bodies::Kind;
+use super::contact::{IMPEDANCE, REFERENCE};
 use super::element::Element;
 use super::scope::{References, Scope, Sort};
 use super::tendons::Tendon;
 use super::values::Values;
-use crate::world::{Loop, World};
+use crate::world::{Loop, TouchingLaw, TouchingSum, World};
 
 const OFF: &str = "the equation is not active";
 const FLAG: &str = "a flag of <option> turns equations off";
 const LOOP: &str = "loops are not read: the motion does not keep this equation";
 const APPLY: &str = "`--coupling file` (key `coupling = \"file\"`, method `Build::file_coupling`), which applies it: else the motion does not keep this equation";
 
-/// Reads all equations.
-pub(crate) fn equalities(scope: &mut Scope<'_>, tendons: &[Tendon], is_off: bool, world: &mut World, log: &mut Diagnostics) {
+/// Reads all equations. Returns those of joints and fixed tendons.
+pub(crate) fn equalities(
+    scope: &mut Scope<'_>,
+    tendons: &[Tendon],
+    is_off: bool,
+    world: &mut World,
+    log: &mut Diagnostics,
+) -> Vec<TouchingSum> {
+    let mut sums = Vec::new();
     for index in 0..scope.tree.parts.len() {
         if scope.is_full() {
             break;
@@ -34,25 +42,72 @@ pub(crate) fn equalities(scope: &mut Scope<'_>, tendons: &[Tendon], is_off: bool
                 continue;
             }
             let place = scope.place(element);
+            let soft = (values.at_most("solref", REFERENCE, log), values.at_most("solimp", IMPEDANCE, log));
+            let name = scope.full(index, element).unwrap_or_default();
+            let sum = sum(element, &found, polynomial, scope, tendons).map(|(terms, law)| TouchingSum {
+                what: format!("the equation {name:?} of {}", references.iter().map(|(.., own)| *own).collect::<Vec<_>>().join(" and ")),
+                terms,
+                law,
+                is_of_tendons: element.is("tendon"),
+                coupling: None,
+                reference: soft.0,
+                impedance: soft.1,
+            });
             match linear(element, &found, polynomial, scope, tendons) {
                 Ok(coupling) => {
                     // The field is the name of the option that withdraws the warning.
                     scope.warn(element, "coupling", ("an equation of joints", APPLY), log);
+                    sums.extend(sum.map(|sum| TouchingSum { coupling: Some(coupling.joint.clone()), ..sum }));
                     world.couplings.push((coupling, place));
                 }
                 Err(kind) => {
                     scope.unread(element, LOOP, Some((kind, "a tree: the motion does not keep this equation")), log);
+                    let is_computed = sum.is_some();
+                    sums.extend(sum);
                     let full = |own: &str| format!("{}{own}{}", part.prefix, part.suffix);
                     world.loops.push(Loop {
-                        name: scope.full(index, element).unwrap_or_default(),
+                        name,
                         kind: element.name.clone(),
                         between: references.iter().map(|(_, _, own)| full(own)).collect(),
+                        is_computed,
                         place,
                     });
                 }
             }
         }
     }
+    sums
+}
+
+/// The terms and the law of an equation of joints or of fixed tendons.
+fn sum(
+    element: &Element,
+    found: &[usize],
+    coefficients: [f64; 5],
+    scope: &Scope<'_>,
+    tendons: &[Tendon],
+) -> Option<(Vec<(String, f64)>, TouchingLaw)> {
+    let of = |index: usize| match element.is("joint") {
+        true => vec![(index, 1.0)],
+        false => tendons[index].terms.clone(),
+    };
+    if !element.is("joint") && !element.is("tendon") {
+        return None;
+    }
+    let lengths: Vec<Vec<(usize, f64)>> = found.iter().map(|index| of(*index)).collect();
+    let is_number = |(joint, _): &(usize, f64)| matches!(scope.joints[*joint].joint.kind, Kind::Hinge | Kind::Slide);
+    if lengths.iter().any(Vec::is_empty) || !lengths.iter().flatten().all(is_number) {
+        return None;
+    }
+    let at_reference = |length: &Vec<(usize, f64)>| length.iter().map(|(joint, factor)| factor * scope.joints[*joint].joint.reference).sum();
+    let named = |length: &Vec<(usize, f64)>| length.iter().map(|(joint, factor)| (scope.joints[*joint].name.to_owned(), *factor)).collect();
+    let (first, second) = (lengths.first()?, lengths.get(1));
+    let law = TouchingLaw::Equation {
+        other: second.map(named).unwrap_or_default(),
+        references: [at_reference(first), second.map_or(0.0, at_reference)],
+        coefficients,
+    };
+    Some((named(first), law))
 }
 
 fn references<'a>(element: &'a Element, log: &mut Diagnostics) -> References<'a> {

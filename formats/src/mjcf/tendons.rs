@@ -3,6 +3,7 @@
 use articulated_core::diagnostic::{Code, Diagnostics, Subject};
 
 use super::bodies::Kind;
+use super::contact::SoftJoint;
 use super::element::Element;
 use super::scope::{References, Scope, Sort};
 use super::settings::Settings;
@@ -19,8 +20,21 @@ pub(crate) struct Tendon {
     /// Bound or not, m.
     pub(crate) range: [f64; 2],
     pub(crate) armature: f64,
-    /// Its constraint, which is not computed.
-    pub(crate) constraint: Option<&'static str>,
+    /// Whether its range is a limit.
+    pub(crate) is_limited: bool,
+    /// How limits and dry friction give way.
+    pub(crate) soft: SoftJoint,
+}
+
+impl Tendon {
+    /// What constrains it.
+    pub(crate) fn constraint(&self) -> Option<&'static str> {
+        match (self.is_limited, self.soft.loss != 0.0) {
+            (true, _) => Some("limits"),
+            (false, true) => Some("dry friction"),
+            (false, false) => None,
+        }
+    }
 }
 
 const LIMITED: &str = "forces of the spring and the damper alone: its limits do not bound the motion";
@@ -48,7 +62,8 @@ pub(crate) fn tendons(scope: &mut Scope<'_>, flags: Flags, passive: &mut Vec<Act
                 terms: own.terms(scope, &found, log),
                 range: own.range,
                 armature: own.armature,
-                constraint: own.constraint(),
+                is_limited: own.is_limited,
+                soft: SoftJoint::of(&values, flags, log),
             };
             own.force(&tendon, scope, passive, log);
             all.push(tendon);
@@ -150,14 +165,6 @@ impl<'a> Own<'a> {
         self
     }
 
-    fn constraint(&self) -> Option<&'static str> {
-        match (self.is_limited, self.friction != 0.0) {
-            (true, _) => Some("limits"),
-            (false, true) => Some("dry friction"),
-            (false, false) => None,
-        }
-    }
-
     fn has_higher_terms(&self) -> bool {
         self.higher_stiffness != [0.0; 2] || self.higher_damping != [0.0; 2]
     }
@@ -202,7 +209,7 @@ impl<'a> Own<'a> {
         let losses = [
             (self.is_limited, "range", ("limits of a tendon", LIMITED)),
             (self.is_force_limited, "actuatorfrcrange", ("limits of the forces on a tendon", "those of its actuators and joints")),
-            (self.friction != 0.0, "frictionloss", ("friction of a tendon", "friction of the joints: that of tendons is not read")),
+            (self.friction != 0.0, "frictionloss", ("friction of a tendon", "functions with constraints: it acts in these alone")),
             (self.armature != 0.0, "armature", ("armature of a tendon", "armature of the joints: that of tendons is not read")),
             (self.has_higher_terms(), "stiffness", ("stiffness or damping of higher degree", ONE)),
             (self.yields, "springyield", ("a spring that yields", "a spring that does not: it is elastic")),

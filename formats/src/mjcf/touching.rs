@@ -12,7 +12,7 @@ use super::simulation::Simulation;
 use super::tendons::Tendon;
 use super::values::Values;
 use crate::LeaveOut;
-use crate::world::{Touching, TouchingFriction, TouchingLimit, TouchingPair, TouchingShape, Unread};
+use crate::world::{Touching, TouchingFriction, TouchingLaw, TouchingLimit, TouchingPair, TouchingShape, TouchingSum, Unread};
 
 /// The least coefficient of friction in MuJoCo.
 const LEAST_FRICTION: f64 = 1e-5;
@@ -50,7 +50,8 @@ pub(crate) fn touching(
         unread(format!("the solver {solver}: Newton's method is used"));
     }
     names.into_iter().for_each(|name| unread(format!("adhesion or surfacevel of the geom {name}")));
-    for (tendon, what) in tendons.iter().filter_map(|tendon| Some((tendon, tendon.constraint?))) {
+    let spatial = tendons.iter().filter(|tendon| tendon.terms.is_empty());
+    for (tendon, what) in spatial.filter_map(|tendon| Some((tendon, tendon.constraint()?))) {
         unread(format!("{what} of the tendon {}", tendon.name));
     }
     for flag in &simulation.constraint_flags {
@@ -59,6 +60,7 @@ pub(crate) fn touching(
     if simulation.noslip > 0 {
         unread("noslip_iterations: there are none".to_owned());
     }
+    all.sums = tendons.iter().filter(|tendon| !tendon.terms.is_empty()).flat_map(|tendon| of_tendon(tendon, scope)).collect();
     if !flags.no_contact {
         contacts(scope, links, flags.parents_touch, &mut all, log);
     }
@@ -83,6 +85,26 @@ fn bodies(scope: &Scope<'_>, inertials: &[Option<Mass>], links: &[&str]) -> Vec<
         (links[index].to_owned(), center, slides)
     };
     inertials.iter().enumerate().map(of).collect()
+}
+
+/// Limits and dry friction of a fixed tendon.
+fn of_tendon(tendon: &Tendon, scope: &Scope<'_>) -> Vec<TouchingSum> {
+    let terms: Vec<(String, f64)> =
+        tendon.terms.iter().map(|(joint, factor)| (scope.joints[*joint].name.to_owned(), *factor)).collect();
+    let of = |what: &str, law: TouchingLaw, (reference, impedance): ([f64; 2], [f64; 5])| TouchingSum {
+        what: format!("{what} of the tendon {}", tendon.name),
+        terms: terms.clone(),
+        law,
+        is_of_tendons: true,
+        coupling: None,
+        reference,
+        impedance,
+    };
+    let soft = &tendon.soft;
+    let limit = TouchingLaw::Between { range: tendon.range, margin: soft.margin };
+    let limit = tendon.is_limited.then(|| of("the limit", limit, soft.limit));
+    let friction = (soft.loss != 0.0).then(|| of("dry friction", TouchingLaw::DryFriction(soft.loss), soft.friction));
+    limit.into_iter().chain(friction).collect()
 }
 
 /// Limits and dry friction of joints.

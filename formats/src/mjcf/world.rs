@@ -55,8 +55,9 @@ pub(crate) fn world(
     world.contact_masks = std::mem::take(&mut lowered.masks);
     spring_dampers(&scope, flags, &mut lowered.description, &armatures, log);
     add_armatures(&scope, &mut lowered.description, armatures.get(tendons.len()..).unwrap_or_default());
-    equalities(&mut scope, &tendons, flags.no_equality, &mut world, log);
+    let equations = equalities(&mut scope, &tendons, flags.no_equality, &mut world, log);
     let mut touching = touching::touching(&mut scope, inertials, &links, (simulation, &tendons), log);
+    touching.sums.extend(equations);
     touching.left_out.clone_from(leave_out);
     world.touching = Some(touching);
     states::keyframes(&mut scope, &controls, has_unread_joints, &mut world, log);

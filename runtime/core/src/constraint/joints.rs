@@ -1,8 +1,9 @@
-//! Rows of joints: limits and dry friction.
+//! Rows of joints and tendons: limits, dry friction and equations.
 //!
 //! ```text
 //! limit:         s(x) = ½ D x² where x < 0, else 0           x = J a − r
 //! dry friction:  s(x) = ½ D x² where |x| < R f, else f |x| − ½ R f²
+//! equation:      s(x) = ½ D x²
 //! ```
 
 use alloc::vec::Vec;
@@ -21,8 +22,19 @@ pub(super) struct JointRow<S> {
     pub(super) curvature: S,
     /// r.
     pub(super) reference: S,
-    /// R f and f of dry friction. `None`: a limit.
-    pub(super) friction: Option<[S; 2]>,
+    /// Where it pushes.
+    pub(super) side: Side<S>,
+}
+
+/// Where a row pushes.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Side<S> {
+    /// A limit: where J a is below r.
+    Below,
+    /// An equation: on both sides.
+    Both,
+    /// Dry friction, with R f and f: on both sides, by f at most.
+    Within([S; 2]),
 }
 
 /// Value, slope and curvature of s.
@@ -50,9 +62,10 @@ impl<S: Scalar> JointRow<S> {
             slope: S::select(mask, a.slope, b.slope),
             curvature: S::select(mask, a.curvature, b.curvature),
         };
-        match self.friction {
-            None => choose((-x).positive(), inner, Cost { value: zero, slope: zero, curvature: zero }),
-            Some([reach, loss]) => {
+        match self.side {
+            Side::Both => inner,
+            Side::Below => choose((-x).positive(), inner, Cost { value: zero, slope: zero, curvature: zero }),
+            Side::Within([reach, loss]) => {
                 let outer = |sign: S| Cost { value: loss * (sign * x - half * reach), slope: sign * loss, curvature: zero };
                 let above = choose((reach - x).positive(), inner, outer(S::one()));
                 choose((x + reach).positive(), above, outer(-S::one()))
@@ -65,9 +78,8 @@ impl<S: Scalar> Constraints<S> {
     /// The rows of joints in a state.
     pub(super) fn joint_rows(&self, q: &[S], v: &[S]) -> Vec<JointRow<S>> {
         let mut rows: Vec<JointRow<S>> = self.friction.iter().map(|own| own.row(v)).collect();
-        for limit in &self.limits {
-            limit.rows(q, v, &mut rows);
-        }
+        self.limits.iter().for_each(|limit| limit.rows(q, v, &mut rows));
+        self.sums.iter().for_each(|sum| sum.rows(q, v, &mut rows));
         rows
     }
 }
@@ -80,7 +92,7 @@ impl<S: Scalar> DryFriction<S> {
             entries: [(self.v, S::one())].into(),
             curvature: S::one() / give,
             reference,
-            friction: Some([give * self.loss, self.loss]),
+            side: Side::Within([give * self.loss, self.loss]),
         }
     }
 }
@@ -92,7 +104,7 @@ impl<S: Scalar> Limit<S> {
             let rate = entries.iter().fold(S::zero(), |sum, (k, entry)| sum + *entry * v[*k]);
             let (reference, give) = self.soft.row(distance - self.margin, rate, self.weight);
             let curvature = flag::<S>((self.margin - distance).positive()) / give;
-            rows.push(JointRow { entries, curvature, reference, friction: None });
+            rows.push(JointRow { entries, curvature, reference, side: Side::Below });
         };
         match self.bound {
             Bound::Between([lower, upper]) => {

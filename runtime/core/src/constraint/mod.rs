@@ -1,4 +1,5 @@
-//! What a robot touches: limits and dry friction of joints, and contacts, by MuJoCo's law.
+//! What a robot touches: limits and dry friction of joints and tendons, equations, and contacts, by
+//! MuJoCo's law.
 //!
 //! The acceleration a is the minimum of a strictly convex function:
 //!
@@ -18,6 +19,7 @@ mod contact;
 mod joints;
 mod newton;
 mod soft;
+mod sums;
 mod weights;
 
 use alloc::vec::Vec;
@@ -25,6 +27,7 @@ use alloc::vec::Vec;
 pub use contact::MOST_ROWS;
 pub(crate) use newton::{Smooth, constrained};
 pub use soft::{Impedance, Soft};
+pub use sums::{Sum, SumLaw, Term};
 pub use weights::{Weights, weights};
 
 use crate::Scalar;
@@ -39,6 +42,8 @@ pub struct Constraints<S = f64> {
     pub limits: Vec<Limit<S>>,
     /// Dry friction of joints.
     pub friction: Vec<DryFriction<S>>,
+    /// Constraints of sums of coordinates: of tendons, and equations.
+    pub sums: Vec<Sum<S>>,
     /// Shapes that make contact.
     pub shapes: Vec<Shape<S>>,
     /// Which of them touch each other.
@@ -47,7 +52,7 @@ pub struct Constraints<S = f64> {
 
 impl<S> Default for Constraints<S> {
     fn default() -> Self {
-        Self { cone: Cone::default(), limits: Vec::new(), friction: Vec::new(), shapes: Vec::new(), pairs: Vec::new() }
+        Self { cone: Cone::default(), limits: Vec::new(), friction: Vec::new(), sums: Vec::new(), shapes: Vec::new(), pairs: Vec::new() }
     }
 }
 
@@ -127,7 +132,7 @@ pub struct Pair<S = f64> {
 impl<S: Scalar> Constraints<S> {
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
-        self.limits.is_empty() && self.friction.is_empty() && self.pairs.is_empty()
+        self.limits.is_empty() && self.friction.is_empty() && self.sums.is_empty() && self.pairs.is_empty()
     }
 
     /// The same with `f` of each constant, always in the same order.
@@ -136,6 +141,7 @@ impl<S: Scalar> Constraints<S> {
             cone: self.cone,
             limits: self.limits.iter().map(|limit| limit.map(f)).collect(),
             friction: self.friction.iter().map(|own| own.map(f)).collect(),
+            sums: self.sums.iter().map(|own| own.map(f)).collect(),
             shapes: self.shapes.iter().map(|shape| shape.map(f)).collect(),
             pairs: self.pairs.iter().map(|pair| pair.map(f)).collect(),
         }

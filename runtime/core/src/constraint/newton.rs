@@ -198,12 +198,18 @@ impl<'a, S: Scalar> Problem<'a, S> {
         own.iter().flat_map(|i| own.range(..=*i).map(|j| [*i, *j])).collect()
     }
 
-    /// The way to the base of each degree of freedom in H: contacts of two bodies couple branches.
+    /// The way to the base of each degree of freedom in H: contacts of two bodies couple branches, and
+    /// so do rows of several joints.
     /// A factorisation from the last row up leaves zeros off these ways.
     fn ways(&self) -> Vec<usize> {
         let n = self.branches.len();
         let mut before: Vec<BTreeSet<usize>> = (0..n).map(|i| path_to_root(&self.branches, i).collect()).collect();
-        for [i, j] in self.groups.iter().filter(|group| !group.is_of_world()).flat_map(|group| self.entries(group)) {
+        let of_pairs = self.groups.iter().filter(|group| !group.is_of_world()).flat_map(|group| self.entries(group));
+        let of_row = |row: &JointRow<S>| {
+            let own: Vec<usize> = row.entries.iter().map(|(k, _)| *k).collect();
+            own.iter().flat_map(|i| own.iter().map(|j| [*i, *j])).collect::<Vec<_>>()
+        };
+        for [i, j] in of_pairs.chain(self.rows.iter().flat_map(of_row)) {
             if j < i {
                 before[i].insert(j);
             }

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! of a point of a body:     tr(J_p M⁻¹ J_pᵀ) / 3 of its velocity, tr(J_ω M⁻¹ J_ωᵀ) / 3 of its turn
+//! of a tendon:              J M⁻¹ Jᵀ of its length
 //! of a degree of freedom:   its entry of the diagonal of M⁻¹, the mean over those of one ball, of
 //!                           the turns and of the translations of a free joint
 //! ```
@@ -24,10 +25,13 @@ pub struct Weights {
     pub points: Vec<[f64; 2]>,
     /// Of each degree of freedom.
     pub freedoms: Vec<f64>,
+    /// Of each sum of coordinates: J M⁻¹ Jᵀ.
+    pub sums: Vec<f64>,
 }
 
-/// Inverse inertias at q `[nq]` of these points of bodies, each in the frame of its body.
-pub fn weights(model: &Model<f64>, q: &[f64], points: &[(BodyId, [f64; 3])]) -> Weights {
+/// Inverse inertias at q `[nq]` of these points of bodies, each in the frame of its body, and of
+/// these sums, each with degrees of freedom and their factors.
+pub fn weights(model: &Model<f64>, q: &[f64], points: &[(BodyId, [f64; 3])], sums: &[Vec<(usize, f64)>]) -> Weights {
     let (nv, mut ws) = (model.nv(), Workspace::new(model));
     let mut inverse = vec![0.0; nv * nv];
     mass_matrix_inverse(model, &mut ws, q, &mut inverse);
@@ -50,5 +54,9 @@ pub fn weights(model: &Model<f64>, q: &[f64], points: &[(BodyId, [f64; 3])]) -> 
             three.fill(three.iter().sum::<f64>() / 3.0);
         }
     }
-    Weights { points: points.iter().map(of_point).collect(), freedoms }
+    let of_sum = |sum: &Vec<(usize, f64)>| {
+        let row = |(i, a): &(usize, f64)| sum.iter().map(|(j, b)| a * b * inverse[i * nv + j]).sum::<f64>();
+        sum.iter().map(row).sum()
+    };
+    Weights { points: points.iter().map(of_point).collect(), freedoms, sums: sums.iter().map(of_sum).collect() }
 }

@@ -1,12 +1,13 @@
-//! The smooth motion that a robot's file describes: its method, step, actuators and start, without
+//! The motion that a robot's file describes: its method, step, actuators and start, with or without
 //! contacts, limits and dry friction.
 
 use std::time::Instant;
 
 use articulated::simulate::{Balance, Counts, Output, Settings};
 use articulated_core::algorithm::{Function, FunctionError, Workspace, function};
+use articulated_core::diagnostic::Diagnostics;
 use articulated_core::model::Model;
-use articulated_core::step::{self, CTRL, rollout};
+use articulated_core::step::{self, CTRL, WARM, rollout};
 use articulated_lab::session::Session;
 use articulated_motion::Ending;
 
@@ -19,28 +20,49 @@ use crate::failure::Failure;
 use crate::file_motion::{Start, step_length, step_of_file};
 
 /// How a file's motion is stepped.
-pub(super) struct Smooth {
+pub(super) struct OfFile {
     method: &'static Function<f64>,
     /// s.
     step: f64,
     start: Start,
 }
 
-impl Smooth {
+impl OfFile {
     /// The file's own motion; notes say where it starts. `settings` get its step.
     ///
     /// # Errors
-    /// A keyframe that the file does not have.
-    pub(super) fn of(session: &Session, keyframe: Option<&str>, step: Option<f64>, settings: &mut Settings) -> Result<Self, Failure> {
-        let (model, world) = (&session.model, &session.world);
+    /// A keyframe that the file does not have, and constraints that are not computed.
+    pub(super) fn of(
+        session: &Session,
+        constraints: bool,
+        keyframe: Option<&str>,
+        step: Option<f64>,
+        settings: &mut Settings,
+    ) -> Result<Self, Failure> {
+        let (model, world, file) = (&session.model, &session.world, &session.scene.file);
         let [plain, actuated] = step_of_file(world.stepping.as_ref());
-        let name = if model.actuators().is_empty() { plain } else { actuated };
-        let method = step::step(name).ok_or_else(|| Failure::usage(format!("--smooth: found no step {name}")))?;
+        let name = match constraints {
+            true => format!("constrained_{plain}"),
+            false if model.actuators().is_empty() => plain.to_owned(),
+            false => actuated.to_owned(),
+        };
+        let method = step::step(&name).ok_or_else(|| Failure::usage(format!("--constraints: found no step {name}")))?;
+        if constraints {
+            let mut log = Diagnostics::new(file);
+            let unread = articulated_codegen::unread_constraints(file, (&session.description, world, model), &mut log);
+            unread.iter().for_each(|warning| console::warn(&warning.to_string()));
+            log.result(Some(()))?;
+            articulated_codegen::defined(file, model, &articulated_codegen::massless(model), method)?;
+        }
         let start = Start::of_file(&session.scene.file, world, model, keyframe)?;
         let step = step_length(step, world);
         console::note(&format!("steps of {step} s by {name}, starts with {}", start.source));
         settings.step = Some(step);
         Ok(Self { method, step, start })
+    }
+
+    fn has_constraints(&self) -> bool {
+        self.method.takes.contains(&WARM)
     }
 
     /// The method in the report.
@@ -55,9 +77,9 @@ impl Smooth {
         let needed = (length - ROUNDING).ceil().max(1.0);
         let count = needed.min(settings.max_steps as f64) as usize;
         let held = if self.method.takes.contains(&CTRL) { self.start.ctrl.clone() } else { vec![0.0; model.nv()] };
-        let mut own = Own { smooth: self, model, ws: Workspace::new(model), torques: vec![0.0; model.nv()] };
+        let mut own = Own { of_file: self, model, ws: Workspace::new(model), torques: vec![0.0; model.nv()] };
         let mut recording = Recording::of(model);
-        let mut energy = Sums::start(own.energies(&self.start.state)?);
+        let mut energy = Sums::start(own.energies(&self.start.state)?, self.has_constraints());
         own.record(settings.start, &self.start.state, &energy, &mut recording)?;
         let (mut monitor, mut counts) = (RunMonitor::new(session, settings, progress), Counts::default());
         let (mut last, mut error) = (settings.start, None);
@@ -100,6 +122,7 @@ impl Smooth {
             error,
             warnings: Vec::new(),
             of_file: Some(self.method()),
+            has_constraints: self.has_constraints(),
         })
     }
 }
@@ -120,7 +143,7 @@ fn is_recorded(output: &Output, start: f64, t: f64, step: f64) -> bool {
 
 /// Evaluations of functions of a state.
 struct Own<'a> {
-    smooth: &'a Smooth,
+    of_file: &'a OfFile,
     model: &'a Model<f64>,
     ws: Workspace<f64>,
     /// Of actuators, N·m or N.
@@ -154,8 +177,8 @@ impl Own<'_> {
         let (kinetic, potential) = (one("kinetic_energy", &[q, v])?, one("potential_energy", &[q])?);
         let loss = one("dissipation", &[q, v])?;
         let mut tau = vec![0.0; v.len()];
-        if self.smooth.method.takes.contains(&CTRL) {
-            let ctrl = self.smooth.start.ctrl.clone();
+        if self.of_file.method.takes.contains(&CTRL) {
+            let ctrl = self.of_file.start.ctrl.clone();
             self.call("actuator_torques", &[q, v, &state.act, &ctrl], &mut tau)?;
         }
         let power = tau.iter().zip(v).map(|(tau, v)| tau * v).sum();
@@ -178,15 +201,20 @@ impl Own<'_> {
         to.potential.push(energy.now.potential);
         to.work.push(energy.work);
         to.dissipated.push(energy.dissipated);
-        to.from_events.push(0.0);
+        to.from_events.push(energy.from_constraints);
         to.momentum.push(momentum);
         Ok(())
     }
 }
 
 /// Work since the start, by the trapezoidal rule, and the balance of energy.
+///
+/// With constraints there is no balance: their energy is all that work and dissipation do not
+/// explain, errors of steps included.
 struct Sums {
     now: Energies,
+    has_constraints: bool,
+    from_constraints: f64,
     /// T + U at the start, J.
     before: f64,
     work: f64,
@@ -195,8 +223,9 @@ struct Sums {
 }
 
 impl Sums {
-    fn start(now: Energies) -> Self {
-        Self { now, before: now.kinetic + now.potential, work: 0.0, dissipated: 0.0, balance: Balance::default() }
+    fn start(now: Energies, has_constraints: bool) -> Self {
+        let before = now.kinetic + now.potential;
+        Self { now, has_constraints, from_constraints: 0.0, before, work: 0.0, dissipated: 0.0, balance: Balance::default() }
     }
 
     fn add(&mut self, next: Energies, step: f64) {
@@ -204,6 +233,10 @@ impl Sums {
         self.dissipated += 0.5 * step * (self.now.loss + next.loss);
         self.now = next;
         let imbalance = next.kinetic + next.potential - self.before - self.work - self.dissipated;
+        if self.has_constraints {
+            self.from_constraints = imbalance;
+            return;
+        }
         self.balance.add(imbalance, [next.kinetic, self.work, self.dissipated, 0.0]);
     }
 }
