@@ -51,7 +51,7 @@ pub(crate) struct RobotArguments {
     #[arg(long)]
     pub(crate) first_of_duplicates: bool,
     /// Leave out elements of an MJCF that change the motion and are not read, with a warning: flex,
-    /// composite, plugin. Those of another kind are errors
+    /// composite, plugin, constraint, contact. Those of another kind are errors
     #[arg(long, value_name = "KINDS", value_delimiter = ',')]
     pub(crate) leave_out: Vec<LeaveOut>,
     /// Read a URDF of a version other than 1.0, 1.1 and 1.2 as 1.0, with a warning

@@ -461,7 +461,10 @@ fn a_ball_falls_onto_the_floor_of_its_file() {
     let free = File::new("free.xml", BALL.replace("condim=\"1\" solimp", "contype=\"0\" conaffinity=\"0\" solimp").as_bytes());
     assert!(told(&[free.name(), "--constraints"]).err.contains("no constraint"), "{}", told(&[free.name(), "--constraints"]).err);
     // An ellipsoid touches by no law here.
-    let egg = File::new("egg.xml", BALL.replace("</freejoint>", "").replace("type=\"sphere\" size=\"0.1\"", "type=\"ellipsoid\" size=\"0.1 0.1 0.2\"").as_bytes());
+    let egg = File::new(
+        "egg.xml",
+        BALL.replace("</freejoint>", "").replace("type=\"sphere\" size=\"0.1\"", "type=\"ellipsoid\" size=\"0.1 0.1 0.2\"").as_bytes(),
+    );
     let refused = told(&[egg.name(), "--constraints"]);
     assert!(refused.status == 1 && refused.err.contains("`--leave-out contact`"), "{}", refused.err);
     let two = BALL.replace("<freejoint/>", "<freejoint/><geom type=\"ellipsoid\" size=\"0.1 0.1 0.05\" mass=\"1\"/>");

@@ -99,7 +99,8 @@ fn sum(
     if lengths.iter().any(Vec::is_empty) || !lengths.iter().flatten().all(is_number) {
         return None;
     }
-    let at_reference = |length: &Vec<(usize, f64)>| length.iter().map(|(joint, factor)| factor * scope.joints[*joint].joint.reference).sum();
+    let at_reference =
+        |length: &Vec<(usize, f64)>| length.iter().map(|(joint, factor)| factor * scope.joints[*joint].joint.reference).sum();
     let named = |length: &Vec<(usize, f64)>| length.iter().map(|(joint, factor)| (scope.joints[*joint].name.to_owned(), *factor)).collect();
     let (first, second) = (lengths.first()?, lengths.get(1));
     let law = TouchingLaw::Equation {

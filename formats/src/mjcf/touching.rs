@@ -89,8 +89,7 @@ fn bodies(scope: &Scope<'_>, inertials: &[Option<Mass>], links: &[&str]) -> Vec<
 
 /// Limits and dry friction of a fixed tendon.
 fn of_tendon(tendon: &Tendon, scope: &Scope<'_>) -> Vec<TouchingSum> {
-    let terms: Vec<(String, f64)> =
-        tendon.terms.iter().map(|(joint, factor)| (scope.joints[*joint].name.to_owned(), *factor)).collect();
+    let terms: Vec<(String, f64)> = tendon.terms.iter().map(|(joint, factor)| (scope.joints[*joint].name.to_owned(), *factor)).collect();
     let of = |what: &str, law: TouchingLaw, (reference, impedance): ([f64; 2], [f64; 5])| TouchingSum {
         what: format!("{what} of the tendon {}", tendon.name),
         terms: terms.clone(),
