@@ -198,8 +198,8 @@ impl<'a, S: Scalar> Problem<'a, S> {
         own.iter().flat_map(|i| own.range(..=*i).map(|j| [*i, *j])).collect()
     }
 
-    /// The way to the base of each degree of freedom in H: contacts of two bodies couple branches, and
-    /// so do rows of several joints.
+    /// The way to the base of each degree of freedom in H: contacts of two bodies couple branches,
+    /// and so do rows of several joints.
     /// A factorisation from the last row up leaves zeros off these ways.
     fn ways(&self) -> Vec<usize> {
         let n = self.branches.len();
