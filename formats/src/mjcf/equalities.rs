@@ -14,7 +14,8 @@ use crate::world::{Loop, TouchingLaw, TouchingSum, World};
 const OFF: &str = "the equation is not active";
 const FLAG: &str = "a flag of <option> turns equations off";
 const LOOP: &str = "loops are not read: the motion does not keep this equation";
-const APPLY: &str = "`--coupling file` (key `coupling = \"file\"`, method `Build::file_coupling`), which applies it: else the motion does not keep this equation";
+const SUM: &str = "functions with constraints alone keep this equation";
+const APPLY: &str = "`--coupling file` (key `coupling = \"file\"`, method `Build::file_coupling`), which applies it, or functions with constraints: other motions do not keep this equation";
 
 /// Reads all equations. Returns those of joints and fixed tendons.
 pub(crate) fn equalities(
@@ -61,8 +62,12 @@ pub(crate) fn equalities(
                     world.couplings.push((coupling, place));
                 }
                 Err(kind) => {
-                    scope.unread(element, LOOP, Some((kind, "a tree: the motion does not keep this equation")), log);
                     let is_computed = sum.is_some();
+                    let (why, expected) = match is_computed {
+                        true => (SUM, "functions with constraints: other motions do not keep this equation"),
+                        false => (LOOP, "a tree: the motion does not keep this equation"),
+                    };
+                    scope.unread(element, why, Some((kind, expected)), log);
                     sums.extend(sum);
                     let full = |own: &str| format!("{}{own}{}", part.prefix, part.suffix);
                     world.loops.push(Loop {

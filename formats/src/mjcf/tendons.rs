@@ -37,7 +37,7 @@ impl Tendon {
     }
 }
 
-const LIMITED: &str = "forces of the spring and the damper alone: its limits do not bound the motion";
+const LIMITED: &str = "functions with constraints: its limits do not bound other motions";
 const ONE: &str = "one coefficient: the others are not used";
 
 /// All tendons. Their springs and dampers become `passive`.

@@ -11,8 +11,8 @@ use articulated_core::description::{Base, Coupling, EditError, Editor, Origin};
 use articulated_core::diagnostic::{At, Code, Diagnostic, Place, Subject, Unused};
 use articulated_core::diagnostic::{Diagnostics, quote};
 use articulated_core::effect::Applied;
-use articulated_formats::world::{Actuator, Keyframe, Loop, Site, World};
-use articulated_formats::{Options, read_with};
+use articulated_formats::world::{Actuator, Keyframe, Loop, Site, Unread, World};
+use articulated_formats::{LeaveOut, Options, read_with};
 
 use super::build::{Editing, Entry};
 use super::options::Appended;
@@ -100,10 +100,19 @@ impl Joining<'_> {
         let named = |own: Loop| Loop {
             name: if own.name.is_empty() { own.name } else { self.named(&own.name) },
             between: own.between.iter().map(|name| self.named(name)).collect(),
+            is_computed: false,
             place: At::Nowhere,
             ..own
         };
         world.loops.extend(other.loops.into_iter().map(named));
+        // Limits, dry friction, equations and contacts of the other file are not appended.
+        let is_constrained = other.touching.is_some_and(|own| {
+            !(own.limits.is_empty() && own.friction.is_empty() && own.sums.is_empty() && own.pairs.is_empty() && own.unread.is_empty())
+        });
+        if let Some(touching) = world.touching.as_mut().filter(|_| is_constrained) {
+            let what = format!("limits, dry friction, equations and contacts of the appended robot {:?}", self.prefix);
+            touching.unread.push(Unread { kind: LeaveOut::Constraint, what, place: At::Nowhere });
+        }
     }
 
     fn named(&self, name: &str) -> String {

@@ -4,7 +4,8 @@
 //! l = Σ a q                                    of a tendon; of a joint alone q
 //! limit:         lower ≤ l ≤ upper
 //! dry friction:  a force against l̇, of a greatest size
-//! equation:      l − l₀ = c₀ + c₁ y + … + c₄ y⁴,   y = l₂ − l₂₀       J = ∂l/∂q − p′(y) ∂l₂/∂q
+//! equation:      l − l₀ = p(y) = c₀ + c₁ y + … + c₄ y⁴,   y = l₂ − l₂₀
+//!                J = ∂l/∂q − p′(y) ∂l₂/∂q
 //! ```
 //!
 //! Source: MuJoCo documentation, Computation: constraint model; XML reference: equality, tendon.
