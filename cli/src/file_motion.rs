@@ -1,6 +1,7 @@
 //! The motion that a robot's file describes: its state, controls, method and step.
 
 use articulated_core::actuator::Actuators;
+use articulated_core::description::Description;
 use articulated_core::diagnostic::{At, Diagnostics};
 use articulated_core::model::Model;
 use articulated_core::step::State;
@@ -64,6 +65,18 @@ fn put_controls(actuators: &Actuators, keyframe: &Keyframe, state: &mut State, c
     ctrl.iter_mut().zip(&keyframe.control).for_each(|(u, value)| *u = *value);
     let own = actuators.laws.iter().zip(&keyframe.activation).filter(|(law, _)| law.activation.is_some());
     state.act.iter_mut().zip(own).for_each(|(w, (_, value))| *w = *value);
+}
+
+/// Whether a function with constraints can be called: warnings are of what an option leaves out.
+///
+/// # Errors
+/// Constraints of the file that are not computed.
+pub(crate) fn are_computed(file: &str, (description, world): (&Description, &World), model: &Model<f64>) -> Result<(), Failure> {
+    let mut log = Diagnostics::new(file);
+    let unread = articulated_codegen::unread_constraints(file, (description, world, model), &mut log);
+    unread.iter().for_each(|warning| console::warn(&warning.to_string()));
+    log.result(Some(()))?;
+    Ok(())
 }
 
 /// The length of a step, s: the given one, or that of the file.

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use articulated_core::algorithm::{Argument, Function, Workspace};
-use articulated_core::diagnostic::Diagnostics;
 use articulated_core::model::Model;
 use articulated_core::step::{self, ACT, CTRL, WARM, beside_the_table, rollout};
 use articulated_formats::world::{Stepping, World, step_of_integrator};
@@ -15,7 +14,7 @@ use serde::Serialize;
 use crate::arguments::{Format, RobotArguments};
 use crate::console;
 use crate::failure::{Failure, OK};
-use crate::file_motion::{Start, step_length, step_of_file};
+use crate::file_motion::{Start, are_computed, step_length, step_of_file};
 use crate::robot::{Robot, read_bytes};
 use crate::states::{self, State};
 use crate::table::counted;
@@ -102,10 +101,7 @@ pub(crate) fn run(arguments: &RolloutArguments, format: Format) -> Result<u8, Fa
     };
     let method = method(arguments, world.stepping.as_ref(), kind)?;
     if method.takes.contains(&WARM) {
-        let mut log = Diagnostics::new(&robot.file);
-        let unread = articulated_codegen::unread_constraints(&robot.file, (&built.reading.description, world, &model), &mut log);
-        unread.iter().for_each(|warning| console::warn(&warning.to_string()));
-        log.result(Some(()))?;
+        are_computed(&robot.file, (&built.reading.description, world), &model)?;
     }
     articulated_codegen::defined(&robot.file, &model, &articulated_codegen::massless(&model), method)?;
     if method.takes.contains(&CTRL) {

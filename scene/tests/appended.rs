@@ -40,6 +40,17 @@ fn built(text: &str) -> BuiltRobot {
     build(text).unwrap_or_else(|e| panic!("{e}"))
 }
 
+/// Functions with constraints refuse such a robot: else it would touch nothing, in silence.
+#[test]
+fn constraints_of_an_appended_file_are_reported() {
+    let unread = |robot: &BuiltRobot| robot.reading.world.touching.as_ref().expect("an MJCF").unread.clone();
+    let alone = opened("", ARM, &[]).build().unwrap_or_else(|e| panic!("{e}"));
+    assert!(unread(&alone).is_empty());
+    let found = unread(&built(APPEND));
+    assert_eq!(found.len(), 1);
+    assert!(found[0].what.contains("the appended robot \"g_\""), "{}", found[0].what);
+}
+
 #[test]
 fn equations_of_an_appended_file_couple_its_joints() {
     let (free, coupled) = (built(APPEND), built(&format!("{APPEND}coupling = \"file\"")));

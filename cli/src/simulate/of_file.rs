@@ -5,7 +5,6 @@ use std::time::Instant;
 
 use articulated::simulate::{Balance, Counts, Output, Settings};
 use articulated_core::algorithm::{Function, FunctionError, Workspace, function};
-use articulated_core::diagnostic::Diagnostics;
 use articulated_core::model::Model;
 use articulated_core::step::{self, CTRL, WARM, rollout};
 use articulated_lab::session::Session;
@@ -17,7 +16,7 @@ use super::motion::Motion;
 use super::recording::Recording;
 use crate::console::{self, Progress};
 use crate::failure::Failure;
-use crate::file_motion::{Start, step_length, step_of_file};
+use crate::file_motion::{Start, are_computed, step_length, step_of_file};
 
 /// How a file's motion is stepped.
 pub(super) struct OfFile {
@@ -48,10 +47,7 @@ impl OfFile {
         };
         let method = step::step(&name).ok_or_else(|| Failure::usage(format!("--constraints: found no step {name}")))?;
         if constraints {
-            let mut log = Diagnostics::new(file);
-            let unread = articulated_codegen::unread_constraints(file, (&session.description, world, model), &mut log);
-            unread.iter().for_each(|warning| console::warn(&warning.to_string()));
-            log.result(Some(()))?;
+            are_computed(file, (&session.description, world), model)?;
             articulated_codegen::defined(file, model, &articulated_codegen::massless(model), method)?;
         }
         let start = Start::of_file(&session.scene.file, world, model, keyframe)?;

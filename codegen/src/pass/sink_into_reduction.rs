@@ -142,8 +142,9 @@ mod tests {
         let negative = g.apply(Op::Neg, &[sum]);
         let reduction = g.apply(Op::ReduceAdd, &[negative]);
         let difference = g.apply(Op::Sub, &[reduction, product]);
-        let other = g.apply(Op::Broadcast, &[negative]);
-        passed(g, &[difference, other]);
+        let lane = g.constant(1.0);
+        let other = g.apply(Op::Broadcast, &[negative, lane]);
+        assert!(!ends_in_a_sum_over_lanes(&passed(g, &[difference, other])));
     }
 
     #[test]

@@ -1,6 +1,9 @@
 //! Statements compute what their graph does.
 
+use articulated_core::Scalar;
+
 use super::*;
+use crate::Sym;
 use crate::lir::interpret::interpret;
 use crate::lir::{Body, verify};
 
@@ -124,4 +127,29 @@ fn sines_go_together_as_a_target_has_functions_for() {
     assert_eq!([1, 2, 3, 4, 7].map(|n| sizes(n, four)), [vec![1], vec![1, 1], vec![3], vec![4], vec![4, 3]]);
     let powers = SinCosGrouping { together: 4, are_powers_of_two: true, from: 0 };
     assert_eq!([1, 2, 3, 7].map(|n| sizes(n, powers)), [vec![1], vec![2], vec![2, 1], vec![4, 2, 1]]);
+}
+
+/// A loop over rows [a, x] in an iteration that changes x alone: the column of a is built once.
+#[test]
+fn columns_that_do_not_change_are_built_before_the_iteration() {
+    let graph = crate::sym::trace(|| {
+        let [a, b, x] = [0, 1, 2].map(|k| Sym::input(0, k));
+        let mut state = [x];
+        let _ = Sym::repeat(3, &mut state, |state| {
+            let rows = [a, state[0], b, state[0] * a];
+            Sym::for_each(2, &rows, state, &mut [], |row, state, _| state[0] += row[0] * row[1]);
+            (state[0] - Sym::from_f64(50.0)).positive()
+        });
+        state.to_vec()
+    });
+    let results = results(&graph);
+    let statements = lowering(&graph, &results).results_at_end();
+    let regions = statements.iter().filter_map(|s| if let Stmt::Region(region) = s { Some(region) } else { None });
+    let columns: Vec<usize> = regions.map(|region| region.columns.len()).collect();
+    assert_eq!(columns, [1]);
+    let pieces = vec![statements];
+    let body = Body { ty: Ty::F64, lanes: graph.lanes().clone(), results, pieces, kept: 0, slots: None, barrier: false, is_partial: false };
+    assert_eq!(verify(&body), Ok(()));
+    let input = |_: usize, k: usize| [0.7, -0.4, 1.3][k];
+    assert_eq!(interpret(&body, input), graph.evaluate(input));
 }

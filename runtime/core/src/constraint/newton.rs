@@ -562,6 +562,13 @@ mod tests {
         Model::new(&robot, Base::Fixed).expect("a model").with_constraints(constraints)
     }
 
+    #[test]
+    fn a_bound_is_that_of_its_precision() {
+        for x in [0.0, 1e-30, 7.0, 1e30] {
+            assert_eq!((bound(x, STILL), bound(x as f32, STILL)), (two_to(STILL[0]), two_to(STILL[1]) as f32));
+        }
+    }
+
     fn solved(model: &Model<f64>, q: f64, v: f64, a: f64) -> f64 {
         let smooth = Smooth { q: &[q], v: &[v], a: &[a], warm: &[] };
         constrained(model, &mut Workspace::new(model), &smooth).0[0]
