@@ -140,7 +140,18 @@ fn constraints(model: &Model<f64>) -> f64 {
     let bodies_of = |pair: &Pair| pair.shapes.map(|shape| all.shapes[shape].body);
     let groups: BTreeSet<[BodyId; 2]> = all.pairs.iter().map(bodies_of).collect();
     let mut coupled: Vec<BTreeSet<usize>> = model.bodies().with_ids().map(|(body, _)| moved(body)).collect();
-    let mut sum = 250.0 * all.pairs.len() as f64 + 40.0 * (all.limits.len() + all.friction.len() + all.sums.len()) as f64;
+    let mut sum = 60.0 * all.pairs.len() as f64 + 40.0 * (all.limits.len() + all.friction.len() + all.sums.len()) as f64;
+    // Code of each sort of pair is there once.
+    let sorts: BTreeSet<([&str; 2], usize)> =
+        all.pairs.iter().map(|pair| (pair.shapes.map(|shape| all.shapes[shape].form.name()), pair.dimension)).collect();
+    sum +=
+        sorts.iter().map(|(forms, _)| if forms[1] == "box" { [500.0, 4000.0][usize::from(forms[0] == "box")] } else { 300.0 }).sum::<f64>();
+    for anchor in &all.anchors {
+        let own: BTreeSet<usize> = anchor.bodies.into_iter().flat_map(moved).collect();
+        let rows = if anchor.turns.is_some() { 6.0 } else { 3.0 };
+        sum += rows * (30.0 * own.len() as f64 + 2.0 * (own.len() * own.len()) as f64);
+        coupled.push(own);
+    }
     for bodies in groups {
         let [first, second] = bodies.map(moved);
         let own: BTreeSet<usize> = first.symmetric_difference(&second).copied().collect();

@@ -349,13 +349,19 @@ impl Scalar for Sym {
         if turns < 2 {
             return region::for_each_turn(turns, table, state, results, turn);
         }
-        let (kind, mut captured) = (Kind::ForEach { turns, row, results: own }, Vec::new());
-        let graph = body([state.len(), 0, row], &mut captured, |[carried, _, row]| {
-            let mut results = vec![Self::zero(); own];
-            turn(row, carried, &mut results);
+        // What is the same in each row is no column.
+        let varies: Vec<bool> = (0..row).map(|k| table.iter().skip(k).step_by(row).any(|value| *value != table[k])).collect();
+        let mut captured = Vec::new();
+        let graph = body([state.len(), 0, varies.iter().filter(|varies| **varies).count()], &mut captured, |[carried, _, row]| {
+            let (mut own_columns, mut results) = (row.iter(), vec![Self::zero(); own]);
+            let column = |(value, varies): (&Self, &bool)| if *varies { *own_columns.next().unwrap_or(value) } else { *value };
+            let row: Vec<Self> = table.iter().zip(&varies).map(column).collect();
+            turn(&row, carried, &mut results);
             [&*carried, &results].concat()
         });
-        let values = opened(kind, graph, Rule::OfItsKind, state, &captured, table);
+        let table: Vec<Self> = table.iter().zip(varies.iter().cycle()).filter(|(_, varies)| **varies).map(|(value, _)| *value).collect();
+        let kind = Kind::ForEach { turns, row: table.len() / turns, results: own };
+        let values = opened(kind, graph, Rule::OfItsKind, state, &captured, &table);
         let (next, found) = values.split_at(state.len());
         state.copy_from_slice(next);
         results.copy_from_slice(found);

@@ -1,7 +1,7 @@
 //! The constraints of a file on a model of its robot.
 
 use articulated_core::collision::{Form, Shape};
-use articulated_core::constraint::{Bound, Cone, Constraints, DryFriction, Limit, Pair, Soft, Sum, SumLaw, Term, weights};
+use articulated_core::constraint::{Anchor, Bound, Cone, Constraints, DryFriction, Limit, Pair, Soft, Sum, SumLaw, Term, poses, weights};
 use articulated_core::description::{Description, Joint, Origin};
 use articulated_core::diagnostic::At;
 use articulated_core::effect::{Applied, EffectId, Effects};
@@ -10,7 +10,7 @@ use articulated_core::model::Model;
 use articulated_core::spatial::{Placement, Vector3};
 
 use crate::LeaveOut;
-use crate::world::{Touching, TouchingLaw, TouchingPair, TouchingSum, Unread, World};
+use crate::world::{Touching, TouchingAnchor, TouchingLaw, TouchingPair, TouchingSum, Unread, World};
 
 /// Robots with more have no constraints here: their strengths need the inverse of M.
 const MOST_FREEDOMS: usize = 500;
@@ -23,7 +23,12 @@ impl World {
     /// with all its rotors.
     pub fn constraints_of(&self, description: &Description, model: &Model<f64>) -> (Constraints, Vec<Unread>) {
         let Some(touching) = self.touching.as_ref().filter(|_| model.nv() > 0) else { return (Constraints::default(), Vec::new()) };
-        if touching.limits.is_empty() && touching.friction.is_empty() && touching.sums.is_empty() && touching.pairs.is_empty() {
+        if touching.limits.is_empty()
+            && touching.friction.is_empty()
+            && touching.sums.is_empty()
+            && touching.anchors.is_empty()
+            && touching.pairs.is_empty()
+        {
             return (Constraints::default(), touching.unread.clone());
         }
         if model.nv() > MOST_FREEDOMS {
@@ -149,6 +154,9 @@ impl Made<'_> {
             };
             all.sums.push(Sum { terms, law, soft, weight });
         }
+        for own in &touching.anchors {
+            all.anchors.extend(self.anchor(own, placed, of_link));
+        }
         let mut places: Vec<Option<usize>> = vec![None; touching.shapes.len()];
         for pair in &touching.pairs {
             let bodies = pair.shapes.map(|shape| placed(&touching.shapes[shape].link).0);
@@ -213,6 +221,38 @@ impl Made<'_> {
             self.lost(LeaveOut::Constraint, format!("{}, with a joint that is locked or follows others", own.what), At::Nowhere);
         }
         found
+    }
+
+    /// Two frames that are held together. `None`: they are on one body.
+    fn anchor(
+        &mut self,
+        own: &TouchingAnchor,
+        placed: impl Fn(&str) -> (BodyId, Placement<f64>),
+        weights: impl Fn(&str) -> [f64; 2],
+    ) -> Option<Anchor> {
+        let [first, second] = [0, 1].map(|k| placed(&own.links[k]));
+        if first.0 == second.0 {
+            return None;
+        }
+        let soft = self.soft(own.reference, own.impedance, &own.what)?;
+        let inside = |(_, link): &(BodyId, Placement<f64>), frame: Origin| link.compose(&frame.placement());
+        // Where the frame of one is on the other, in the reference pose
+        let beside = |from: &(BodyId, Placement<f64>), frame: Origin, on: BodyId| {
+            let both = poses(self.model, &self.reference, &[(from.0, inside(from, frame)), (on, Placement::identity())]);
+            let turn = both[1].rotation.transpose();
+            Placement { rotation: turn * both[0].rotation, position: turn * (both[0].position - both[1].position) }
+        };
+        let placements = match own.frames {
+            [Some(one), Some(other)] => [inside(&first, one), inside(&second, other)],
+            [Some(one), None] => [inside(&first, one), beside(&first, one, second.0)],
+            [None, other] => {
+                let other = other.unwrap_or_default();
+                [beside(&second, other, first.0), inside(&second, other)]
+            }
+        };
+        let [one, other] = [0, 1].map(|k| weights(&own.links[k]));
+        let weights = [one[0] + other[0], one[1] + other[1]];
+        Some(Anchor { bodies: [first.0, second.0], placements, turns: own.turns, soft, weights })
     }
 
     fn lost(&mut self, kind: LeaveOut, what: String, place: At) {

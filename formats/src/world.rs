@@ -86,6 +86,8 @@ pub struct Touching {
     pub friction: Vec<TouchingFriction>,
     /// Constraints of fixed tendons, and equations of joints and tendons.
     pub sums: Vec<TouchingSum>,
+    /// Frames of two links that are held together.
+    pub anchors: Vec<TouchingAnchor>,
     /// For each body of the file its link, its centre of mass in the link's frame, m, and whether
     /// it moves on slides alone, where MuJoCo takes its mass for its inertia.
     pub bodies: Vec<(String, [f64; 3], bool)>,
@@ -181,6 +183,24 @@ pub struct TouchingSum {
     pub is_of_tendons: bool,
     /// The joint that follows others by this equation where it is applied to the model.
     pub coupling: Option<String>,
+    /// `solref`.
+    pub reference: [f64; 2],
+    /// `solimp`.
+    pub impedance: [f64; 5],
+}
+
+/// Two frames that are held together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TouchingAnchor {
+    /// What it is, for messages.
+    pub what: String,
+    /// Both links.
+    pub links: [String; 2],
+    /// The frames in the frames of their links. `None`: where the other one is in the reference
+    /// pose.
+    pub frames: [Option<Origin>; 2],
+    /// The length by which turns are scaled, m. `None`: only the origins are held together.
+    pub turns: Option<f64>,
     /// `solref`.
     pub reference: [f64; 2],
     /// `solimp`.

@@ -316,6 +316,38 @@ fn what_is_no_coupling_is_a_loop() {
 }
 
 #[test]
+fn frames_that_are_held_together_have_their_places() {
+    let bodies = "<site name=\"s\" pos=\"1 0 0\"/><body name=\"c\"/><body name=\"d\"><site name=\"t\"/></body></worldbody>";
+    let anchors = |tags: &str| {
+        let text = with("", &format!("<equality>{tags}</equality>")).replace("</worldbody>", bodies);
+        accepted(&text).world.touching.expect("constraints").anchors
+    };
+    let found = anchors(
+        "<connect body1=\"c\" body2=\"d\" anchor=\"1 2 3\"/><connect body1=\"c\" body2=\"world\" anchor=\"0 0 0\"/>
+         <connect site1=\"s\" site2=\"t\"/><weld body1=\"d\" anchor=\"4 5 6\"/>
+         <weld body1=\"c\" body2=\"d\" relpose=\"7 8 9 1 0 0 0\" torquescale=\"0.5\"/>",
+    );
+    let places = |k: usize| found[k].frames.map(|frame| frame.map(|frame| frame.xyz));
+    assert_eq!(places(0), [Some([1.0, 2.0, 3.0]), None]);
+    assert_eq!((places(1), found[1].links[1] == found[2].links[0]), ([Some([0.0; 3]), None], true));
+    assert_eq!(places(2), [Some([1.0, 0.0, 0.0]), Some([0.0; 3])]);
+    assert_eq!((places(3), found[3].turns), ([None, Some([4.0, 5.0, 6.0])], Some(1.0)));
+    assert_eq!((places(4), found[4].turns), ([Some([7.0, 8.0, 9.0]), Some([0.0; 3])], Some(0.5)));
+    assert_eq!(found.iter().filter(|own| own.turns.is_none()).count(), 3);
+    for (tag, expected) in [
+        ("<connect body1=\"c\" body2=\"d\"/>", "body1 and anchor, or site1 and site2"),
+        ("<connect site1=\"s\"/>", "body1 and anchor, or site1 and site2"),
+        ("<weld body2=\"c\"/>", "body1, or site1 and site2"),
+        ("<weld body1=\"c\" body2=\"nobody\"/>", "the name of a body"),
+        ("<weld body1=\"c\" relpose=\"1 2 x\"/>", "a decimal number"),
+    ] {
+        let text = with("", &format!("<equality>{tag}</equality>")).replace("</worldbody>", bodies);
+        let error = read(text.as_bytes(), &options()).expect_err("an error").to_string();
+        assert!(error.contains(expected), "{tag}: {error}");
+    }
+}
+
+#[test]
 fn what_gives_no_force_is_a_warning_with_its_line() {
     let actuators = [
         "<muscle joint=\"h\"/>",

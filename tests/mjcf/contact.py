@@ -40,7 +40,7 @@ MODELS = [
     ("gymnasium", "humanoid.xml"),
     ("gymnasium", "inverted_double_pendulum.xml"),
 ]
-CHECKED = [HERE / "models" / f"{name}.xml" for name in ("touching", "pyramids", "equations")]
+CHECKED = [HERE / "models" / f"{name}.xml" for name in ("touching", "pyramids", "boxes", "equations", "loops")]
 GENERATED = HERE / "models" / "standing.xml"
 CHECKED_STATES = 12
 

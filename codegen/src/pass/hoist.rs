@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::{dce, rebuild};
-use crate::graph::{CAPTURED, CARRIED, Graph, Kind, Node, NodeId, Op, Region, Rule};
+use crate::graph::{CAPTURED, CARRIED, Graph, Kind, Node, NodeId, Op, ROW, Region, Rule};
 
 /// Moves the operations of bodies that only captured values decide out of their regions, from the
 /// inmost region outwards. A body that may not run at all keeps its operations.
@@ -105,6 +105,14 @@ fn split(outer: &mut Graph, region: &Region, given: &[NodeId], read: &HashSet<us
         }
     }
     let stays = region.kind == Kind::When;
+    // The columns that are read
+    let columns = if let Kind::ForEach { row, .. } = region.kind { row } else { 0 };
+    let reads = |k: usize| {
+        let mut inputs = body.nodes().iter().zip(&needed).filter(|(node, needed)| **needed && node.op == Op::Input);
+        inputs.any(|(node, _)| node.args == [ROW as u32, k as u32, 0])
+    };
+    let reads: Vec<bool> = (0..columns).map(reads).collect();
+    let column = |k: usize| reads[..k].iter().filter(|reads| **reads).count();
     // The node outside for each one that does not change.
     let mut outside: Vec<Option<NodeId>> = Vec::with_capacity(body.nodes().len());
     let mut inside: Vec<NodeId> = Vec::with_capacity(body.nodes().len());
@@ -130,6 +138,7 @@ fn split(outer: &mut Graph, region: &Region, given: &[NodeId], read: &HashSet<us
         inside.push(match outside[k] {
             Some(_) => NodeId(u32::MAX),
             None if node.op == Op::Input && argument == CARRIED => split.new.input(CARRIED, number(index)),
+            None if node.op == Op::Input && argument == ROW => split.new.input(ROW, column(index)),
             None if node.op == Op::Input => split.new.leaf(*node),
             None => {
                 let operands: Vec<NodeId> = node.operands().map(|operand| split.read(operand, &outside, &inside)).collect();
@@ -147,8 +156,15 @@ fn split(outer: &mut Graph, region: &Region, given: &[NodeId], read: &HashSet<us
         })
         .collect();
     let starts: Vec<NodeId> = (0..region.carried).filter(|k| fates[*k] == Fate::Stays).map(|k| starts[k]).collect();
-    let region = Region { kind: region.kind, carried, captured: captured.len(), body: new, rule: Rule::OfItsKind };
-    (Arc::new(region), [&starts, &captured, rest].concat(), comes)
+    let (kind, rest) = match region.kind {
+        Kind::ForEach { turns, results, .. } => {
+            let rest = rest.iter().zip(reads.iter().cycle()).filter(|(_, reads)| **reads).map(|(value, _)| *value).collect();
+            (Kind::ForEach { turns, row: column(columns), results }, rest)
+        }
+        kind => (kind, rest.to_vec()),
+    };
+    let region = Region { kind, carried, captured: captured.len(), body: new, rule: Rule::OfItsKind };
+    (Arc::new(region), [&starts[..], &captured, &rest].concat(), comes)
 }
 
 /// The two parts of a body.

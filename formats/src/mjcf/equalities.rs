@@ -1,15 +1,16 @@
-//! The section `<equality>`: linear equations of joints, and loops.
+//! The section `<equality>`: equations of joints and tendons, and loops.
 
 use articulated_core::description::Coupling;
 use articulated_core::diagnostic::{Code, Diagnostics, Subject};
 
+use super::anchors;
 use super::bodies::Kind;
 use super::contact::{IMPEDANCE, REFERENCE};
 use super::element::Element;
 use super::scope::{References, Scope, Sort};
 use super::tendons::Tendon;
 use super::values::Values;
-use crate::world::{Loop, TouchingLaw, TouchingSum, World};
+use crate::world::{Loop, TouchingAnchor, TouchingLaw, TouchingSum, World};
 
 const OFF: &str = "the equation is not active";
 const FLAG: &str = "a flag of <option> turns equations off";
@@ -17,22 +18,23 @@ const LOOP: &str = "loops are not read: the motion does not keep this equation";
 const SUM: &str = "functions with constraints alone keep this equation";
 const APPLY: &str = "`--coupling file` (key `coupling = \"file\"`, method `Build::file_coupling`), which applies it, or functions with constraints: other motions do not keep this equation";
 
-/// Reads all equations. Returns those of joints and fixed tendons.
+/// Reads all equations. Returns those of joints and fixed tendons, and those of bodies and sites.
 pub(crate) fn equalities(
     scope: &mut Scope<'_>,
-    tendons: &[Tendon],
+    (tendons, links): (&[Tendon], &[&str]),
     is_off: bool,
     world: &mut World,
     log: &mut Diagnostics,
-) -> Vec<TouchingSum> {
-    let mut sums = Vec::new();
+) -> (Vec<TouchingSum>, Vec<TouchingAnchor>) {
+    let (mut sums, mut all) = (Vec::new(), Vec::new());
     for index in 0..scope.tree.parts.len() {
         if scope.is_full() {
             break;
         }
         let part = scope.part(index);
         for element in part.settings.equations.iter().copied() {
-            let references = references(element, log);
+            let is_anchor = element.is("connect") || element.is("weld");
+            let references = if is_anchor { anchors::references(element, log) } else { references(element, log) };
             let Some(found) = scope.resolve(index, element, &references, log) else { continue };
             let class = part.settings.classes.find(element, "class", log).unwrap_or(0);
             let values = Values::new(element, part.settings.classes.tags(class, "equality"), &Subject::Document);
@@ -45,8 +47,12 @@ pub(crate) fn equalities(
             let place = scope.place(element);
             let soft = (values.at_most("solref", REFERENCE, log), values.at_most("solimp", IMPEDANCE, log));
             let name = scope.full(index, element).unwrap_or_default();
+            let what = format!("the equation {name:?} of {}", references.iter().map(|(.., own)| *own).collect::<Vec<_>>().join(" and "));
+            if is_anchor && (found.len() == 2 || references.iter().all(|(sort, ..)| *sort == Sort::Body)) && log.is_ok() {
+                all.push(anchors::anchor(element, &found, (&values, links), scope, (what.clone(), soft.0, soft.1), log));
+            }
             let sum = sum(element, &found, polynomial, scope, tendons).map(|(terms, law)| TouchingSum {
-                what: format!("the equation {name:?} of {}", references.iter().map(|(.., own)| *own).collect::<Vec<_>>().join(" and ")),
+                what,
                 terms,
                 law,
                 is_of_tendons: element.is("tendon"),
@@ -62,7 +68,7 @@ pub(crate) fn equalities(
                     world.couplings.push((coupling, place));
                 }
                 Err(kind) => {
-                    let is_computed = sum.is_some();
+                    let is_computed = sum.is_some() || is_anchor;
                     let (why, expected) = match is_computed {
                         true => (SUM, "functions with constraints: other motions do not keep this equation"),
                         false => (LOOP, "a tree: the motion does not keep this equation"),
@@ -81,7 +87,7 @@ pub(crate) fn equalities(
             }
         }
     }
-    sums
+    (sums, all)
 }
 
 /// The terms and the law of an equation of joints or of fixed tendons.
@@ -117,25 +123,17 @@ fn sum(
 }
 
 fn references<'a>(element: &'a Element, log: &mut Diagnostics) -> References<'a> {
-    const ALL: [(&str, Sort, &str); 8] = [
+    const ALL: [(&str, Sort, &str); 4] = [
         ("joint", Sort::Joint, "joint1"),
         ("joint", Sort::Joint, "joint2"),
         ("tendon", Sort::Tendon, "tendon1"),
         ("tendon", Sort::Tendon, "tendon2"),
-        ("connect weld", Sort::Body, "body1"),
-        ("connect weld", Sort::Body, "body2"),
-        ("connect weld", Sort::Site, "site1"),
-        ("connect weld", Sort::Site, "site2"),
     ];
     let own = ALL.iter().filter(|(tags, ..)| tags.split(' ').any(|tag| element.is(tag)));
     for (_, _, field) in own.clone().filter(|(_, _, field)| matches!(*field, "joint1" | "tendon1") && element.attribute(field).is_none()) {
         element.error((&Subject::Document, field), Code::MissingAttribute, "none", format!("the attribute {field}"), log);
     }
-    own.filter_map(|(_, sort, field)| {
-        let name = element.text(field).filter(|name| !(*sort == Sort::Body && *name == "world"))?;
-        Some((*sort, *field, name))
-    })
-    .collect()
+    own.filter_map(|(_, sort, field)| Some((*sort, *field, element.text(field)?))).collect()
 }
 
 /// Solves Σ aᵢ (qᵢ − refᵢ) = c₀ for the first coordinate. The error states why it has no solution.

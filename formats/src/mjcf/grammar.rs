@@ -289,6 +289,22 @@ const ROWS: &[Row] = &[
         unused_tags: &[],
     },
     Row {
+        name: "connect",
+        within: "equality",
+        attributes: "name class active body1 body2 anchor site1 site2",
+        unused_attributes: &[("solref solimp", SOLVER)],
+        tags: "",
+        unused_tags: &[],
+    },
+    Row {
+        name: "weld",
+        within: "equality",
+        attributes: "name class active body1 body2 anchor relpose torquescale site1 site2",
+        unused_attributes: &[("solref solimp", SOLVER)],
+        tags: "",
+        unused_tags: &[],
+    },
+    Row {
         name: "joint",
         within: "equality",
         attributes: "name class active joint1 joint2 polycoef",

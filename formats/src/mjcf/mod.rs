@@ -25,6 +25,7 @@
 
 mod actuators;
 mod align;
+mod anchors;
 mod axes;
 mod bodies;
 mod contact;

@@ -55,9 +55,10 @@ pub(crate) fn world(
     world.contact_masks = std::mem::take(&mut lowered.masks);
     spring_dampers(&scope, flags, &mut lowered.description, &armatures, log);
     add_armatures(&scope, &mut lowered.description, armatures.get(tendons.len()..).unwrap_or_default());
-    let equations = equalities(&mut scope, &tendons, flags.no_equality, &mut world, log);
+    let (equations, anchors) = equalities(&mut scope, (&tendons, &links), flags.no_equality, &mut world, log);
     let mut touching = touching::touching(&mut scope, inertials, &links, (simulation, &tendons), log);
     touching.sums.extend(equations);
+    touching.anchors = anchors;
     touching.left_out.clone_from(leave_out);
     world.touching = Some(touching);
     states::keyframes(&mut scope, &controls, has_unread_joints, &mut world, log);

@@ -137,6 +137,22 @@ pub(crate) fn flag<S: Scalar>(mask: S::Mask) -> S {
     S::select(mask, S::one(), S::zero())
 }
 
+/// A power of two of each precision, `f64` and `f32`, of which one counts: generated code is the
+/// same for both. The square of 2^−100 is zero in `f32` alone. x, 0 or more, is a number that no
+/// pass knows.
+#[cfg(feature = "alloc")]
+pub(crate) fn of_precision<S: Scalar>(x: S, [wide, narrow]: [i32; 2]) -> S {
+    let small = S::select(x.positive(), S::one(), S::from_f64(0.5)) * S::from_f64(two_to(-100));
+    S::select((small * small).positive(), S::from_f64(two_to(wide)), S::from_f64(two_to(narrow)))
+}
+
+/// x within −most and most.
+#[cfg(feature = "alloc")]
+pub(crate) fn within<S: Scalar>(x: S, most: S) -> S {
+    let x = S::select((x - most).positive(), most, x);
+    S::select((-(x + most)).positive(), -most, x)
+}
+
 /// The greater of two numbers.
 #[cfg(feature = "alloc")]
 pub(crate) fn greater<S: Scalar>(a: S, b: S) -> S {

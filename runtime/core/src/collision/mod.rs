@@ -5,6 +5,8 @@
 //! same number of contacts in the same places. Other pairs need an iteration (GJK) and have none
 //! here.
 
+mod capsule_box;
+mod cuboids;
 mod plane;
 mod round;
 mod solid;
@@ -110,18 +112,23 @@ impl<S: Scalar> Placed<'_, S> {
 impl<S: Scalar> Shape<S> {
     /// The same with `f` of each constant, always in the same order.
     pub fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> Shape<T> {
-        let form = match self.form {
-            Form::Plane => Form::Plane,
-            Form::Sphere { radius } => Form::Sphere { radius: f(radius) },
-            Form::Capsule { radius, half } => Form::Capsule { radius: f(radius), half: f(half) },
-            Form::Cylinder { radius, half } => Form::Cylinder { radius: f(radius), half: f(half) },
-            Form::Box { half } => Form::Box { half: half.map(f) },
-        };
+        let form = self.form.map(f);
         Shape { name: self.name.clone(), body: self.body, placement: self.placement.map(f), form }
     }
 }
 
 impl<S: Scalar> Form<S> {
+    /// The same with `f` of each size, always in the same order.
+    pub(crate) fn map<T: Scalar>(&self, f: impl Fn(S) -> T) -> Form<T> {
+        match *self {
+            Self::Plane => Form::Plane,
+            Self::Sphere { radius } => Form::Sphere { radius: f(radius) },
+            Self::Capsule { radius, half } => Form::Capsule { radius: f(radius), half: f(half) },
+            Self::Cylinder { radius, half } => Form::Cylinder { radius: f(radius), half: f(half) },
+            Self::Box { half } => Form::Box { half: half.map(f) },
+        }
+    }
+
     /// The radius of a sphere around it; of a plane 0.
     fn radius(&self) -> S {
         match self {
@@ -168,6 +175,8 @@ impl<S> Form<S> {
             (Self::Plane, Self::Box { .. }) => Some(8),
             (Self::Sphere { .. }, _) => Some(1),
             (Self::Capsule { .. }, Self::Capsule { .. }) => Some(2),
+            (Self::Capsule { .. }, Self::Box { .. }) => Some(2),
+            (Self::Box { .. }, Self::Box { .. }) => Some(cuboids::PLACES),
             _ => None,
         }
     }
@@ -201,8 +210,10 @@ pub(crate) fn touches<S: Scalar>(first: &Placed<'_, S>, second: &Placed<'_, S>, 
         (Sphere { radius }, Cylinder { radius: other, half }) => [solid::sphere_cylinder(first, second, *radius, *other, *half)].into(),
         (Sphere { radius }, Box { half }) => [solid::sphere_box(first, second, *radius, *half)].into(),
         (Capsule { radius, half }, Capsule { radius: other, half: length }) => {
-            round::capsules(first, second, [*radius, *half], [*other, *length], reach).into()
+            round::capsules(first, second, [*radius, *half], [*other, *length]).into()
         }
+        (Capsule { radius, half }, Box { half: sides }) => capsule_box::capsule_box(first, second, [*radius, *half], *sides, reach).into(),
+        (Box { half }, Box { half: other }) => cuboids::boxes(first, second, [*half, *other], reach),
         _ => Vec::new(),
     }
 }

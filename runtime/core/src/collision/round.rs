@@ -2,17 +2,13 @@
 
 use super::{Placed, Touch};
 use crate::Scalar;
-use crate::scalar::flag;
+use crate::scalar::{flag, within};
 use crate::spatial::Vector3;
 
-/// The least length and determinant, as in MuJoCo.
+/// The least length, as in MuJoCo.
 const LEAST: f64 = 1e-15;
-
-/// x within −1 and 1, times `most`.
-fn clipped<S: Scalar>(x: S, most: S) -> S {
-    let x = S::select((x - most).positive(), most, x);
-    S::select((-(x + most)).positive(), -most, x)
-}
+/// The square of the sine below which axes are parallel, as in MuJoCo from 4.0 on.
+const PARALLEL: f64 = 1e-8;
 
 /// Two spheres with these centres. In one point, their axes z say what is across.
 pub(super) fn balls<S: Scalar>([(first, a), (second, b)]: [(Vector3<S>, S); 2], axes: [Vector3<S>; 2], exists: S) -> Touch<S> {
@@ -39,19 +35,13 @@ pub(super) fn spheres<S: Scalar>(first: &Placed<'_, S>, second: &Placed<'_, S>, 
 /// The point of the capsule's axis that is next to the sphere.
 pub(super) fn sphere_capsule<S: Scalar>(first: &Placed<'_, S>, second: &Placed<'_, S>, a: S, b: S, half: S) -> Touch<S> {
     let axis = second.axis(2);
-    let at = clipped(axis.dot(&(first.position - second.position)), half);
+    let at = within(axis.dot(&(first.position - second.position)), half);
     balls([(first.position, a), (second.position + axis * at, b)], [first.axis(2), axis], S::one())
 }
 
 /// The points of both axes that are next to each other: one place, or two of parallel capsules.
-pub(super) fn capsules<S: Scalar>(
-    first: &Placed<'_, S>,
-    second: &Placed<'_, S>,
-    [a, half]: [S; 2],
-    [b, other]: [S; 2],
-    reach: S,
-) -> [Touch<S>; 2] {
-    let (zero, one) = (S::zero(), S::one());
+pub(super) fn capsules<S: Scalar>(first: &Placed<'_, S>, second: &Placed<'_, S>, [a, half]: [S; 2], [b, other]: [S; 2]) -> [Touch<S>; 2] {
+    let one = S::one();
     let axes = [first.axis(2), second.axis(2)];
     let (e, f) = (axes[0] * half, axes[1] * other);
     let apart = first.position - second.position;
@@ -59,40 +49,33 @@ pub(super) fn capsules<S: Scalar>(
     let (ee, ef, ff) = (e.dot(&e), -e.dot(&f), f.dot(&f));
     let (u, w) = (-e.dot(&apart), f.dot(&apart));
     let determinant = ee * ff - ef * ef;
-    let is_crossed = one - flag::<S>((S::from_f64(LEAST) - determinant.abs()).positive());
+    let across = axes[0].cross(&axes[1]);
+    let is_crossed = one - flag::<S>((S::from_f64(PARALLEL) - across.dot(&across)).positive());
     let crosses = is_crossed.positive();
     let divisor = S::select(crosses, determinant, one);
     let (x, y) = ((ff * u - ef * w) / divisor, (ee * w - ef * u) / divisor);
     // Within the first axis, then within the second.
     let y_at = |x: S| (w - ef * x) / ff;
-    let x_at = |y: S| clipped((u - ef * y) / ee, one);
+    let x_at = |y: S| within((u - ef * y) / ee, one);
     let (over, under) = ((x - one).positive(), (-(x + one)).positive());
     let y = S::select(over, y_at(one), S::select(under, y_at(-one), y));
-    let x = clipped(x, one);
+    let x = within(x, one);
     let (over, under) = ((y - one).positive(), (-(y + one)).positive());
     let x = S::select(over, x_at(one), S::select(under, x_at(-one), x));
-    let y = clipped(y, one);
+    let y = within(y, one);
     let place = |x: S, y: S, exists: S| balls([(first.position + e * x, a), (second.position + f * y, b)], axes, exists);
-    // Parallel: the ends of the first, then those of the second, two at most.
-    let ends = [(one, clipped(y_at(one), one)), (-one, clipped(y_at(-one), one)), (x_at(one), one), (x_at(-one), -one)];
-    // Both places: x, y, and whether it exists
-    let mut chosen = [x, y, one, zero, zero, zero];
+    // Parallel: both ends of the part that they have in common
+    let mut chosen = [x, y, x, y];
     S::when((one - is_crossed).positive(), &mut chosen, |chosen| {
-        let mut found = zero;
-        chosen.fill(zero);
-        for (x, y) in ends {
-            let one_place = place(x, y, one);
-            let counts = one - flag::<S>((one_place.distance - reach).positive());
-            for (k, own) in chosen.chunks_mut(3).enumerate() {
-                // The first free one takes it.
-                let takes = counts * flag::<S>((S::from_f64(0.5) - (found - S::from_f64(k as f64)).abs()).positive());
-                own[0] = S::select(takes.positive(), x, own[0]);
-                own[1] = S::select(takes.positive(), y, own[1]);
-                own[2] += takes;
-            }
-            found += counts;
+        let same = S::select((-ef).positive(), one, -one);
+        for (side, own) in [-one, one].into_iter().zip(chosen.chunks_mut(2)) {
+            // The end of the second on this side, or that of the first
+            let end = side * same;
+            let is_within = (one - (u - ef * end) / ee * side).positive();
+            own[0] = S::select(is_within, x_at(end), side);
+            own[1] = S::select(is_within, end, within(y_at(side), one));
         }
     });
-    let [x0, y0, exists0, x1, y1, exists1] = chosen;
-    [place(x0, y0, exists0), place(x1, y1, exists1)]
+    let [x, y, x1, y1] = chosen;
+    [place(x, y, one), place(x1, y1, one - is_crossed)]
 }

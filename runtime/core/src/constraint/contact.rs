@@ -11,12 +11,13 @@
 //!
 //! Source: MuJoCo documentation, Computation: friction cones.
 
+use alloc::vec;
 use alloc::vec::Vec;
 
 use super::{Cone, Pair};
 use crate::Scalar;
 use crate::collision::Touch;
-use crate::spatial::{Twist, Vector3, Wrench};
+use crate::spatial::{Matrix3, Twist, Vector3, Wrench};
 
 /// No contact has more rows.
 pub const MOST_ROWS: usize = 6;
@@ -26,8 +27,8 @@ pub const MOST_ROWS: usize = 6;
 pub(super) struct Contact<S> {
     /// The normal, and two axes across it if the contact has friction.
     frame: Vec<Vector3<S>>,
-    /// Their moments about the origin.
-    moments: Vec<Vector3<S>>,
+    /// The point from the origin.
+    point: Vector3<S>,
     /// r.
     reference: Vec<S>,
     law: Law<S>,
@@ -49,9 +50,14 @@ pub(super) struct Cost<S> {
     pub(super) curvature: [[S; MOST_ROWS]; MOST_ROWS],
 }
 
+/// How many numbers a place of a pair is.
+pub(super) const fn length_of_place(dimension: usize) -> usize {
+    2 + 3 * axes(dimension) + 3 + dimension
+}
+
 /// How many numbers a contact is as a row of a table.
 pub(super) const fn length(dimension: usize) -> usize {
-    of_law(dimension) + 6 * axes(dimension) + dimension
+    of_law(dimension) + 3 * axes(dimension) + 3 + dimension
 }
 
 /// How many of them are whether it acts, and its law. These are first.
@@ -68,14 +74,14 @@ impl<S: Scalar> Contact<S> {
     /// as the touch, in the same axes.
     pub(super) fn new(pair: &Pair<S>, cone: Cone, touch: &Touch<S>, twist: &Twist<S>) -> Self {
         let frame = touch.frame()[..axes(pair.dimension)].to_vec();
-        let moments = frame.iter().map(|axis| touch.point.cross(axis)).collect();
         let mut contact = Self {
             frame,
-            moments,
+            point: touch.point,
             reference: Vec::new(),
             law: Law { curvature: S::one(), mu: pair.mu, friction: pair.friction[..pair.dimension - 1].to_vec() },
         };
-        let rates: Vec<S> = (0..pair.dimension).map(|k| contact.along(k, twist)).collect();
+        contact.reference = vec![S::zero(); pair.dimension];
+        let rates = contact.rates(twist);
         let (normal, give) = pair.soft.row(touch.distance - pair.margin, rates[0], pair.weight);
         contact.reference = rates.iter().map(|rate| -(pair.tangential_damping * *rate)).collect();
         contact.reference[0] = normal;
@@ -89,20 +95,24 @@ impl<S: Scalar> Contact<S> {
 
     /// The same for the opposite twist.
     pub(super) fn reversed(mut self) -> Self {
-        self.frame.iter_mut().chain(&mut self.moments).for_each(|axis| *axis = -*axis);
+        self.frame.iter_mut().for_each(|axis| *axis = -*axis);
         self
     }
 
-    /// As a row of a table, which begins with 1: it acts. Zeros are a contact that does not.
-    pub(super) fn row_of_table(&self) -> Vec<S> {
+    /// Its numbers as a row of a table, without those of its pair.
+    pub(super) fn place(&self) -> Vec<S> {
         let mut row = [S::one(), self.law.curvature].to_vec();
-        if self.dimension() > 1 {
-            row.push(self.law.mu);
-            row.extend_from_slice(&self.law.friction);
-        }
-        self.frame.iter().chain(&self.moments).for_each(|axis| row.extend_from_slice(axis.as_slice()));
+        self.frame.iter().chain([&self.point]).for_each(|axis| row.extend_from_slice(axis.as_slice()));
         row.extend_from_slice(&self.reference);
         row
+    }
+
+    /// The row of a place of this pair, which begins with 1: it acts. Zeros are a place where
+    /// nothing touches.
+    pub(super) fn row_of(pair: &Pair<S>, place: &[S]) -> Vec<S> {
+        let (acts, rest) = place.split_at(2);
+        let own: &[S] = if pair.dimension == 1 { &[] } else { &[pair.mu] };
+        [acts, own, &pair.friction[..pair.dimension - 1], rest].concat()
     }
 
     /// Of such a row.
@@ -111,8 +121,8 @@ impl<S: Scalar> Contact<S> {
         let axis = |k: usize| Vector3::new(rest[3 * k], rest[3 * k + 1], rest[3 * k + 2]);
         Self {
             frame: (0..count).map(axis).collect(),
-            moments: (count..2 * count).map(axis).collect(),
-            reference: rest[6 * count..][..dimension].to_vec(),
+            point: axis(count),
+            reference: rest[3 * count + 3..][..dimension].to_vec(),
             law: Law::of(row, dimension),
         }
     }
@@ -121,28 +131,24 @@ impl<S: Scalar> Contact<S> {
         self.reference.len()
     }
 
-    /// Row `k` of B, as a wrench.
-    pub(super) fn row(&self, k: usize) -> Wrench<S> {
-        if k < 3 {
-            Wrench { moment: self.moments[k], force: self.frame[k] }
-        } else {
-            Wrench { moment: self.frame[k - 3], force: Vector3::zeros() }
-        }
-    }
-
-    /// Row `k` of B V.
-    pub(super) fn along(&self, k: usize, twist: &Twist<S>) -> S {
-        if k < 3 { self.row(k).power(twist) } else { self.frame[k - 3].dot(&twist.angular) }
-    }
-
-    /// B V − r at a relative twist.
-    pub(super) fn residual(&self, twist: &Twist<S>) -> Vec<S> {
-        self.reference.iter().enumerate().map(|(k, reference)| self.along(k, twist) - *reference).collect()
+    /// Bᵀ f.
+    pub(super) fn wrench(&self, f: &[S]) -> Wrench<S> {
+        let along = |f: &[S]| self.frame.iter().zip(f).fold(Vector3::zeros(), |sum: Vector3<S>, (axis, f)| sum + axis * *f);
+        let force = along(&f[..f.len().min(3)]);
+        let moment = self.point.cross(&force);
+        Wrench { moment: if f.len() > 3 { moment + along(&f[3..]) } else { moment }, force }
     }
 
     /// B V.
     pub(super) fn rates(&self, twist: &Twist<S>) -> Vec<S> {
-        (0..self.dimension()).map(|k| self.along(k, twist)).collect()
+        let velocity = twist.linear + twist.angular.cross(&self.point);
+        let of = |k: usize| if k < 3 { self.frame[k].dot(&velocity) } else { self.frame[k - 3].dot(&twist.angular) };
+        (0..self.dimension()).map(of).collect()
+    }
+
+    /// B V − r at a relative twist.
+    pub(super) fn residual(&self, twist: &Twist<S>) -> Vec<S> {
+        self.rates(twist).iter().zip(&self.reference).map(|(rate, reference)| *rate - *reference).collect()
     }
 
     /// s at u.
@@ -151,16 +157,39 @@ impl<S: Scalar> Contact<S> {
     }
 
     /// K = Bᵀ s″ B, its upper triangle row by row.
+    ///
+    /// ```text
+    /// A = Σ s″ n nᵀ  over axes of forces, C of force and moment, D of moments
+    /// K = [X A Xᵀ + X C + Cᵀ Xᵀ + D,  X A + Cᵀ;  ·,  A]        X: the cross product of the point
+    /// ```
     pub(super) fn inertia(&self, s: &[[S; MOST_ROWS]; MOST_ROWS]) -> [S; 21] {
         let d = self.dimension();
-        let rows: Vec<[S; 6]> = (0..d).map(|k| self.row(k).to_array()).collect();
-        let mut inertia = [S::zero(); 21];
-        for (k, row) in rows.iter().enumerate() {
-            let other: [S; 6] = core::array::from_fn(|j| (0..d).fold(S::zero(), |sum, l| sum + s[k][l] * rows[l][j]));
-            let upper = (0..6).flat_map(|i| (i..6).map(move |j| (i, j)));
-            upper.zip(&mut inertia).for_each(|((i, j), sum)| *sum += row[i] * other[j]);
+        let (forces, moments) = (0..d.min(3), 3..d.max(3));
+        let sum = |rows: core::ops::Range<usize>, columns: core::ops::Range<usize>| {
+            let mut sum = Matrix3::<S>::zeros();
+            for k in rows {
+                let pushed = columns.clone().fold(Vector3::zeros(), |sum: Vector3<S>, l| sum + self.frame[l % 3] * s[k][l]);
+                sum += self.frame[k % 3] * pushed.transpose();
+            }
+            sum
+        };
+        let a = sum(forces.clone(), forces.clone());
+        let crossed = |m: &Matrix3<S>| Matrix3::from_columns(&[0, 1, 2].map(|k| self.point.cross(&m.column(k))));
+        let mut mixed = crossed(&a);
+        let mut angular = crossed(&mixed.transpose()).transpose();
+        if d > 3 {
+            let c = sum(forces, moments.clone());
+            let turned = crossed(&c);
+            angular += turned + turned.transpose() + sum(moments.clone(), moments);
+            mixed += c.transpose();
         }
-        inertia
+        let block = |i: usize, j: usize| match (i / 3, j / 3) {
+            (0, 0) => angular[(i, j)],
+            (0, _) => mixed[(i, j - 3)],
+            _ => a[(i - 3, j - 3)],
+        };
+        let mut upper = (0..6).flat_map(|i| (i..6).map(move |j| (i, j)));
+        core::array::from_fn(|_| upper.next().map_or(S::zero(), |(i, j)| block(i, j)))
     }
 }
 

@@ -15,15 +15,18 @@
 //! in [`crate::collision`]. Source: MuJoCo documentation, Computation: constraint model; Todorov,
 //! ICRA 2014.
 
+mod anchors;
 mod contact;
 mod joints;
 mod newton;
+mod pairs;
 mod soft;
 mod sums;
 mod weights;
 
 use alloc::vec::Vec;
 
+pub use anchors::{Anchor, poses};
 pub use contact::MOST_ROWS;
 pub(crate) use newton::{Smooth, constrained};
 pub use soft::{Impedance, Soft};
@@ -44,6 +47,8 @@ pub struct Constraints<S = f64> {
     pub friction: Vec<DryFriction<S>>,
     /// Constraints of sums of coordinates: of tendons, and equations.
     pub sums: Vec<Sum<S>>,
+    /// Frames of two bodies that are held together.
+    pub anchors: Vec<Anchor<S>>,
     /// Shapes that make contact.
     pub shapes: Vec<Shape<S>>,
     /// Which of them touch each other.
@@ -52,7 +57,15 @@ pub struct Constraints<S = f64> {
 
 impl<S> Default for Constraints<S> {
     fn default() -> Self {
-        Self { cone: Cone::default(), limits: Vec::new(), friction: Vec::new(), sums: Vec::new(), shapes: Vec::new(), pairs: Vec::new() }
+        Self {
+            cone: Cone::default(),
+            limits: Vec::new(),
+            friction: Vec::new(),
+            sums: Vec::new(),
+            anchors: Vec::new(),
+            shapes: Vec::new(),
+            pairs: Vec::new(),
+        }
     }
 }
 
@@ -132,7 +145,7 @@ pub struct Pair<S = f64> {
 impl<S: Scalar> Constraints<S> {
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
-        self.limits.is_empty() && self.friction.is_empty() && self.sums.is_empty() && self.pairs.is_empty()
+        self.limits.is_empty() && self.friction.is_empty() && self.sums.is_empty() && self.anchors.is_empty() && self.pairs.is_empty()
     }
 
     /// The same with `f` of each constant, always in the same order.
@@ -142,6 +155,7 @@ impl<S: Scalar> Constraints<S> {
             limits: self.limits.iter().map(|limit| limit.map(f)).collect(),
             friction: self.friction.iter().map(|own| own.map(f)).collect(),
             sums: self.sums.iter().map(|own| own.map(f)).collect(),
+            anchors: self.anchors.iter().map(|anchor| anchor.map(f)).collect(),
             shapes: self.shapes.iter().map(|shape| shape.map(f)).collect(),
             pairs: self.pairs.iter().map(|pair| pair.map(f)).collect(),
         }

@@ -15,16 +15,17 @@ use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::Cone;
+use super::anchors::{self, Moving};
 use super::contact::{self, Contact, Law};
 use super::joints::JointRow;
-use super::{Cone, Constraints};
+use super::pairs::{self, Found};
 use crate::Scalar;
 use crate::algorithm::ltdl::{factor, path_to_root, solve};
 use crate::algorithm::{Placed as Bodies, Workspace, mass_matrix};
-use crate::collision::{Form, Placed, are_near, touches};
 use crate::index::{BodyId, ById};
 use crate::model::Model;
-use crate::scalar::{flag, two_to};
+use crate::scalar::{flag, of_precision};
 use crate::spatial::{ArticulatedInertia, Matrix3, Placement, Twist, Vector3, Wrench};
 
 /// Largest number of steps of Newton's method.
@@ -78,10 +79,10 @@ pub(crate) fn constrained<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, sm
 }
 
 /// A column of J of all bodies beyond a joint.
-struct Column<S> {
-    body: BodyId,
-    at: usize,
-    axis: Twist<S>,
+pub(super) struct Column<S> {
+    pub(super) body: BodyId,
+    pub(super) at: usize,
+    pub(super) axis: Twist<S>,
 }
 
 /// Contacts of one dimension of two bodies, of which the first may be the base.
@@ -102,7 +103,8 @@ impl<S> Group<S> {
     }
 }
 
-type Twists<S> = ById<BodyId, Twist<S>>;
+/// The twists of bodies.
+pub(super) type Twists<S> = ById<BodyId, Twist<S>>;
 
 struct Problem<'a, S: 'static> {
     model: &'a Model<S>,
@@ -142,40 +144,14 @@ impl<'a, S: Scalar> Problem<'a, S> {
             rows: constraints.joint_rows(smooth.q, smooth.v),
             groups: Vec::new(),
         };
-        problem.find_contacts(constraints, &placed, origin, smooth.v);
+        let twists = problem.motion(smooth.v);
+        let moving = Moving { model, placed: &placed, columns: &problem.columns, origin, twists: &twists };
+        anchors::rows(&constraints.anchors, &moving, &mut problem.rows);
+        for Found { bodies, dimension, rows } in pairs::contacts(constraints, &placed, origin, &twists) {
+            problem.add(bodies, dimension, &rows);
+        }
         problem.parents = problem.ways();
         problem
-    }
-
-    fn find_contacts(&mut self, constraints: &Constraints<S>, placed: &Bodies<'_, S>, origin: Vector3<S>, v: &[S]) {
-        let twists = self.motion(v);
-        let place = |shape: usize| {
-            let shape = &constraints.shapes[shape];
-            let at = match shape.body.is_base() {
-                true => shape.placement,
-                false => placed.frame(shape.body, &shape.placement),
-            };
-            let Placement { rotation, position } = Placement { position: at.position - origin, ..at };
-            Placed { form: &shape.form, rotation, position }
-        };
-        for pair in &constraints.pairs {
-            let both = pair.shapes.map(place);
-            let bodies = pair.shapes.map(|shape| constraints.shapes[shape].body);
-            let relative = twists[bodies[1]] - twists[bodies[0]];
-            let is_reversed = bodies[1].is_base();
-            let length = contact::length(pair.dimension);
-            let mut rows = vec![S::zero(); length * Form::places(both[0].form, both[1].form).unwrap_or(0)];
-            S::when(are_near(&both, pair.margin).positive(), &mut rows, |rows| {
-                for (touch, row) in touches(&both[0], &both[1], pair.margin).iter().zip(rows.chunks_mut(length)) {
-                    let acts = flag::<S>((pair.margin - touch.distance).positive()) * touch.exists;
-                    S::when(acts.positive(), row, |row| {
-                        let contact = Contact::new(pair, self.cone, touch, &relative);
-                        row.copy_from_slice(&if is_reversed { contact.reversed() } else { contact }.row_of_table());
-                    });
-                }
-            });
-            self.add(if is_reversed { [bodies[1], bodies[0]] } else { bodies }, pair.dimension, &rows);
-        }
     }
 
     fn add(&mut self, bodies: [BodyId; 2], dimension: usize, rows: &[S]) {
@@ -276,7 +252,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
             sums.extend(wrenches[first].iter().filter(|_| !group.is_of_world()));
             Self::each(group, [&motion], [&mut sums, &mut []], |contact, [twist], sums| {
                 let cost = contact.cost(self.cone, &contact.residual(&twist));
-                let wrench = (0..group.dimension).fold(Wrench::zero(), |sum, k| sum + contact.row(k).times(cost.slope[k])).to_array();
+                let wrench = contact.wrench(&cost.slope[..group.dimension]).to_array();
                 let (on_second, on_first) = sums.split_at_mut(6);
                 on_second.iter_mut().zip(wrench).for_each(|(sum, x)| *sum += x);
                 on_first.iter_mut().zip(wrench).for_each(|(sum, x)| *sum -= x);
@@ -336,8 +312,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
             let s = contact.cost(self.cone, &contact.residual(&twist)).curvature;
             let mut rows = vec![vec![S::zero(); n]; d];
             for (Column { at, axis, .. }, is_first) in &moving {
-                for (k, row) in rows.iter_mut().enumerate() {
-                    let entry = contact.along(k, axis);
+                for (row, entry) in rows.iter_mut().zip(contact.rates(axis)) {
                     row[*at] += if *is_first { -entry } else { entry };
                 }
             }
@@ -432,7 +407,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
             state
         };
         let first = dot(slope, dx);
-        let (enough, still) = (S::from_f64(LINE) * first.abs(), bound(first.abs(), STILL));
+        let (enough, still) = (S::from_f64(LINE) * first.abs(), of_precision(first.abs(), STILL));
         // α, and bounds below and above it; above is 0 where there is none yet.
         let mut state = [one, zero, zero];
         let _ = S::repeat(MOST_ON_A_LINE, &mut state, |state| {
@@ -479,7 +454,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
             let (x, last) = state.split_at_mut(nv);
             let slope = self.slope(x);
             let [square, size] = self.squares(&slope);
-            let [settled, small] = [SETTLED, SMALL].map(|n| bound(size, n.map(|n| 2 * n)));
+            let [settled, small] = [SETTLED, SMALL].map(|n| of_precision(size, n.map(|n| 2 * n)));
             // Also of zeros, and of what is no number
             let is_settled = one - flag::<S>((square - settled * size).positive());
             let is_small = flag::<S>((small * size - square).positive());
@@ -504,13 +479,6 @@ impl<'a, S: Scalar> Problem<'a, S> {
     fn beyond(&self, x: &[S]) -> Vec<S> {
         x.iter().zip(self.start).map(|(x, start)| *x - *start).collect()
     }
-}
-
-/// A bound of each precision, of which one counts: generated code is the same for both. The square
-/// of 2^−100 is zero in `f32` alone. x, 0 or more, is a number that no pass knows.
-fn bound<S: Scalar>(x: S, [wide, narrow]: [i32; 2]) -> S {
-    let small = S::select(x.positive(), S::one(), S::from_f64(0.5)) * S::from_f64(two_to(-100));
-    S::select((small * small).positive(), S::from_f64(two_to(wide)), S::from_f64(two_to(narrow)))
 }
 
 /// M y of a symmetric matrix by its entries on and below the diagonal.
@@ -540,8 +508,9 @@ fn of_triangle<S: Scalar>(k: &[S]) -> ArticulatedInertia<S> {
 mod tests {
     use super::*;
     use crate::collision::{Form, Shape};
-    use crate::constraint::{Bound, DryFriction, Limit, Pair, Soft};
+    use crate::constraint::{Bound, Constraints, DryFriction, Limit, Pair, Soft};
     use crate::description::{Base, Description, Inertial, Joint, JointKind, Link, LinkId, Origin};
+    use crate::scalar::two_to;
 
     const MASS: f64 = 2.0;
 
@@ -565,7 +534,7 @@ mod tests {
     #[test]
     fn a_bound_is_that_of_its_precision() {
         for x in [0.0, 1e-30, 7.0, 1e30] {
-            assert_eq!((bound(x, STILL), bound(x as f32, STILL)), (two_to(STILL[0]), two_to(STILL[1]) as f32));
+            assert_eq!((of_precision(x, STILL), of_precision(x as f32, STILL)), (two_to(STILL[0]), two_to(STILL[1]) as f32));
         }
     }
 

@@ -93,8 +93,20 @@ impl<S: Scalar> Soft<S> {
     /// The reference acceleration at a violation p and its rate, and R = 1 / D of a row with this
     /// inverse inertia.
     pub(super) fn row(&self, p: S, rate: S, weight: S) -> (S, S) {
-        let d = self.impedance.at(p);
+        self.row_of(p, p, rate, weight)
+    }
+
+    /// The same of one row of several, whose violations have this size.
+    pub(super) fn row_of(&self, size: S, p: S, rate: S, weight: S) -> (S, S) {
+        let d = self.impedance.at(size);
         (-(self.damping * rate) - self.stiffness * d * p, greater((S::one() - d) / d * weight, S::from_f64(LEAST)))
+    }
+}
+
+impl<S> Impedance<S> {
+    /// Twice the power of one that rises.
+    pub(super) fn twice_power(&self) -> Option<u32> {
+        if let Self::Rising { twice_power, .. } = self { Some(*twice_power) } else { None }
     }
 }
 

@@ -1,0 +1,122 @@
+//! The contacts of all pairs of shapes.
+//!
+//! Pairs of one sort have the same forms and the same law, with other numbers. They are rows of one
+//! table: generated code has each sort once.
+
+use alloc::vec;
+use alloc::vec::Vec;
+use core::cell::RefCell;
+
+use super::contact::{self, Contact};
+use super::newton::Twists;
+use super::{Constraints, Pair};
+use crate::Scalar;
+use crate::algorithm::Placed as Bodies;
+use crate::collision::{Form, Placed, are_near, touches};
+use crate::index::BodyId;
+use crate::scalar::flag;
+use crate::spatial::{Placement, Twist, Vector3};
+
+/// Contacts of a pair.
+pub(super) struct Found<S> {
+    /// The bodies, the base first.
+    pub(super) bodies: [BodyId; 2],
+    pub(super) dimension: usize,
+    /// A row for each place, see [`Contact::of`].
+    pub(super) rows: Vec<S>,
+}
+
+/// What of a pair is not a number.
+#[derive(PartialEq)]
+struct Sort {
+    forms: [usize; 2],
+    dimension: usize,
+    power: Option<u32>,
+    is_reversed: bool,
+}
+
+/// The contacts of all pairs, with places about the origin. `twists`: of all bodies about it.
+pub(super) fn contacts<S: Scalar>(
+    constraints: &Constraints<S>,
+    placed: &Bodies<'_, S>,
+    origin: Vector3<S>,
+    twists: &Twists<S>,
+) -> Vec<Found<S>> {
+    let shape = |pair: &Pair<S>| pair.shapes.map(|shape| &constraints.shapes[shape]);
+    let sort = |pair: &Pair<S>| Sort {
+        forms: shape(pair).map(|shape| shape.form.rank()),
+        dimension: pair.dimension,
+        power: pair.soft.impedance.twice_power(),
+        is_reversed: shape(pair)[1].body.is_base(),
+    };
+    let mut sorts: Vec<(Sort, Vec<&Pair<S>>)> = Vec::new();
+    for pair in &constraints.pairs {
+        let own = sort(pair);
+        match sorts.iter_mut().find(|(other, _)| *other == own) {
+            Some((_, pairs)) => pairs.push(pair),
+            None => sorts.push((own, [pair].into())),
+        }
+    }
+    let place = |shape: usize| {
+        let shape = &constraints.shapes[shape];
+        let at = match shape.body.is_base() {
+            true => shape.placement,
+            false => placed.frame(shape.body, &shape.placement),
+        };
+        Placement { position: at.position - origin, ..at }
+    };
+    let mut found = Vec::new();
+    for (Sort { dimension, is_reversed, .. }, pairs) in sorts {
+        let first = pairs[0];
+        let forms = shape(first).map(|shape| &shape.form);
+        let length = contact::length_of_place(dimension);
+        let places = length * Form::places(forms[0], forms[1]).unwrap_or(0);
+        let mut table = Vec::new();
+        for pair in &pairs {
+            let bodies = shape(pair).map(|shape| shape.body);
+            let (forms, relative) = (shape(pair).map(|shape| &shape.form), twists[bodies[1]] - twists[bodies[0]]);
+            table.extend(numbers(|see| {
+                pair.map(see);
+                forms.iter().for_each(|form| _ = form.map(see));
+                pair.shapes.iter().for_each(|shape| _ = place(*shape).map(see));
+                relative.to_array().iter().for_each(|x| _ = see(*x));
+            }));
+        }
+        let mut results = vec![S::zero(); places * pairs.len()];
+        S::for_each(pairs.len(), &table, &mut [], &mut results, |row, _, rows| {
+            let row = RefCell::new(row.iter());
+            let next = |other: S| row.borrow_mut().next().copied().unwrap_or(other);
+            let pair = first.map(next);
+            let forms = forms.map(|form| form.map(next));
+            let [one, other] = pair.shapes.map(|_| Placement::identity().map(next));
+            let relative = Twist { angular: Vector3::zeros().map(next), linear: Vector3::zeros().map(next) };
+            let both = [(&forms[0], one), (&forms[1], other)];
+            let both = both.map(|(form, Placement { rotation, position })| Placed { form, rotation, position });
+            S::when(are_near(&both, pair.margin).positive(), rows, |rows| {
+                for (touch, row) in touches(&both[0], &both[1], pair.margin).iter().zip(rows.chunks_mut(length)) {
+                    let acts = flag::<S>((pair.margin - touch.distance).positive()) * touch.exists;
+                    S::when(acts.positive(), row, |row| {
+                        let contact = Contact::new(&pair, constraints.cone, touch, &relative);
+                        row.copy_from_slice(&if is_reversed { contact.reversed() } else { contact }.place());
+                    });
+                }
+            });
+        });
+        for (pair, places) in pairs.iter().zip(results.chunks(places.max(1))) {
+            let [one, other] = shape(pair).map(|shape| shape.body);
+            let rows = places.chunks(length).flat_map(|place| Contact::row_of(pair, place)).collect();
+            found.push(Found { bodies: if is_reversed { [other, one] } else { [one, other] }, dimension, rows });
+        }
+    }
+    found
+}
+
+/// The numbers that `visit` sees, in order.
+fn numbers<S: Scalar>(visit: impl FnOnce(&dyn Fn(S) -> S)) -> Vec<S> {
+    let numbers = RefCell::new(Vec::new());
+    visit(&|x| {
+        numbers.borrow_mut().push(x);
+        x
+    });
+    numbers.into_inner()
+}
