@@ -36,6 +36,11 @@ impl<'a> Steps<'a> {
         Some(Self { transform, arguments, weights: transform.weights(part), results, shape })
     }
 
+    /// How many times in a row the function is differentiated.
+    pub(crate) fn orders(&self) -> usize {
+        if matches!(self.transform.kind, Derivative::Hvp | Derivative::Hessian) { 2 } else { 1 }
+    }
+
     /// The number of the argument δ of a configuration; `None` for arguments that are
     /// differentiated by themselves. Numbers above those of arguments and parameters are free.
     fn step(&self, argument: Argument) -> Option<usize> {
@@ -69,7 +74,7 @@ impl<'a> Steps<'a> {
             rest = others;
             if output.is_configuration() {
                 let (mut held, mut step) = (own.to_vec(), vec![Sym::zero(); self.shape.nv]);
-                Sym::hold(&mut held);
+                Sym::held(&mut held, |_| {});
                 small_difference(model, &held, own, &mut step);
                 all.extend(step);
             } else {

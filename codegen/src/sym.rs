@@ -33,8 +33,8 @@ struct Trace {
     bodies: Vec<Body>,
     /// How many regions were opened.
     opened: u32,
-    /// Whether regions that only derivatives need are kept.
-    with_equations: bool,
+    /// How often it is differentiated: then regions that only derivatives need are kept.
+    orders: usize,
 }
 
 /// The body of a region while it is traced.
@@ -155,17 +155,17 @@ impl Sym {
 /// If a body of a region hands a value to the program around it, other than by its state and its
 /// results.
 pub fn trace(program: impl FnOnce() -> Vec<Sym>) -> Graph {
-    traced(false, program)
+    traced(0, program)
 }
 
-/// The same for a program that is differentiated: what solves an equation stays a region until
+/// The same for a program that is differentiated so many times in a row: what solves an equation stays a region until
 /// [`inline`](crate::pass::inline).
-pub(crate) fn trace_with_equations(program: impl FnOnce() -> Vec<Sym>) -> Graph {
-    traced(true, program)
+pub(crate) fn trace_with_equations(orders: usize, program: impl FnOnce() -> Vec<Sym>) -> Graph {
+    traced(orders, program)
 }
 
-fn traced(with_equations: bool, program: impl FnOnce() -> Vec<Sym>) -> Graph {
-    let outer = TRACE.replace(Trace { with_equations, ..Trace::default() });
+fn traced(orders: usize, program: impl FnOnce() -> Vec<Sym>) -> Graph {
+    let outer = TRACE.replace(Trace { orders, ..Trace::default() });
     let outputs = program();
     let mut trace = TRACE.replace(outer);
     let outputs = outputs.into_iter().map(|symbol| trace.node(symbol)).collect();
@@ -367,13 +367,20 @@ impl Scalar for Sym {
         results.copy_from_slice(found);
     }
 
-    fn hold(x: &mut [Self]) {
-        if !TRACE.with_borrow(|trace| trace.with_equations) {
-            return;
+    fn orders() -> usize {
+        TRACE.with_borrow(|trace| trace.orders)
+    }
+
+    fn held(x: &mut [Self], value: impl FnOnce(&mut [Self])) {
+        if !TRACE.with_borrow(|trace| trace.orders > 0) {
+            return value(x);
         }
         let (kind, mut captured) = (Kind::ForEach { turns: 1, row: 0, results: x.len() }, Vec::new());
-        let values = x.to_vec();
-        let graph = body([0, 0, 0], &mut captured, |_| values);
+        let graph = body([0, 0, 0], &mut captured, |_| {
+            let mut x = x.to_vec();
+            value(&mut x);
+            x
+        });
         x.copy_from_slice(&opened(kind, graph, Rule::Held, &[], &captured, &[]));
     }
 
@@ -384,7 +391,7 @@ impl Scalar for Sym {
         residual: impl FnOnce(&mut C, &[Self], &mut [Self]),
         solve: impl FnOnce(&mut C, &mut [Self]),
     ) {
-        if !TRACE.with_borrow(|trace| trace.with_equations) {
+        if !TRACE.with_borrow(|trace| trace.orders > 0) {
             return value(context, x);
         }
         let (n, mut captured) = (x.len(), Vec::new());

@@ -132,7 +132,10 @@ fn traced(
             }
         };
         let all = || terms.iter().zip(strategies).flat_map(&mut one).collect();
-        if steps.is_some() { sym::trace_with_equations(all) } else { sym::trace(all) }
+        match &steps {
+            Some(steps) => sym::trace_with_equations(steps.orders(), all),
+            None => sym::trace(all),
+        }
     };
     let Some(steps) = Steps::of(spec, arguments, model) else { return graph_of(&spec.parts, None) };
     let graph = graph_of(&spec.parts, Some(&steps));

@@ -149,12 +149,30 @@ impl<S: Scalar> Scalar for Dual<S> {
         Self { value: S::select(mask, a.value, b.value), slope: S::select(mask, a.slope, b.slope) }
     }
 
-    fn hold(x: &mut [Self]) {
-        for x in x {
-            let mut value = [x.value];
-            S::hold(&mut value);
-            *x = Self::constant(value[0]);
-        }
+    fn orders() -> usize {
+        S::orders() + 1
+    }
+
+    fn held(x: &mut [Self], value: impl FnOnce(&mut [Self])) {
+        value(x);
+        x.iter_mut().for_each(|x| *x = Self::constant(x.value));
+    }
+
+    // dx = −(∂r/∂x)⁻¹ ∂r/∂p dp
+    #[cfg(feature = "alloc")]
+    fn implicit<C>(
+        context: &mut C,
+        x: &mut [Self],
+        value: impl FnOnce(&mut C, &mut [Self]),
+        residual: impl FnOnce(&mut C, &[Self], &mut [Self]),
+        solve: impl FnOnce(&mut C, &mut [Self]),
+    ) {
+        Self::held(x, |x| value(context, x));
+        let mut slopes: Vec<Self> = region::zeros(x.len());
+        residual(context, x, &mut slopes);
+        slopes.iter_mut().for_each(|r| *r = Self::constant(r.slope));
+        solve(context, &mut slopes);
+        x.iter_mut().zip(slopes).for_each(|(x, own)| x.slope = -own.value);
     }
 
     // The values first, then the slopes at the fixed point.
@@ -191,6 +209,20 @@ mod tests {
         let exact = f(Dual::new(Dual::variable(t), Dual::one()));
         assert!((exact.value.slope - first).abs() < 1e-10 && (exact.slope.value - first).abs() < 1e-10, "{exact:?} {first}");
         assert!((exact.slope.slope - second).abs() < 1e-8, "{exact:?} {second}");
+    }
+
+    /// x² = p, from a value alone.
+    #[test]
+    fn the_slope_of_what_solves_an_equation_is_that_of_the_equation() {
+        let p = Dual::new(2.0_f64, 3.0);
+        let mut x = [Dual::constant(0.0)];
+        let residual = |_: &mut (), x: &[Dual<f64>], r: &mut [Dual<f64>]| r[0] = x[0] * x[0] - p;
+        let root = 2_f64.sqrt();
+        let solve = |_: &mut (), b: &mut [Dual<f64>]| b[0] = b[0] / Dual::constant(2.0 * root);
+        Dual::implicit(&mut (), &mut x, |_, x| x[0] = Dual::constant(root), residual, solve);
+        assert!(x[0].value == root && (x[0].slope - 3.0 / (2.0 * root)).abs() < 1e-15, "{:?}", x[0]);
+        Dual::held(&mut x, |x| x[0] = p);
+        assert_eq!((x[0].value, x[0].slope), (2.0, 0.0));
     }
 
     #[test]

@@ -109,16 +109,23 @@ pub trait Scalar:
         region::for_each_turn(turns, table, state, results, body);
     }
 
-    /// Makes constants of values: they stay, and derivatives are zero.
-    fn hold(x: &mut [Self]) {
-        let _ = x;
+    /// How many times in a row what is computed is differentiated at most.
+    fn orders() -> usize {
+        0
+    }
+
+    /// Computes x by `value`, and declares that it is a constant: its derivatives are zero.
+    fn held(x: &mut [Self], value: impl FnOnce(&mut [Self])) {
+        value(x);
     }
 
     /// Computes x by `value`, and declares that it solves r(x, p) = 0 with a symmetric ∂r/∂x.
     ///
-    /// `residual(x, r)` has r at x, `solve(b)` replaces b by (∂r/∂x)⁻¹ b. Only a symbol calls these
-    /// two: derivatives of generated code are then those of the equation,
-    /// dx = −(∂r/∂x)⁻¹ ∂r/∂p dp, and not those of the way on which x was found.
+    /// `residual(x, r)` has r at x, `solve(b)` replaces b by (∂r/∂x)⁻¹ b. Only symbols and dual
+    /// numbers call these two: derivatives of generated code are then those of the equation,
+    /// dx = −(∂r/∂x)⁻¹ ∂r/∂p dp, and not those of the way on which x was found. They are first
+    /// derivatives: for n of them, this is done n times, the next time of x + δ with the solution
+    /// δ = 0 (see [`Scalar::orders`]).
     fn implicit<C>(
         context: &mut C,
         x: &mut [Self],

@@ -105,3 +105,30 @@ fn derivatives_are_those_of_differences() {
     }
     assert!(compared > 30, "{compared} columns were compared");
 }
+
+/// λᵀ ∂²a/∂v² dv is the difference of λᵀ ∂a/∂v along dv.
+#[test]
+fn second_derivatives_are_those_of_differences() {
+    let generated = generated(BALL, &["slope = vjp(constrained_acceleration, v)", "bend = hvp(constrained_acceleration, v)"]);
+    let (model, h, mut random) = (&generated.model, 1e-6, Random::new(8));
+    let (n, mut compared, mut largest) = (model.nv(), 0, 0.0_f64);
+    for given in given(model, 0.095, 12) {
+        let (weights, along) = (random.vector(n, -1.0, 1.0), random.vector(n, -1.0, 1.0));
+        let slope = |by: f64| {
+            let v: Vec<f64> = given[1].iter().zip(&along).map(|(v, dv)| v + by * dv).collect();
+            let more: Vec<&[f64]> = vec![&given[0], &v, &given[2], &given[3], &given[4], &weights];
+            generated.graphs[0].evaluate(|argument, k| more[argument][k])
+        };
+        let [near, far] = [h, 2.0 * h].map(|h| {
+            let (after, before) = (slope(h), slope(-h));
+            after.iter().zip(before).map(|(a, b)| (a - b) / (2.0 * h)).collect::<Vec<f64>>()
+        });
+        let scale = near.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
+        if near.iter().zip(&far).all(|(a, b)| (a - b).abs() < 1e-4 * scale) {
+            let more: Vec<&[f64]> = vec![&given[0], &given[1], &given[2], &given[3], &given[4], &weights, &along];
+            assert_close("hvp", &generated.graphs[1].evaluate(|argument, k| more[argument][k]), &near, 1e-3);
+            (compared, largest) = (compared + 1, largest.max(scale));
+        }
+    }
+    assert!(compared > 6 && largest > 2.0, "{compared} states were compared, of slopes up to {largest}");
+}

@@ -55,25 +55,28 @@ pub(crate) struct Smooth<'a, S> {
 /// The acceleration with constraints, of origins d²p/dt², and Jᵀ f of their forces.
 pub(crate) fn constrained<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, smooth: &Smooth<'_, S>) -> (Vec<S>, Vec<S>) {
     let problem = Problem::new(model, ws, smooth);
-    let mut x = problem.minimum(smooth.warm);
-    // δ = 0 solves H δ + g(x, p) = 0. Its derivative is −H⁻¹ ∂g/∂p, that of x(p) by the implicit
-    // function theorem.
-    S::hold(&mut x);
-    let mut hessian = problem.curvature(&x);
-    S::hold(&mut hessian);
-    let mut correction = vec![S::zero(); x.len()];
-    let residual = |_: &mut (), correction: &[S], r: &mut [S]| {
-        let (slope, _) = problem.slope(&x);
-        let product = times(&hessian, &problem.parents, correction);
-        r.iter_mut().zip(slope).zip(product).for_each(|((r, g), own)| *r = g + own);
-    };
-    let inverse = |_: &mut (), b: &mut [S]| {
-        let mut matrix = hessian.clone();
-        factor(&mut matrix, &problem.parents);
-        solve(&matrix, &problem.parents, b);
-    };
-    S::implicit(&mut (), &mut correction, |_, correction| correction.fill(S::zero()), residual, inverse);
-    x.iter_mut().zip(correction).for_each(|(x, own)| *x += own);
+    let mut x = smooth.a.to_vec();
+    S::held(&mut x, |x| x.copy_from_slice(&problem.minimum(smooth.warm)));
+    // δ = 0 solves g(x + δ, p) = 0. Its derivative is −H⁻¹ ∂g/∂p, that of x(p) by the implicit
+    // function theorem. Each time x has derivatives of one more order.
+    let mut hessian = vec![S::zero(); x.len() * x.len()];
+    if S::orders() > 0 {
+        S::held(&mut hessian, |hessian| hessian.copy_from_slice(&problem.curvature(&x)));
+    }
+    for _ in 0..S::orders() {
+        let mut correction = vec![S::zero(); x.len()];
+        let residual = |_: &mut (), correction: &[S], r: &mut [S]| {
+            let moved: Vec<S> = x.iter().zip(correction).map(|(x, own)| *x + *own).collect();
+            r.copy_from_slice(&problem.slope(&moved).0);
+        };
+        let inverse = |_: &mut (), b: &mut [S]| {
+            let mut matrix = hessian.clone();
+            factor(&mut matrix, &problem.parents);
+            solve(&matrix, &problem.parents, b);
+        };
+        S::implicit(&mut (), &mut correction, |_, correction| correction.fill(S::zero()), residual, inverse);
+        x.iter_mut().zip(correction).for_each(|(x, own)| *x += own);
+    }
     let forces = times(&problem.mass, &problem.branches, &problem.beyond(&x));
     (x, forces)
 }
@@ -510,6 +513,7 @@ mod tests {
     use crate::collision::{Form, Shape};
     use crate::constraint::{Bound, Constraints, DryFriction, Limit, Pair, Soft};
     use crate::description::{Base, Description, Inertial, Joint, JointKind, Link, LinkId, Origin};
+    use crate::dual::Dual;
     use crate::scalar::two_to;
 
     const MASS: f64 = 2.0;
@@ -576,6 +580,13 @@ mod tests {
                 let found = solved(model, q, v, a);
                 assert!((found - expected).abs() < 1e-12 * expected.abs(), "{q} {v}: {found} {expected}");
             }
+        }
+        // Of dual numbers: da/dv = −d b
+        for model in [&touching, &limited] {
+            let (model, constant) = (model.map(Dual::constant), |x: f64| Dual::constant(x));
+            let smooth = Smooth { q: &[constant(0.095)], v: &[Dual::variable(-1.0)], a: &[constant(-9.81)], warm: &[] };
+            let (found, _) = constrained(&model, &mut Workspace::new(&model), &smooth);
+            assert!((found[0].slope + 0.9 * B).abs() < 1e-12 * B, "{:?}", found[0]);
         }
         // Not in contact
         assert_eq!((solved(&touching, 0.11, -1.0, -9.81), solved(&limited, 0.11, -1.0, -9.81)), (-9.81, -9.81));
