@@ -97,6 +97,14 @@ pub struct Touching {
     pub left_out: BTreeSet<LeaveOut>,
 }
 
+impl Touching {
+    /// Whether the file has a constraint, whether or not it is computed.
+    pub fn has_some(&self) -> bool {
+        let Self { limits, friction, sums, anchors, pairs, unread, .. } = self;
+        !(limits.is_empty() && friction.is_empty() && sums.is_empty() && anchors.is_empty() && pairs.is_empty() && unread.is_empty())
+    }
+}
+
 /// A constraint that is not read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unread {

@@ -39,6 +39,8 @@ OFF = 30
 # Of free bodies, whose velocity here is in axes of the body: a step turns it into axes of the world and back, with a rounding.
 MANY_OF_FREE = 30.0
 STEPS = 1000
+# s: a rollout that takes longer is stopped.
+LONGEST = 120
 # Of one step, in f64: a rollout rounds in each step, also where the steps of one ulp at the start vanish.
 ROUNDING = 2.0**-53
 
@@ -81,9 +83,14 @@ def main():
 def every_file():
     """All MJCF files of the packages."""
     for _, folder in packages(argparse.Namespace(sample=False, only="")):
-        for path in sorted(folder.rglob("*")):
-            if path.suffix.lower() in {".xml", ".mjcf"} and re.search(rb"<mujoco[\s>/]", path.read_bytes()):
-                yield path
+        yield from mjcf_files(folder)
+
+
+def mjcf_files(folder):
+    """All MJCF files in a folder."""
+    for path in sorted(folder.rglob("*")):
+        if path.suffix.lower() in {".xml", ".mjcf"} and re.search(rb"<mujoco[\s>/]", path.read_bytes()):
+            yield path
 
 
 def smooth(path, integrator, constrained=False):
@@ -242,7 +249,8 @@ def rolled(path, model, places_of, starts, method, steps, *flags):
         file = Path(folder) / "states.json"
         file.write_text(json.dumps({"states": states}))
         command = [str(COMMAND), "rollout", str(path), "--steps", str(steps), "--states", str(file), "--method", method, *flags]
-        done = subprocess.run([*command, "--time-step", repr(model.opt.timestep), "--format", "json"], capture_output=True, text=True)
+        command += ["--time-step", repr(model.opt.timestep), "--format", "json"]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST)
     if done.returncode:
         raise RuntimeError(done.stderr)
     ends = []

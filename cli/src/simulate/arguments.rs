@@ -12,7 +12,8 @@ use crate::arguments::Package;
 #[command(group = ArgGroup::new("of_file").args(["smooth", "constraints"]))]
 pub(crate) struct SimulateArguments {
     /// A bundled scene's name, the path of a scene, or the path of a robot's file (URDF, xacro, MJCF
-    /// or SDF), whose smooth motion is simulated
+    /// or SDF). An MJCF with limits, dry friction, equations or contacts moves as with
+    /// `--constraints`; of other files, and with an integrator, the smooth motion is simulated
     #[arg(value_name = "SCENE", required_unless_present = "all")]
     pub(crate) scene: Option<PathBuf>,
     /// The smooth motion that a robot's file describes, without contacts, limits and dry friction:
@@ -20,14 +21,15 @@ pub(crate) struct SimulateArguments {
     /// with constraints off
     #[arg(long, conflicts_with_all = ["print_scene", "all", "generated", "against", "integrator", "rtol", "atol"])]
     pub(crate) smooth: bool,
-    /// The same with limits, dry friction and contacts of the file, by MuJoCo's law
+    /// The same with limits, dry friction, equations and contacts of the file, by MuJoCo's law: the
+    /// default of an MJCF that has some
     #[arg(long, conflicts_with_all = ["print_scene", "all", "generated", "against", "integrator", "rtol", "atol"])]
     pub(crate) constraints: bool,
     /// Leave out kinds of constraints that are not computed, with a warning: contact, constraint
-    #[arg(long, value_name = "KINDS", value_delimiter = ',', requires = "constraints")]
+    #[arg(long, value_name = "KINDS", value_delimiter = ',', conflicts_with = "smooth")]
     pub(crate) leave_out: Vec<LeaveOut>,
     /// Start with this keyframe of the file, and its controls, instead of `home`
-    #[arg(long, value_name = "NAME", requires = "of_file")]
+    #[arg(long, value_name = "NAME")]
     pub(crate) keyframe: Option<String>,
     /// Print the scene that a robot's file is simulated as, to begin a scene of your own
     #[arg(long, conflicts_with_all = ["all", "output", "mcap", "generated", "against", "end", "integrator", "step", "rtol", "atol", "every"])]

@@ -21,6 +21,7 @@ mod table;
 mod text;
 
 use articulated::simulate::Settings;
+use articulated_formats::world::Touching;
 use articulated_lab::session::{Generic, Session};
 use articulated_motion::InitialState;
 use serde::Serialize;
@@ -59,13 +60,29 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
         console::report(format, || text.clone(), || crate::json(&PrintedScene { scene: &text }))?;
         return Ok(OK);
     }
-    let of_file = [(arguments.smooth, "--smooth"), (arguments.constraints, "--constraints")].into_iter().find(|(given, _)| *given);
+    let of_file = match (arguments.smooth, arguments.constraints) {
+        (true, _) => Some((false, "--smooth")),
+        (_, true) => Some((true, "--constraints")),
+        _ => None,
+    };
     if let Some((_, option)) = of_file.filter(|_| !named_scene::is_robot(scene)) {
         let expected = "a URDF, xacro, MJCF or SDF: a scene has its own integrator";
         return Err(Failure::usage(format!("{}: {option}: found no file of a robot, expected {expected}", scene.display())));
     }
     let session = named_scene::session_without(scene, &arguments.leave_out)?;
-    if named_scene::is_robot(scene) && !arguments.constraints {
+    let of_file = match of_file {
+        Some((constraints, _)) => Some(constraints),
+        None => (named_scene::is_robot(scene) && is_of_file(arguments, &session)).then_some(true),
+    };
+    if of_file == Some(true) && !arguments.constraints {
+        let file = &session.scene.file;
+        console::note(&format!("{file}: with limits, dry friction, equations and contacts; `--smooth` is the motion without them"));
+    }
+    if let (None, Some(name)) = (of_file, &arguments.keyframe) {
+        let expected = "--smooth, or an MJCF with constraints and no --integrator; a scene has its own `keyframe`";
+        return Err(Failure::usage(format!("{}: --keyframe {name}: found no motion of a file, expected {expected}", scene.display())));
+    }
+    if named_scene::is_robot(scene) && of_file != Some(true) {
         robot_scene::note(scene)?.iter().for_each(|line| console::note(line));
     }
     has_room(&session.scene.file, session.model.nv())?;
@@ -76,7 +93,7 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     }
     motion::solvable(&session)?;
     let keyframe = arguments.keyframe.as_deref();
-    let of_file = of_file.map(|_| OfFile::of(&session, arguments.constraints, keyframe, arguments.step, &mut settings)).transpose()?;
+    let of_file = of_file.map(|constraints| OfFile::of(&session, constraints, keyframe, arguments.step, &mut settings)).transpose()?;
     let compiler = arguments.generated.then(Compiler::find).transpose()?;
     let size = Size::look_ahead(session.model.shape(), &mut settings, arguments)?;
     let files = arguments.output.as_deref().map(|path| Files::at(path, &arguments.package, &settings, files::OPTIONS)).transpose()?;
@@ -111,6 +128,14 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
             INPUT
         }
     })
+}
+
+/// Whether a file without `--smooth` and `--constraints` moves with its constraints: it has some,
+/// and no option asks for an integrator of a scene.
+fn is_of_file(arguments: &SimulateArguments, session: &Session) -> bool {
+    let SimulateArguments { integrator, rtol, atol, generated, against, .. } = arguments;
+    let is_asked = integrator.is_none() && rtol.is_none() && atol.is_none() && !generated && against.is_none();
+    is_asked && session.world.touching.as_ref().is_some_and(Touching::has_some)
 }
 
 fn by_generic_code(session: &Session, initial: &InitialState, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {

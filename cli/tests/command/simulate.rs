@@ -382,7 +382,7 @@ fn a_file_of_a_robot_moves_smoothly() {
   <keyframe><key name="bent" qpos="0.5" ctrl="0.25"/></keyframe>
 </mujoco>"#;
     let file = File::new("pendulum.xml", MODEL);
-    let ended = run(&["simulate", file.name()]);
+    let ended = run(&["simulate", file.name(), "--integrator", "dopri5"]);
     assert_eq!(ended.status, 0, "{}", ended.err);
     assert!(ended.err.contains("pendulum.xml: the smooth motion, without dry friction, limits, contacts; --print-scene"), "{}", ended.err);
     assert!(ended.out.contains("armature, damping"), "{}", ended.out);
@@ -453,11 +453,14 @@ fn a_ball_falls_onto_the_floor_of_its_file() {
     assert!((height - (0.1 - depth)).abs() < 1e-9, "{height}");
     assert!((column("from_events") - 2.0 * 9.81 * (height - 0.3)).abs() < 1e-6, "{}", column("from_events"));
 
-    // Without the option it falls on, and the note says so.
-    assert!(run(&["simulate", file.name()]).err.contains("the smooth motion, without contacts"));
+    // That is the default; with an integrator it falls on, and the note says so.
+    let default = run(&["simulate", file.name(), "--end", "3"]);
+    assert!(default.out.contains("brought by constraints") && default.err.contains("`--smooth` is the motion without them"), "{}", default.err);
+    assert!(run(&["simulate", file.name(), "--integrator", "dopri5"]).err.contains("the smooth motion, without contacts"));
     let told = |words: &[&str]| run(&[&["simulate"], words].concat());
     assert!(told(&["pendulum", "--constraints"]).err.contains("--constraints: found no file of a robot"));
     assert!(told(&[file.name(), "--constraints", "--smooth"]).err.contains("cannot be used with"));
+    assert!(told(&[file.name(), "--integrator", "dopri5", "--keyframe", "a"]).err.contains("--keyframe a: found no motion of a file"));
     let free = File::new("free.xml", BALL.replace("condim=\"1\" solimp", "contype=\"0\" conaffinity=\"0\" solimp").as_bytes());
     assert!(told(&[free.name(), "--constraints"]).err.contains("no constraint"), "{}", told(&[free.name(), "--constraints"]).err);
     // An ellipsoid touches by no law here.
