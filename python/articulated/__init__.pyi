@@ -324,6 +324,18 @@ class Robot(_Functions):
         every: int = 1,
         threads: Optional[int] = None,
     ) -> ActuatedRollout: ...
+    def constrained_rollout(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        ctrl: ArrayLike,
+        h: float,
+        *,
+        act: Optional[ArrayLike] = None,
+        method: str = "implicit_damping",
+        every: int = 1,
+        threads: Optional[int] = None,
+    ) -> ActuatedRollout: ...
     def actuated_rollout_gradient(
         self,
         q: ArrayLike,

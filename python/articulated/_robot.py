@@ -394,7 +394,7 @@ class Robot(_native.Robot):
         Raises:
             ValueError: Another method, shapes that do not fit, or numbers that are not finite.
         """
-        return _rollout.rollout(self, q, v, None, tau, h, method, every, threads, False)
+        return _rollout.rollout(self, q, v, None, tau, h, method, every, threads, _rollout.STEP)
 
     def rollout_gradient(self, q, v, tau, h, *, weights_q=None, weights_v=None, method="semi_implicit_euler", threads=None):
         """The gradient of a weighted sum of all states of a rollout, from the last step to the first.
@@ -410,7 +410,7 @@ class Robot(_native.Robot):
             RolloutGradient: by the start q (in the tangent space) and v, [..., nv], and by tau, [..., steps, nv].
         """
         weights = {"weights_q": weights_q, "weights_v": weights_v}
-        return _rollout.gradient(self, q, v, None, tau, h, weights, method, threads, False)
+        return _rollout.gradient(self, q, v, None, tau, h, weights, method, threads, _rollout.STEP)
 
     def actuated_rollout(self, q, v, ctrl, h, *, act=None, method="implicit_velocity", every=1, threads=None):
         """Steps states of a robot with actuators (of an MJCF), with the controls of each step, as MuJoCo without contacts.
@@ -438,7 +438,30 @@ class Robot(_native.Robot):
         Raises:
             ValueError: Another method, a robot without actuators, shapes that do not fit, or numbers that are not finite.
         """
-        return _rollout.rollout(self, q, v, act, ctrl, h, method, every, threads, True)
+        return _rollout.rollout(self, q, v, act, ctrl, h, method, every, threads, _rollout.ACTUATED)
+
+    def constrained_rollout(self, q, v, ctrl, h, *, act=None, method="implicit_damping", every=1, threads=None):
+        """Steps states of a robot of an MJCF with its actuators, limits, dry friction, equations and contacts, as MuJoCo.
+
+        >>> robot = articulated.load("model.xml", effects="file")              # doctest: +SKIP
+        >>> ends = robot.constrained_rollout(q, v, controls, 0.002, threads=0)  # doctest: +SKIP
+        >>> ends.q[..., -1, :]                                                 # doctest: +SKIP
+
+        Args:
+            q, v, h, act, every, threads: As for ``actuated_rollout``.
+            ctrl: Controls, [..., steps, nu]; of a robot without actuators [..., steps, 0].
+            method: implicit_damping (MuJoCo's Euler), implicit_velocity (its implicitfast), semi_implicit_euler, or rk4_mujoco.
+
+        Returns:
+            ActuatedRollout: q, [..., steps // every, nq], v, [..., steps // every, nv], and act,
+            [..., steps // every, na], after the steps.
+
+        Raises:
+            RobotError: A file without constraints, or with one that is not computed: ``load(…, leave_out=["contact"])`` goes on without
+                it, with a warning.
+            ValueError: Another method, shapes that do not fit, or numbers that are not finite.
+        """
+        return _rollout.rollout(self, q, v, act, ctrl, h, method, every, threads, _rollout.CONSTRAINED)
 
     def actuated_rollout_gradient(
         self, q, v, ctrl, h, *, act=None, weights_q=None, weights_v=None, weights_act=None, method="implicit_velocity", threads=None
@@ -456,7 +479,7 @@ class Robot(_native.Robot):
             by ctrl, [..., steps, nu].
         """
         weights = {"weights_q": weights_q, "weights_v": weights_v, "weights_act": weights_act}
-        return _rollout.gradient(self, q, v, act, ctrl, h, weights, method, threads, True)
+        return _rollout.gradient(self, q, v, act, ctrl, h, weights, method, threads, _rollout.ACTUATED)
 
     def mujoco_state(self, q, v):
         """The state in MuJoCo's conventions: quaternions (w, x, y, z), and rates of free joints as the velocity in axes of

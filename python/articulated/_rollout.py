@@ -15,22 +15,27 @@ ActuatedRollout = collections.namedtuple("ActuatedRollout", ["q", "v", "act"])
 ActuatedRolloutGradient = collections.namedtuple("ActuatedRolloutGradient", ["q", "v", "act", "ctrl"])
 State = collections.namedtuple("State", ["q", "v"])
 MujocoState = collections.namedtuple("MujocoState", ["qpos", "qvel"])
-# Robots whose forces of the file are off, after a warning.
-_WARNED = weakref.WeakSet()
+# How names of steps begin: with torques, with controls of actuators, and with constraints too.
+STEP, ACTUATED, CONSTRAINED = "step_", "actuated_step_", "constrained_step_"
+# Robots whose forces of the file are off, after a warning, and those whose constraints are computed.
+_WARNED, _CHECKED = weakref.WeakSet(), weakref.WeakSet()
 # Derivatives of steps, by robot and method.
 _DERIVATIVES = weakref.WeakKeyDictionary()
 
 
 class Steps:
-    """A method of steps: with torques, or with controls of actuators."""
+    """A method of steps of one kind."""
 
-    def __init__(self, robot, method, actuated):
-        prefix = "actuated_step_" if actuated else "step_"
-        self.robot, self.actuated = robot, actuated
-        self.name = method if str(method).startswith(prefix) else f"{prefix}{method}"
-        if actuated and not robot._has_actuators:
+    def __init__(self, robot, method, kind):
+        self.robot, self.actuated = robot, kind != STEP
+        self.name = method if str(method).startswith(kind) else f"{kind}{method}"
+        if kind == CONSTRAINED and robot not in _CHECKED:
+            for warning in robot._check_constraints():
+                warnings.warn(RobotWarning(warning), stacklevel=5)
+            _CHECKED.add(robot)
+        if kind == ACTUATED and not robot._has_actuators:
             raise ValueError(f"actuated_rollout: {robot.name!r} has no actuators, expected a robot of an MJCF with <actuator>")
-        if actuated and robot not in _WARNED:
+        if self.actuated and robot not in _WARNED:
             _WARNED.add(robot)
             warning = robot._forces_off()
             if warning:
@@ -95,18 +100,18 @@ def step_length(h):
     return h
 
 
-def rollout(robot, q, v, act, held, h, method, every, threads, actuated):
+def rollout(robot, q, v, act, held, h, method, every, threads, kind):
     if isinstance(every, bool) or not isinstance(every, int) or every < 1:
         raise ValueError(f"every: found {every!r}, expected a number of steps, at least 1")
-    steps = Steps(robot, method, actuated)
+    steps = Steps(robot, method, kind)
     flat, batch = steps.arrays(q, v, act, held)
     ends = [end.reshape(batch + end.shape[1:]) for end in steps.run(flat, h, every, threads)]
-    return ActuatedRollout(*ends) if actuated else Rollout(*ends[:2])
+    return ActuatedRollout(*ends) if steps.actuated else Rollout(*ends[:2])
 
 
-def gradient(robot, q, v, act, held, h, weights, method, threads, actuated):
+def gradient(robot, q, v, act, held, h, weights, method, threads, kind):
     """`weights`: of q, v and activations after each step."""
-    method = Steps(robot, method, actuated)
+    method = Steps(robot, method, kind)
     (q, v, act, held), batch = method.arrays(q, v, act, held)
     count, steps, _ = held.shape
     ends = method.run((q, v, act, held), h, 1, threads)
@@ -123,10 +128,10 @@ def gradient(robot, q, v, act, held, h, weights, method, threads, actuated):
     for k in reversed(range(steps)):
         before = (q, v, act) if k == 0 else [end[:, k - 1] for end in ends]
         after = [own + one[:, k] for own, one in zip(by, given)]
-        if actuated:
+        if method.actuated:
             *by, by_held[:, k] = pull(*before, held[:, k], h, *after, threads=threads)
         else:
             *by, by_held[:, k] = pull(*before[:2], held[:, k], h, *after, threads=threads)
     parts = [*by, by_held]
     shaped = [own.reshape((*batch, *own.shape[1:])) for own in parts]
-    return ActuatedRolloutGradient(*shaped) if actuated else RolloutGradient(*shaped)
+    return ActuatedRolloutGradient(*shaped) if method.actuated else RolloutGradient(*shaped)

@@ -12,7 +12,7 @@ use articulated::formats::{Environment, Included, LeaveOut};
 use articulated::spatial::Reference;
 use articulated::{Base, Model};
 use articulated_codegen::scene::Scene;
-use articulated_codegen::{Appended, COptions, Real, Request, Target, forces_of_the_file, generate};
+use articulated_codegen::{Appended, COptions, Real, Request, Target, forces_of_the_file, generate, unread_constraints};
 use articulated_core::actuator::ActuatorLaw;
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3};
@@ -395,6 +395,22 @@ impl Robot {
     fn _forces_off(&self) -> Option<String> {
         let built = self.request.build_robot().ok()?;
         forces_of_the_file(&self.request.file, &built).map(|warning| warning.to_string())
+    }
+
+    /// What an option leaves out of the constraints of the file, as warnings.
+    fn _check_constraints(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let refused = |findings: &Diagnostics| errors::refused(py, findings);
+        let (file, built) = (&self.request.file, self.request.build_robot().map_err(|findings| refused(&findings))?);
+        let mut log = Diagnostics::new(file);
+        let robot = (&built.reading.description, &built.reading.world, &built.model);
+        let warnings = unread_constraints(file, robot, &mut log);
+        if built.model.constraints().is_empty() && log.is_ok() {
+            let found = "no limit, dry friction, equation or contact".to_owned();
+            let at = (Default::default(), "constrained_rollout");
+            log.push(Diagnostic::error(file, at, Code::NoConstraints, found, "an MJCF with one".to_owned()));
+        }
+        log.result(Some(())).map_err(|findings| refused(&findings))?;
+        Ok(warnings.iter().map(ToString::to_string).collect())
     }
 
     /// C99 of functions: its files, each with a name and a text. All names begin with `prefix`.

@@ -10,8 +10,8 @@ use rayon::prelude::*;
 
 use crate::batch;
 
-/// How names of steps with actuators begin.
-const ACTUATED: &str = "actuated_step_";
+/// How names of steps begin: with torques, with controls of actuators, and with constraints too.
+const KINDS: [&str; 3] = ["step_", "actuated_step_", "constrained_step_"];
 
 /// Coordinates, rates and activations after steps, state by state.
 pub(crate) type Ends<'py> = [Bound<'py, PyArray3<f64>>; 3];
@@ -29,7 +29,7 @@ pub(crate) fn run<'py>(
     threads: usize,
 ) -> PyResult<Ends<'py>> {
     let row = step::<f64>(method).filter(|row| row.takes.contains(&H)).ok_or_else(|| {
-        let prefix = if method.starts_with(ACTUATED) { ACTUATED } else { "step_" };
+        let prefix = KINDS.into_iter().find(|kind| method.starts_with(kind)).unwrap_or(KINDS[0]);
         let found = method.strip_prefix(prefix).unwrap_or(method);
         let all: Vec<&str> = beside_the_table::<f64>().filter_map(|row| row.name.strip_prefix(prefix)).collect();
         PyValueError::new_err(format!("method: found {found:?}, expected one of {}", all.join(", ")))

@@ -182,3 +182,25 @@ def test_states_of_mujoco():
     assert np.array_equal(back.q[0], q) and np.allclose(back.v, v, atol=1e-15)
     with pytest.raises(ValueError, match=r"qvel: found shape \(3,\), expected \(10,\)"):
         robot.state_of_mujoco(qpos, [0.0] * 3)
+
+
+BALL = b"""<mujoco model="ball"><option timestep="0.005"/><worldbody>
+<geom name="floor" type="plane" size="1 1 1" condim="1" solimp="0.9 0.9 0.001"/>
+<body name="ball" pos="0 0 0.3"><freejoint/><geom type="sphere" size="0.1" mass="2" condim="1" solimp="0.9 0.9 0.001"/></body>
+</worldbody></mujoco>"""
+
+
+def test_a_ball_comes_to_rest_on_its_floor():
+    robot = articulated.loads(BALL)
+    q = np.array([0.0, 0, 0.3, 0, 0, 0, 1])
+    ends = robot.constrained_rollout(q, np.zeros(6), np.zeros((600, 0)), 0.005, every=100)
+    assert ends.q.shape == (6, 7) and ends.act.shape == (6, 0)
+    # At rest (1 − d) g = k d² p, with k = 1/(d² 0.02²)
+    assert abs(ends.q[-1, 2] - (0.1 - 0.1 * 9.81 * 0.02**2)) < 1e-9
+    with pytest.raises(ValueError, match='method: found "rk4", expected one of semi_implicit_euler, '):
+        robot.constrained_rollout(q, np.zeros(6), np.zeros((1, 0)), 0.005, method="rk4")
+    with pytest.raises(articulated.RobotError, match="constrained_rollout: found no limit"):
+        articulated.loads(BALL.replace(b"condim", b"contype='0' conaffinity='0' condim")).constrained_rollout(q, np.zeros(6), np.zeros((1, 0)), 0.005)
+    egg = BALL.replace(b'type="sphere" size="0.1"', b'type="ellipsoid" size="0.1 0.1 0.2"')
+    with pytest.raises(articulated.RobotError, match="leave_out"):
+        articulated.loads(egg).constrained_rollout(q, np.zeros(6), np.zeros((1, 0)), 0.005)
