@@ -158,8 +158,8 @@ pub fn trace(program: impl FnOnce() -> Vec<Sym>) -> Graph {
     traced(0, program)
 }
 
-/// The same for a program that is differentiated so many times in a row: what solves an equation stays a region until
-/// [`inline`](crate::pass::inline).
+/// The same for a program that is differentiated so many times in a row: what solves an equation
+/// stays a region until [`inline`](crate::pass::inline).
 pub(crate) fn trace_with_equations(orders: usize, program: impl FnOnce() -> Vec<Sym>) -> Graph {
     traced(orders, program)
 }

@@ -11,8 +11,8 @@ use crate::arguments::Package;
 #[command(group = ArgGroup::new("written").args(["output", "mcap"]).multiple(true))]
 #[command(group = ArgGroup::new("of_file").args(["smooth", "constraints"]))]
 pub(crate) struct SimulateArguments {
-    /// A bundled scene's name, the path of a scene, or the path of a robot's file (URDF, xacro, MJCF
-    /// or SDF). An MJCF with limits, dry friction, equations or contacts moves as with
+    /// A bundled scene's name, the path of a scene, or the path of a robot's file (URDF, xacro,
+    /// MJCF or SDF). An MJCF with limits, dry friction, equations or contacts moves as with
     /// `--constraints`; of other files, and with an integrator, the smooth motion is simulated
     #[arg(value_name = "SCENE", required_unless_present = "all")]
     pub(crate) scene: Option<PathBuf>,

@@ -455,7 +455,11 @@ fn a_ball_falls_onto_the_floor_of_its_file() {
 
     // That is the default; with an integrator it falls on, and the note says so.
     let default = run(&["simulate", file.name(), "--end", "3"]);
-    assert!(default.out.contains("brought by constraints") && default.err.contains("`--smooth` is the motion without them"), "{}", default.err);
+    assert!(
+        default.out.contains("brought by constraints") && default.err.contains("`--smooth` is the motion without them"),
+        "{}",
+        default.err
+    );
     assert!(run(&["simulate", file.name(), "--integrator", "dopri5"]).err.contains("the smooth motion, without contacts"));
     let told = |words: &[&str]| run(&[&["simulate"], words].concat());
     assert!(told(&["pendulum", "--constraints"]).err.contains("--constraints: found no file of a robot"));

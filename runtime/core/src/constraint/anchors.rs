@@ -14,7 +14,7 @@ use alloc::vec::Vec;
 
 use super::Soft;
 use super::joints::{JointRow, Side};
-use super::newton::{Column, Twists};
+use super::motion::{Column, Twists};
 use crate::Scalar;
 use crate::algorithm::Placed;
 use crate::index::BodyId;

@@ -18,6 +18,7 @@
 mod anchors;
 mod contact;
 mod joints;
+mod motion;
 mod newton;
 mod pairs;
 mod soft;

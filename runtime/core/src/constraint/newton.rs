@@ -19,6 +19,7 @@ use super::Cone;
 use super::anchors::{self, Moving};
 use super::contact::{self, Contact, Law};
 use super::joints::JointRow;
+use super::motion::{Column, Twists};
 use super::pairs::{self, Found};
 use crate::Scalar;
 use crate::algorithm::ltdl::{factor, path_to_root, solve};
@@ -81,13 +82,6 @@ pub(crate) fn constrained<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, sm
     (x, forces)
 }
 
-/// A column of J of all bodies beyond a joint.
-pub(super) struct Column<S> {
-    pub(super) body: BodyId,
-    pub(super) at: usize,
-    pub(super) axis: Twist<S>,
-}
-
 /// Contacts of one dimension of two bodies, of which the first may be the base.
 struct Group<S> {
     bodies: [BodyId; 2],
@@ -105,9 +99,6 @@ impl<S> Group<S> {
         self.rows.len() / contact::length(self.dimension)
     }
 }
-
-/// The twists of bodies.
-pub(super) type Twists<S> = ById<BodyId, Twist<S>>;
 
 struct Problem<'a, S: 'static> {
     model: &'a Model<S>,

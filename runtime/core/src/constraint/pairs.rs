@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use super::contact::{self, Contact};
-use super::newton::Twists;
+use super::motion::Twists;
 use super::{Constraints, Pair};
 use crate::Scalar;
 use crate::algorithm::Placed as Bodies;
