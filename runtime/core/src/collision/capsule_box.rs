@@ -46,7 +46,7 @@ pub(super) fn capsule_box<S: Scalar>(
     let way = axis * half;
     let most = reach + two * (radius + half + sides[0] + sides[1] + sides[2]);
     let ends = nearest_end(&center, &way, sides, most);
-    let next = nearest_edge(&center, &way, half, sides, ends);
+    let next = nearest_edge(&center, &way, half, sides, &ends);
     let exists = next.is_face + next.is_corner + next.is_edge;
     let upward: [S; 3] = core::array::from_fn(|k| flag::<S>(way[k].positive()));
     let xor = |a: S, b: S| a + b - two * a * b;
@@ -137,7 +137,7 @@ fn nearest_end<S: Scalar>(center: &Vector3<S>, way: &Vector3<S>, sides: [S; 3], 
 }
 
 /// The point of the axis that is next to one of the edges, if it is nearer than this.
-fn nearest_edge<S: Scalar>(center: &Vector3<S>, way: &Vector3<S>, half: S, sides: [S; 3], next: Next<S>) -> Next<S> {
+fn nearest_edge<S: Scalar>(center: &Vector3<S>, way: &Vector3<S>, half: S, sides: [S; 3], next: &Next<S>) -> Next<S> {
     let (zero, one) = (S::zero(), S::one());
     // The signs of the middle of an edge, and its direction
     let mut table: Vec<S> = Vec::new();

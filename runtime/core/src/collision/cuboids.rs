@@ -192,7 +192,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         let face = Vector3::from(faces.axis).zip_map(&in_first, |a, b| S::select(is_of_second, b, a));
         let is_along = flag::<S>((found.across.dot(&face).abs() - S::from_f64(ALONG)).positive());
         let allowed = faces.best + S::from_f64(WORSE) * faces.best.abs() + S::from_f64(LEAST);
-        found.wins = found.wins * one_minus(is_along * flag::<S>((allowed - best).positive()));
+        found.wins *= one_minus(is_along * flag::<S>((allowed - best).positive()));
         found
     }
 
@@ -329,10 +329,10 @@ fn cut<S: Scalar>(middle: &[S; 3], [u, w]: [[S; 3]; 2], size: [S; 2], [outside, 
                 let [is_end, is_start] = [leaves * one_minus(enters), enters * one_minus(leaves)].map(Scalar::positive);
                 to = S::select(is_end, S::select((to - t).positive(), t, to), to);
                 from = S::select(is_start, greater(from, t), from);
-                is_in = is_in * one_minus(leaves * enters);
+                is_in *= one_minus(leaves * enters);
             }
         }
-        let is_in = is_in * one_minus(flag::<S>((from - to).positive()));
+        is_in *= one_minus(flag::<S>((from - to).positive()));
         let along = |t: S| -> [S; 3] { core::array::from_fn(|r| p[r] + t * (q[r] - p[r])) };
         places.push(Place { exists: is_in, point: along(from) });
         // The end of an edge that is not cut is the start of the next one.
@@ -355,7 +355,7 @@ fn cut<S: Scalar>(middle: &[S; 3], [u, w]: [[S; 3]; 2], size: [S; 2], [outside, 
         let mut exists = places[k].exists;
         for before in &places[..k] {
             let [dx, dy] = [0, 1].map(|r| before.point[r] - places[k].point[r]);
-            exists = exists * one_minus(before.exists * flag::<S>((same - (dx * dx + dy * dy)).positive()));
+            exists *= one_minus(before.exists * flag::<S>((same - (dx * dx + dy * dy)).positive()));
         }
         places[k].exists = exists;
     }
