@@ -219,9 +219,10 @@ def turn_axes(model, path):
             axes[:, 0] *= np.linalg.det(axes)
             mujoco.mju_mat2Quat(model.body_iquat[body], axes.flatten())
             model.body_inertia[body] = moments
-    # Geoms and sites that share the frame of the inertia do not turn with it.
-    model.body_sameframe[:], model.geom_sameframe[:], model.site_sameframe[:] = 0, 0, 0
+    model.body_sameframe[:] = 0
     mujoco.mj_setConst(model, mujoco.MjData(model))
+    # MuJoCo puts geoms and sites whose frame is nearly that of the inertia there.
+    model.body_sameframe[:], model.geom_sameframe[:], model.site_sameframe[:] = 0, 0, 0
 
 
 def actuators(path):
