@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use articulated_core::description::{Base, ById, CollisionShape, Description, Inertial, Link, LinkId, Origin};
+use articulated_core::description::{Base, ById, CollisionShape, Description, Inertial, JointKind, Link, LinkId, Origin};
 use articulated_core::index::BodyId;
 use articulated_core::model::{Frame, Model};
 use articulated_core::spatial::Placement;
@@ -112,7 +112,9 @@ impl Figure {
         for joint in &description.joints {
             let (Some(parent), Some(child)) = (&links[joint.parent], &links[joint.child]) else { continue };
             let (start, end) = (parent.place.position.into(), child.place.position.into());
-            if parent.body != child.body || start != end {
+            // What floats is held by nothing.
+            let holds = joint.kind != JointKind::Floating || joint.locked.is_some();
+            if holds && (parent.body != child.body || start != end) {
                 figure.sticks.push(Stick { from: parent.body, start, to: child.body, end });
             }
             if !joint.kind.is_fixed() && joint.locked.is_none() {
