@@ -30,7 +30,7 @@ from pathlib import Path
 
 from oracle import HERE, enter, packages
 from speed import METHODS, Program, apart, in_package
-from steps import MANY, MANY_OF_FREE, ROUNDING, mjcf_files, rolled, smooth
+from steps import LONGEST, MANY, MANY_OF_FREE, ROUNDING, mjcf_files, rolled, smooth
 
 ONE_STEP = 1e-10
 STATES, STEPS = 60, 1000
@@ -142,7 +142,8 @@ def every(arguments):
                     continue
                 if "found no constraint" in str(error):
                     continue
-                verdict, lost, text = "refused", reason(error), " | | | | "
+                is_slow = isinstance(error, subprocess.TimeoutExpired)
+                verdict, lost, text = "refused", f"no answer in {LONGEST} s" if is_slow else reason(error), " | | | | "
             verdicts[verdict] += 1
             rows.append(f"| {name} | {text} | {verdict} {lost} |")
             print(rows[-1], flush=True)

@@ -73,7 +73,8 @@ fn bodies(scope: &Scope<'_>, inertials: &[Option<Mass>], links: &[&str]) -> Vec<
     let is_static = |index: usize| tree[index].joints.is_empty();
     let of = |(index, own): (usize, &Option<Mass>)| {
         let body = &tree[index];
-        let center = own.map_or([0.0; 3], |own| own.pose.position);
+        // In MuJoCo the centre of a body without mass is at its own `pos`, in its own frame.
+        let center = own.map_or(body.pose.position, |own| own.pose.position);
         // MuJoCo's simple bodies without rotation
         let is_at_root = body.parent == 0 || (tree[body.parent].parent == 0 && is_static(body.parent));
         let is_plain = own.is_some_and(|own| own.pose.position == [0.0; 3] && own.axes.is_none_or(|axes| axes[1..] == [0.0; 3]));
