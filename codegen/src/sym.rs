@@ -430,4 +430,20 @@ mod tests {
         assert!((out[0] - 1.0).abs() < 1e-15);
         assert_eq!(&out[1..], [2.0, 0.5, f64::atan2(-2.0, -0.5), std::f64::consts::FRAC_PI_2]);
     }
+
+    /// One that is the same in all rows, and one that nobody reads.
+    #[test]
+    fn a_table_has_the_columns_that_vary_and_are_read() {
+        let graph = trace(|| {
+            let x = |k: usize| Sym::input(0, k);
+            let (table, mut sum) = ([x(0), x(9), x(3), x(1), x(9), x(4), x(2), x(9), x(5)], [Sym::zero()]);
+            Sym::for_each(3, &table, &mut sum, &mut [], |row, sum, _| sum[0] += row[0] * row[1]);
+            sum.to_vec()
+        });
+        let graph = crate::pass::hoist(&graph);
+        let region = graph.nodes().iter().find(|node| node.op == Op::Region).map(|node| graph.region_of(node).kind);
+        assert_eq!(region, Some(Kind::ForEach { turns: 3, row: 1, results: 0 }));
+        let found = graph.evaluate(|_, k| k as f64);
+        assert_eq!(found, [9.0 * (0.0 + 1.0 + 2.0)]);
+    }
 }

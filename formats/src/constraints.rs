@@ -23,12 +23,7 @@ impl World {
     /// with all its rotors.
     pub fn constraints_of(&self, description: &Description, model: &Model<f64>) -> (Constraints, Vec<Unread>) {
         let Some(touching) = self.touching.as_ref().filter(|_| model.nv() > 0) else { return (Constraints::default(), Vec::new()) };
-        if touching.limits.is_empty()
-            && touching.friction.is_empty()
-            && touching.sums.is_empty()
-            && touching.anchors.is_empty()
-            && touching.pairs.is_empty()
-        {
+        if !touching.has_read() {
             return (Constraints::default(), touching.unread.clone());
         }
         if model.nv() > MOST_FREEDOMS {

@@ -100,8 +100,13 @@ pub struct Touching {
 impl Touching {
     /// Whether the file has a constraint, whether or not it is computed.
     pub fn has_some(&self) -> bool {
-        let Self { limits, friction, sums, anchors, pairs, unread, .. } = self;
-        !(limits.is_empty() && friction.is_empty() && sums.is_empty() && anchors.is_empty() && pairs.is_empty() && unread.is_empty())
+        self.has_read() || !self.unread.is_empty()
+    }
+
+    /// Whether it has one that is read.
+    pub(crate) fn has_read(&self) -> bool {
+        let Self { limits, friction, sums, anchors, pairs, .. } = self;
+        !(limits.is_empty() && friction.is_empty() && sums.is_empty() && anchors.is_empty() && pairs.is_empty())
     }
 }
 

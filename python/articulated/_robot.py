@@ -441,7 +441,9 @@ class Robot(_native.Robot):
         return _rollout.rollout(self, q, v, act, ctrl, h, method, every, threads, _rollout.ACTUATED)
 
     def constrained_rollout(self, q, v, ctrl, h, *, act=None, method="implicit_damping", every=1, threads=None):
-        """Steps states of a robot of an MJCF with its actuators, limits, dry friction, equations and contacts, as MuJoCo.
+        """Steps states of a robot of an MJCF with actuators and all constraints, as MuJoCo.
+
+        Limits, dry friction, equations and contacts act by MuJoCo's law.
 
         >>> robot = articulated.load("model.xml", effects="file")              # doctest: +SKIP
         >>> ends = robot.constrained_rollout(q, v, controls, 0.002, threads=0)  # doctest: +SKIP

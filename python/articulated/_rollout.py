@@ -17,7 +17,7 @@ State = collections.namedtuple("State", ["q", "v"])
 MujocoState = collections.namedtuple("MujocoState", ["qpos", "qvel"])
 # How names of steps begin: with torques, with controls of actuators, and with constraints too.
 STEP, ACTUATED, CONSTRAINED = "step_", "actuated_step_", "constrained_step_"
-# Robots whose forces of the file are off, after a warning, and those whose constraints are computed.
+# Robots whose forces of the file are off, after a warning, and those with computed constraints.
 _WARNED, _CHECKED = weakref.WeakSet(), weakref.WeakSet()
 # Derivatives of steps, by robot and method.
 _DERIVATIVES = weakref.WeakKeyDictionary()

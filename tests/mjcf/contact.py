@@ -50,10 +50,10 @@ ALL_STATES = 4
 # Files with more have no rollouts of many steps.
 MOST_FREEDOMS = 60
 FORMS = ["plane", "height field", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "signed distance"]
-COMPUTED = {
+COMPUTED = [
     ("plane", "sphere"), ("plane", "capsule"), ("plane", "cylinder"), ("plane", "box"), ("sphere", "sphere"), ("sphere", "capsule"),
     ("sphere", "cylinder"), ("sphere", "box"), ("capsule", "capsule"), ("capsule", "box"), ("box", "box"),
-}
+]
 PAGE = HERE.parent.parent / "docs" / "contact-files.md"
 HEAD = """# Files with constraints
 
@@ -207,7 +207,7 @@ def leave_out(model):
         if a < b and model.body_weldid[model.geom_bodyid[a]] != model.body_weldid[model.geom_bodyid[b]]
         and (model.geom_contype[a] & model.geom_conaffinity[b] or model.geom_contype[b] & model.geom_conaffinity[a])
     }
-    missing = sorted(" x ".join(pair) for pair in meets - COMPUTED if pair != ("plane", "plane"))
+    missing = sorted(" x ".join(pair) for pair in meets - set(COMPUTED) if pair != ("plane", "plane"))
     mujoco.set_mjcb_contactfilter(is_left_out if missing else None)
     return ", ".join([*sorted(lost), *missing])
 
@@ -256,8 +256,11 @@ def speed(paths, arguments, rounds=ROUNDS):
 
 
 def measure(path, integrator, arguments):
-    """nv, contacts and rows, median and worst difference of one step, that of many over that of two rollouts of MuJoCo, its bound, and
-    what is left out."""
+    """What `every` prints of a file.
+
+    nv, contacts and rows; median and worst difference of one step; that of many over that of two
+    rollouts of MuJoCo, and its bound; what is left out. None: a file without freedoms.
+    """
     import mujoco
     import numpy as np
 

@@ -3,7 +3,7 @@
 use super::round::balls;
 use super::{Placed, Touch};
 use crate::Scalar;
-use crate::scalar::flag;
+use crate::scalar::{flag, within};
 use crate::spatial::{Vector3, rotate, rotate_back};
 
 /// The side, a cap or the rim, whichever is next.
@@ -47,10 +47,7 @@ pub(super) fn sphere_cylinder<S: Scalar>(first: &Placed<'_, S>, second: &Placed<
 pub(super) fn sphere_box<S: Scalar>(first: &Placed<'_, S>, second: &Placed<'_, S>, radius: S, half: [S; 3]) -> Touch<S> {
     let (zero, one) = (S::zero(), S::one());
     let center = rotate_back(&second.rotation, first.position - second.position);
-    let clamped = Vector3::from_fn(|k, _| {
-        let x = S::select((center[k] - half[k]).positive(), half[k], center[k]);
-        S::select((-(x + half[k])).positive(), -half[k], x)
-    });
+    let clamped = Vector3::from_fn(|k, _| within(center[k], half[k]));
     let apart = clamped - center;
     let square = apart.dot(&apart);
     let is_outside = (square - S::from_f64(1e-30)).positive();
