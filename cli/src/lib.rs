@@ -25,6 +25,7 @@ mod robot_scene;
 mod rollout;
 mod shape;
 mod simulate;
+mod touching;
 
 use std::ffi::OsString;
 

@@ -17,7 +17,8 @@ use crate::failure::{Failure, OK};
 use crate::file_motion::{Start, are_computed, step_length, step_of_file};
 use crate::robot::{Robot, read_bytes};
 use crate::states::{self, State};
-use crate::table::counted;
+use crate::table::{Table, counted, number, plain};
+use crate::touching::Touching;
 use crate::{named_scene, parallel};
 
 #[derive(Args, Debug)]
@@ -41,6 +42,10 @@ pub(crate) struct RolloutArguments {
     /// Step with limits, dry friction and contacts of the file, by MuJoCo's law
     #[arg(long)]
     constraints: bool,
+    /// Also list the contacts of the last states, with their forces, and how exact the
+    /// accelerations are
+    #[arg(long, requires = "constraints")]
+    contacts: bool,
     /// The length of a step, s [default: the file's, or 0.001]
     #[arg(long, value_name = "S", value_parser = length)]
     time_step: Option<f64>,
@@ -81,6 +86,9 @@ struct End {
     v: Vec<f64>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     act: Vec<f64>,
+    /// What touches then.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    touching: Option<Touching>,
 }
 
 pub(crate) fn run(arguments: &RolloutArguments, format: Format) -> Result<u8, Failure> {
@@ -116,13 +124,17 @@ pub(crate) fn run(arguments: &RolloutArguments, format: Format) -> Result<u8, Fa
     source.iter().for_each(|source| console::note(&format!("starts with {source}")));
     let h = step_length(arguments.time_step, world);
     let begin = Instant::now();
-    let ends = parallel::map(&starts, |state| stepped(&model, method, state, h, arguments.steps));
+    let ends = parallel::map(&starts, |state| stepped(&model, method, state, (h, arguments.steps, arguments.contacts)));
     let seconds = begin.elapsed().as_secs_f64();
     let mut warnings = Vec::new();
     let lost = ends.iter().filter(|end| end.numbers().any(|x| !x.is_finite())).count();
     if lost > 0 {
         let states = if lost == 1 { "1 state is".to_owned() } else { format!("{lost} states are") };
         warnings.push(format!("{states} not finite at the end: the step of {h} s is too long, or the motion has no bound"));
+    }
+    let lacking = ends.iter().filter_map(|end| end.touching.as_ref()).filter(|touching| !touching.is_found()).count();
+    if lacking > lost {
+        warnings.push(format!("{}: the last acceleration is not that of the optimum, see relative_error", counted(lacking, "state")));
     }
     warnings.iter().for_each(|line| console::warn(line));
     let report = Report {
@@ -217,7 +229,7 @@ fn starts(arguments: &RolloutArguments, file: &str, world: &World, model: &Model
 }
 
 /// A state after all steps; its torques or controls are held.
-fn stepped(model: &Model<f64>, method: &Function<f64>, state: &State, h: f64, count: u64) -> End {
+fn stepped(model: &Model<f64>, method: &Function<f64>, state: &State, (h, count, touches): (f64, u64, bool)) -> End {
     let shape = model.shape();
     let vector = |argument: Argument| state.get(argument).map_or_else(|| vec![0.0; argument.len(shape)], <[f64]>::to_vec);
     let is_actuated = method.takes.contains(&CTRL);
@@ -225,9 +237,11 @@ fn stepped(model: &Model<f64>, method: &Function<f64>, state: &State, h: f64, co
     let mut end = step::State { q: vector(Argument::Q), v: vector(Argument::V), act, warm: Vec::new() };
     let held = vector(if is_actuated { CTRL } else { Argument::Tau });
     let inputs = (0..count).map(|_| held.as_slice());
-    let done = rollout(method, (model, &mut Workspace::new(model)), &mut end, h, inputs, |_, _| {});
-    debug_assert!(done.is_ok(), "vectors are made to measure");
-    End { q: end.q, v: end.v, act: end.act }
+    let mut ws = Workspace::new(model);
+    let done = rollout(method, (model, &mut ws), &mut end, h, inputs, |_, _| {});
+    let touching = touches.then(|| Touching::of(model, &mut ws, &end, &held)).transpose();
+    debug_assert!(done.is_ok() && touching.is_ok(), "vectors are made to measure");
+    End { q: end.q, v: end.v, act: end.act, touching: touching.ok().flatten() }
 }
 
 /// FNV-1a of the bits of all numbers.
@@ -253,5 +267,19 @@ fn text(report: &Report, is_hash: bool) -> String {
         all * time_step / seconds
     );
     let _ = writeln!(out, "hash of the last states: {hash}");
+    for (k, touching) in states.iter().enumerate().filter_map(|(k, end)| Some((k, end.touching.as_ref()?))) {
+        let Touching { relative_error, search_steps, contacts } = touching;
+        let (count, steps) = (counted(contacts.len(), "contact"), counted(*search_steps as usize, "step"));
+        let _ = writeln!(out, "\nstate {k}: {count}; relative error of the acceleration {}, after {steps}", number(*relative_error));
+        if contacts.is_empty() {
+            continue;
+        }
+        let mut table = Table::new([("shapes", ""), ("x", "m"), ("y", "m"), ("z", "m"), ("force x", "N"), ("y", "N"), ("z", "N")]);
+        for contact in contacts {
+            let names = contact.shapes.each_ref().map(|name| plain(name)).join(", ");
+            table.row(std::iter::once(names).chain(contact.point.iter().chain(&contact.force).map(|x| number(*x))));
+        }
+        out += &table.text();
+    }
     out
 }

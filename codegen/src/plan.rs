@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use articulated_core::Scalar;
-use articulated_core::algorithm::{Function, Group, Needs, functions};
+use articulated_core::algorithm::{Dim, Function, Group, Needs, functions};
 use articulated_core::description::Description;
 use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Spanned, quote};
 use articulated_core::effect::Effect;
@@ -281,6 +281,10 @@ pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], f
     if function.group == Group::Constraints && model.constraints().is_empty() {
         let expected = "a file with limits, dry friction or contacts (MJCF), or functions without constraints";
         return lacks(Code::NoConstraints, "no constraint".into(), expected);
+    }
+    if function.gives.contains(&Dim::Contacts) && model.constraints().contacts() == 0 {
+        let expected = "a file with geoms that may touch each other (MJCF), or functions without contacts";
+        return lacks(Code::NoConstraints, "no pair of shapes that may touch".into(), expected);
     }
     if function.inverts_mass_matrix() && !massless.is_empty() {
         let found = format!("no inertia of its own for joint {}", massless.join(", joint "));

@@ -14,10 +14,11 @@ the way is a start. What is not computed here is off in MuJoCo too: pairs of sha
 
 * "contacts", "rows": the largest numbers of both in a state.
 * "one step": the largest difference of rates after one step, over 1 and the largest rate. The median and the worst of all states.
+* "forces": the largest difference of points, normals, forces and moments of contacts after this step, over 1 and the largest force.
 * "steps": after 1000 steps from 3 states, the difference over the largest of four MuJoCo rollouts whose starts differ by one unit
   in the last place of each number, or over one rounding of each step if that is more. Left out where a state grows without bound.
 
-Exit status: 0 if one step differs by at most 1e-10, and 1000 steps by at most 10 times the latter (30 with a free body), else 1.
+Exit status: 0 if one step differs by at most 1e-10, its contacts by 1e-9, and 1000 steps by at most 10 times the latter (30 with a free body), else 1.
 """
 
 import argparse
@@ -30,9 +31,10 @@ from pathlib import Path
 
 from oracle import HERE, enter, packages
 from speed import METHODS, Program, apart, in_package
-from steps import LONGEST, MANY, MANY_OF_FREE, ROUNDING, mjcf_files, rolled, smooth
+from steps import LONGEST, MANY, MANY_OF_FREE, ROUNDING, mjcf_files, of_mujoco, reported, rolled, smooth
 
 ONE_STEP = 1e-10
+FORCES = 1e-9
 STATES, STEPS = 60, 1000
 SPEED_STATES, SPEED_STEPS, ROUNDS = 64, 10, 11
 MODELS = [
@@ -86,7 +88,7 @@ def main():
     if arguments.all:
         sys.exit(every(arguments))
     integrators = [arguments.integrator] if arguments.integrator else ["Euler", "implicitfast", "RK4"]
-    print(f"{'model':40}{'nv':>4}{'contacts':>9}{'rows':>6}  {'integrator':14}{'median':>10}{'one step':>10}{'steps':>8}")
+    print(f"{'model':40}{'nv':>4}{'contacts':>9}{'rows':>6}  {'integrator':14}{'median':>10}{'one step':>10}{'forces':>10}{'steps':>8}")
     paths = CHECKED if arguments.check else map(Path, arguments.file or [])
     if not (arguments.check or arguments.file):
         paths = [in_package(*model) for model in MODELS]
@@ -102,9 +104,9 @@ def main():
             if row is None:
                 break
             agrees &= is_equal(row)
-            nv, contacts, rows, median, worst, many, _, lost = row
+            nv, contacts, rows, median, worst, forces, many, _, lost = row
             text = "left out" if many is None else f"{many:.2f}"
-            print(f"{path.name:40}{nv:4}{contacts:9}{rows:6}  {integrator:14}{median:10.1e}{worst:10.1e}{text:>8}  {lost}", flush=True)
+            print(f"{path.name:40}{nv:4}{contacts:9}{rows:6}  {integrator:14}{median:10.1e}{worst:10.1e}{forces:10.1e}{text:>8}  {lost}", flush=True)
     if arguments.check:
         agrees &= speed([GENERATED], arguments, 1)
     sys.exit(not agrees)
@@ -118,8 +120,8 @@ def reason(error):
 
 def is_equal(row):
     """Whether one step is that of MuJoCo, and many are as near as MuJoCo is to itself."""
-    *_, worst, many, most, _ = row
-    return worst <= ONE_STEP and (many is None or many <= most)
+    *_, worst, forces, many, most, _ = row
+    return worst <= ONE_STEP and forces <= FORCES and (many is None or many <= most)
 
 
 def every(arguments):
@@ -133,24 +135,25 @@ def every(arguments):
                 row = measure(path, "Euler", arguments)
                 if row is None:
                     continue
-                nv, contacts, count, _, worst, many, _, lost = row
-                differs |= not worst <= ONE_STEP
-                verdict = ("equal" if worst <= ONE_STEP else "differs") + (" without" if lost else "")
-                text = f"{nv} | {contacts} | {count} | {worst:.0e} | {'' if many is None else f'{many:.2g}'}"
+                nv, contacts, count, _, worst, forces, many, _, lost = row
+                equal = worst <= ONE_STEP and forces <= FORCES
+                differs |= not equal
+                verdict = ("equal" if equal else "differs") + (" without" if lost else "")
+                text = f"{nv} | {contacts} | {count} | {worst:.0e} | {forces:.0e} | {'' if many is None else f'{many:.2g}'}"
             except (RuntimeError, subprocess.TimeoutExpired) as error:
                 if str(error).startswith("MuJoCo"):
                     continue
                 if "found no constraint" in str(error):
                     continue
                 is_slow = isinstance(error, subprocess.TimeoutExpired)
-                verdict, lost, text = "refused", f"no answer in {LONGEST} s" if is_slow else reason(error), " | | | | "
+                verdict, lost, text = "refused", f"no answer in {LONGEST} s" if is_slow else reason(error), " | | | | | "
             verdicts[verdict] += 1
             rows.append(f"| {name} | {text} | {verdict} {lost} |")
             print(rows[-1], flush=True)
     counts = ", ".join(f"{count} {verdict} something" if verdict.endswith("without") else f"{count} {verdict}" for verdict, count in sorted(verdicts.items()))
     print(counts)
     if arguments.write:
-        table = "| file | freedoms | contacts | rows | one step | steps | verdict |\n|---|--:|--:|--:|--:|--:|---|\n"
+        table = "| file | freedoms | contacts | rows | one step | forces | steps | verdict |\n|---|--:|--:|--:|--:|--:|--:|---|\n"
         PAGE.write_text(HEAD + f"Together: {counts}.\n\n" + table + "\n".join(rows) + "\n")
     return int(differs)
 
@@ -258,7 +261,7 @@ def speed(paths, arguments, rounds=ROUNDS):
 def measure(path, integrator, arguments):
     """What `every` prints of a file.
 
-    nv, contacts and rows; median and worst difference of one step; that of many over that of two
+    nv, contacts and rows; median and worst difference of one step; that of contacts after it; that of many steps over that of two
     rollouts of MuJoCo, and its bound; what is left out. None: a file without freedoms.
     """
     import mujoco
@@ -292,7 +295,11 @@ def measure(path, integrator, arguments):
     is_explicit = integrator == "Euler" and model.opt.disableflags & disable.mjDSBL_EULERDAMP
     method = "semi_implicit_euler" if is_explicit else integrator
     flags = ["--constraints", *(word for kind in arguments.leave_out for word in ("--leave-out", kind))]
-    single = [differ(one, ended(start, 1)) for one, start in zip(rolled(path, model, (states, controls), starts, method, 1, *flags), starts)]
+    single, forces = [], 0.0
+    for end, start in zip(reported(path, model, (states, controls), starts, method, 1, *flags, "--contacts"), starts):
+        single.append(differ(of_mujoco(model, states, end), ended(start, 1)))
+        mujoco.mj_forward(model, data)
+        forces = max(forces, contacts_apart(model, data, end["contacts"]))
     few = starts[:: max(1, len(starts) // 3)][: 3 if model.nv <= MOST_FREEDOMS else 0]
     ratios = []
     ends = rolled(path, model, (states, controls), few, method, STEPS, *flags) if few else []
@@ -306,7 +313,38 @@ def measure(path, integrator, arguments):
             ratios.append(differ(one, reference) / max(beside, STEPS * ROUNDING))
     is_free = (model.jnt_type == mujoco.mjtJoint.mjJNT_FREE).any()
     many = float(np.max(ratios)) if ratios else None
-    return model.nv, contacts, rows, float(np.median(single)), float(np.max(single)), many, MANY_OF_FREE if is_free else MANY, lost
+    return model.nv, contacts, rows, float(np.median(single)), float(np.max(single)), forces, many, MANY_OF_FREE if is_free else MANY, lost
+
+
+def contacts_apart(model, data, own):
+    """How far contacts are apart: the largest difference of their points, m, and forces, over 1 and the largest force.
+
+    Infinite if one has more of them.
+    """
+    import mujoco
+    import numpy as np
+
+    theirs = []
+    for k, contact in enumerate(data.contact):
+        if contact.efc_address < 0:
+            continue
+        six, frame = np.zeros(6), np.array(contact.frame).reshape(3, 3)
+        mujoco.mj_contactForce(model, data, k, six)
+        # On the body that moves, or on the second of both
+        sign = -1 if model.body_weldid[model.geom_bodyid[contact.geom[1]]] == 0 else 1
+        theirs.append(np.concatenate([contact.pos, sign * frame[0], sign * frame.T @ six[:3], sign * frame.T @ six[3:]]))
+    ours = [np.array(one["point"] + one["normal"] + one["force"] + one["moment"]) for one in own]
+    if len(ours) != len(theirs):
+        return np.inf
+    most = max([1.0, *(np.abs(one[6:]).max() for one in theirs)])
+    scale = np.concatenate([np.ones(6), np.full(6, most)])
+    largest = 0.0
+    for one in ours:
+        differences = [np.abs((one - other) / scale).max() for other in theirs]
+        nearest = int(np.argmin(differences))
+        largest = max(largest, differences[nearest])
+        del theirs[nearest]
+    return largest
 
 
 if __name__ == "__main__":

@@ -236,7 +236,22 @@ def actuators(path):
 
 def rolled(path, model, places_of, starts, method, steps, *flags):
     """The ends of the command's rollouts, in MuJoCo's order and axes."""
+    return [of_mujoco(model, places_of[0], end) for end in reported(path, model, places_of, starts, method, steps, *flags)]
+
+
+def of_mujoco(model, activations, end):
+    """A state that the command reports, in MuJoCo's order and axes."""
     import numpy as np
+
+    # A number without a bound is null.
+    q, v, act = ([math.nan if x is None else x for x in end.get(name, [])] for name in ("q", "v", "act"))
+    own, states = np.zeros(model.nq), np.zeros(model.na)
+    own[order(model)], states[activations] = q, act
+    return own, from_own(model, own, v), states
+
+
+def reported(path, model, places_of, starts, method, steps, *flags):
+    """What the command reports of the ends of its rollouts."""
 
     places, (activations, controls) = order(model), places_of
     states = []
@@ -255,14 +270,7 @@ def rolled(path, model, places_of, starts, method, steps, *flags):
         done = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST)
     if done.returncode:
         raise RuntimeError(done.stderr)
-    ends = []
-    for end in json.loads(done.stdout)["states"]:
-        # A number without a bound is null.
-        q, v, act = ([math.nan if x is None else x for x in end.get(name, [])] for name in ("q", "v", "act"))
-        own, states = np.zeros(model.nq), np.zeros(model.na)
-        own[places], states[activations] = q, act
-        ends.append((own, from_own(model, own, v), states))
-    return ends
+    return json.loads(done.stdout)["states"]
 
 
 def parts(model):

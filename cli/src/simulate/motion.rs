@@ -11,6 +11,7 @@ use articulated_motion::{Creep, Ending, InitialState, Occurrence, Outcome, Slide
 
 use super::method::Method;
 use super::monitor::RunMonitor;
+use super::of_file::Constrained;
 use super::recording::{EventRecord, Recording};
 use crate::console::{self, Progress};
 use crate::failure::Failure;
@@ -40,8 +41,8 @@ pub(super) struct Motion {
     pub(super) warnings: Vec<String>,
     /// The steps of a robot's file, in place of an integrator.
     pub(super) of_file: Option<Method>,
-    /// Whether it has limits, dry friction and contacts of the file.
-    pub(super) has_constraints: bool,
+    /// How limits, dry friction and contacts of the file were kept, if it has them.
+    pub(super) constraints: Option<Constrained>,
 }
 
 /// The warnings about a scene's motion. Errors: everything that keeps the motion from starting, or
@@ -112,7 +113,7 @@ pub(super) fn run(
         error,
         warnings,
         of_file: None,
-        has_constraints: false,
+        constraints: None,
     })
 }
 

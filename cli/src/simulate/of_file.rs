@@ -9,6 +9,7 @@ use articulated_core::model::Model;
 use articulated_core::step::{self, CTRL, WARM, rollout};
 use articulated_lab::session::Session;
 use articulated_motion::Ending;
+use serde::Serialize;
 
 use super::method::Method;
 use super::monitor::RunMonitor;
@@ -17,6 +18,7 @@ use super::recording::Recording;
 use crate::console::{self, Progress};
 use crate::failure::Failure;
 use crate::file_motion::{Start, are_computed, step_length, step_of_file};
+use crate::touching::{FOUND, Touching};
 
 /// How a file's motion is stepped.
 pub(super) struct OfFile {
@@ -73,7 +75,8 @@ impl OfFile {
         let needed = (length - ROUNDING).ceil().max(1.0);
         let count = needed.min(settings.max_steps as f64) as usize;
         let held = if self.method.takes.contains(&CTRL) { self.start.ctrl.clone() } else { vec![0.0; model.nv()] };
-        let mut own = Own { of_file: self, model, ws: Workspace::new(model), torques: vec![0.0; model.nv()] };
+        let constraints = self.has_constraints().then(Constrained::default);
+        let mut own = Own { of_file: self, model, ws: Workspace::new(model), torques: vec![0.0; model.nv()], constraints };
         let mut recording = Recording::of(model);
         let mut energy = Sums::start(own.energies(&self.start.state)?, self.has_constraints());
         own.record(settings.start, &self.start.state, &energy, &mut recording)?;
@@ -116,9 +119,9 @@ impl OfFile {
             wall: clock.elapsed(),
             ball: None,
             error,
-            warnings: Vec::new(),
             of_file: Some(self.method()),
-            has_constraints: self.has_constraints(),
+            warnings: own.constraints.iter().flat_map(|constraints| constraints.warning(&session.scene.file)).collect(),
+            constraints: own.constraints,
         })
     }
 }
@@ -144,6 +147,41 @@ struct Own<'a> {
     ws: Workspace<f64>,
     /// Of actuators, N·m or N.
     torques: Vec<f64>,
+    constraints: Option<Constrained>,
+}
+
+/// How limits, dry friction and contacts were kept at the recorded times.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(super) struct Constrained {
+    /// The most contacts at once.
+    pub(super) most_contacts: usize,
+    /// The largest bound of the error of an acceleration, see [`Touching::relative_error`].
+    pub(super) largest_relative_error: f64,
+    /// The most steps of Newton's method.
+    pub(super) most_search_steps: u32,
+    /// The first time at which the search did not find the acceleration, s.
+    pub(super) not_found_at_s: Option<f64>,
+}
+
+impl Constrained {
+    fn add(&mut self, t: f64, touching: &Touching) {
+        self.most_contacts = self.most_contacts.max(touching.contacts.len());
+        self.most_search_steps = self.most_search_steps.max(touching.search_steps);
+        if !(touching.relative_error <= self.largest_relative_error) {
+            self.largest_relative_error = touching.relative_error;
+        }
+        if !touching.is_found() {
+            self.not_found_at_s.get_or_insert(t);
+        }
+    }
+
+    /// Of accelerations that were not found.
+    fn warning(&self, file: &str) -> Option<String> {
+        let error = self.largest_relative_error;
+        self.not_found_at_s.map(|t| {
+            format!("{file}: the search of accelerations with constraints did not end at t = {t} s: relative error {error:.1e}, expected {FOUND:e}")
+        })
+    }
 }
 
 /// Energies of a state, J, and their rates, W.
@@ -188,6 +226,11 @@ impl Own<'_> {
         // Without mass there is no centre of mass.
         if self.model.moving_mass() > 0.0 {
             self.call("centroidal_momentum", &[&state.q, &state.v], &mut momentum)?;
+        }
+        if let Some(constraints) = &mut self.constraints {
+            let touching = Touching::of(self.model, &mut self.ws, state, &self.of_file.start.ctrl).map_err(of_function)?;
+            constraints.add(t, &touching);
+            to.contacts.push(touching.contacts.iter().map(|contact| [contact.point, contact.force]).collect());
         }
         to.t.push(t);
         to.q.extend(&state.q);

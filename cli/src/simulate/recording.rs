@@ -89,6 +89,8 @@ pub(crate) struct Recording {
     /// Angular momentum about the centre of mass, then linear momentum, in axes of the world frame:
     /// kg·m²/s, kg·m/s.
     pub(crate) momentum: Vec<[f64; 6]>,
+    /// Points and forces of contacts of a motion with constraints, m and N, for each time.
+    pub(crate) contacts: Vec<Vec<[[f64; 3]; 2]>>,
     /// In the order of their times.
     pub(crate) events: Vec<EventRecord>,
 }

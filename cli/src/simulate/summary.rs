@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::method::Method;
 use super::motion::Motion;
+use super::of_file::Constrained;
 use super::recording::{EventRecord, Recording};
 use crate::effects::sorts;
 use articulated_lab::json::Units;
@@ -28,10 +29,10 @@ pub(super) struct Summary {
     /// warning, and the status stays `ok`.
     #[serde(skip)]
     pub(super) is_of_file: bool,
-    /// Whether it has limits, dry friction and contacts of the file: then there is no balance of
-    /// energy.
-    #[serde(skip)]
-    pub(super) has_constraints: bool,
+    /// How limits, dry friction and contacts of the file were kept, if it has them: then there is no
+    /// balance of energy.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) constraints: Option<Constrained>,
     pub(super) start_s: f64,
     /// The time that was reached.
     pub(super) end_s: f64,
@@ -214,7 +215,7 @@ impl Summary {
                 atol: settings.atol,
             }),
             is_of_file: motion.of_file.is_some(),
-            has_constraints: motion.has_constraints,
+            constraints: motion.constraints.clone(),
             start_s: settings.start,
             end_s: motion.reached,
             requested_end_s: settings.end,

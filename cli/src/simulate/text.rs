@@ -71,7 +71,7 @@ fn table(s: &Summary) -> Table {
     row("  potential", number(e.potential_start), number(e.potential_end), "J");
     row("work of the motors", none(), number(e.work), "J");
     row("dissipated", none(), number(e.dissipated), "J");
-    if s.has_constraints {
+    if s.constraints.is_some() {
         row("brought by constraints", none(), number(e.from_events), "J");
     } else if e.from_events != 0.0 || e.ball.is_some() {
         row("brought by events", none(), number(e.from_events), "J");
@@ -82,7 +82,10 @@ fn table(s: &Summary) -> Table {
     if let Some(speed) = s.ball_speed_m_per_s {
         row("  speed of the ball", none(), number(speed), "m/s");
     }
-    if !s.has_constraints {
+    if let Some(constraints) = &s.constraints {
+        row("most contacts at once", none(), constraints.most_contacts.to_string(), "");
+        row("largest relative error of an acceleration", none(), number(constraints.largest_relative_error), "");
+    } else {
         row("largest imbalance", none(), number(e.largest_imbalance), "J");
         row("  over the largest energy moved", none(), number(e.relative_imbalance), "");
     }

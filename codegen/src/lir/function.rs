@@ -90,8 +90,18 @@ pub(crate) struct Function<'a> {
 impl Function<'_> {
     /// Whether it takes or returns something for each actuator.
     pub(crate) fn is_of_actuators(&self) -> bool {
-        let of_actuators = |dims: &[Dim]| dims.iter().any(|dim| matches!(dim, Dim::Controls | Dim::Activations));
-        self.arguments.iter().any(|a| of_actuators(&a.dims)) || self.outputs.iter().any(|output| of_actuators(&output.dims))
+        self.has(&[Dim::Controls, Dim::Activations])
+    }
+
+    /// Whether it returns something for each place of contact.
+    pub(crate) fn is_of_contacts(&self) -> bool {
+        self.has(&[Dim::Contacts])
+    }
+
+    /// Whether an argument or a result has one of these dimensions.
+    fn has(&self, some: &[Dim]) -> bool {
+        let has = |dims: &[Dim]| dims.iter().any(|dim| some.contains(dim));
+        self.arguments.iter().any(|a| has(&a.dims)) || self.outputs.iter().any(|output| has(&output.dims))
     }
 }
 

@@ -75,6 +75,59 @@ fn generated_steps_are_those_of_the_library() {
     assert!(pushes >= 2, "some states are in contact");
 }
 
+/// What a step found, how exact it is, and the forces of its contacts: generated code against the
+/// library.
+#[test]
+fn certificates_and_forces_are_those_of_the_library() {
+    const NAMES: [&str; 3] = ["constrained_search", "constrained_error", "contact_forces"];
+    let generated = generated(STANDING, &NAMES);
+    let (model, mut touching) = (&generated.model, 0);
+    let (nv, count) = (model.nv(), model.shape().contacts);
+    for given in given(model, 0.44, 6) {
+        let [q, v, act, ctrl, warm, _] = &given;
+        let called = |k: usize, inputs: &[&[f64]], length: usize| {
+            let row = step(NAMES[k]).unwrap();
+            let mut expected = vec![0.0; length];
+            row.call(model, &mut Workspace::new(model), inputs, &mut expected).unwrap();
+            (generated.graphs[k].evaluate(|argument, k| inputs[argument][k]), expected)
+        };
+        // The last step of a search depends on roundings.
+        let (own, found) = called(0, &[q, v, act, ctrl, warm], nv + 3);
+        assert_close(NAMES[0], &own[..nv], &found[..nv], 1e-9);
+        let mut last = 0.0;
+        for found in [&own, &found] {
+            let [error, size, steps] = [found[nv], found[nv + 1], found[nv + 2]];
+            assert!(error < 1e-11 * size && (1.0..12.0).contains(&steps), "{error} {size} {steps}");
+            last = error.max(last);
+        }
+        // Accelerations further off have larger bounds.
+        for far in [1e-6, 1e-3, 1.0] {
+            let moved: Vec<f64> = found[..nv].iter().map(|x| x + far).collect();
+            let (own, expected) = called(1, &[q, v, act, ctrl, &moved], 2);
+            assert_close(NAMES[1], &own, &expected, 1e-9);
+            assert!(own[0] > last, "{far}: {own:?} {last}");
+            last = own[0];
+        }
+        let (own, forces) = called(2, &[q, v, &found[..nv]], 13 * count);
+        for (own, place) in own.chunks(13).zip(forces.chunks(13)) {
+            // The legs touch at a distance of exactly 0, without force: roundings decide.
+            let pushes = [own, place].iter().any(|place| place[7..10].iter().any(|x| x.abs() > 1e-9));
+            if pushes {
+                assert_close(NAMES[2], own, place, 1e-9);
+            }
+        }
+        // Contacts push, and what they push is within their cone.
+        for place in forces.chunks(13).filter(|place| place[0] == 1.0) {
+            let (normal, force) = (&place[4..7], &place[7..10]);
+            let along: f64 = normal.iter().zip(force).map(|(n, f)| n * f).sum();
+            let across: f64 = normal.iter().zip(force).map(|(n, f)| (f - along * n).powi(2)).sum();
+            assert!(along > -1e-9 && across.sqrt() <= along * (1.0 + 1e-6) + 1e-9, "{place:?}");
+            touching += usize::from(along > 1.0);
+        }
+    }
+    assert!(touching >= 4, "{touching} places touch");
+}
+
 /// Derivatives are those of the optimum.
 #[test]
 fn derivatives_are_those_of_differences() {

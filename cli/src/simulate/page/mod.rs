@@ -96,6 +96,12 @@ struct Motion<'a> {
     energies: String,
     events: &'a [EventRecord],
     projectile: Option<Projectile>,
+    /// Number of contacts of each frame: 16 bits.
+    contact_counts: String,
+    /// Their points and forces, m and N: floats.
+    contacts: String,
+    /// Length of a drawn newton, m.
+    newton: f64,
 }
 
 /// The page's text. `meshes` gets a warning for anything that cannot be drawn.
@@ -121,6 +127,7 @@ pub(super) fn html(r: &Recording, setting: &Setting<'_>, meshes: &Meshes<'_>) ->
         ("from events", &r.from_events),
         ("imbalance", &imbalance),
     ];
+    let touching = chosen.iter().filter_map(|&k| r.contacts.get(k));
     let motion = Motion {
         note: &setting.note,
         up: space.up.into(),
@@ -142,6 +149,9 @@ pub(super) fn html(r: &Recording, setting: &Setting<'_>, meshes: &Meshes<'_>) ->
         energies: floats(&mut chosen.iter().flat_map(|&k| energies.map(|e| e.1.get(k).copied().unwrap_or(0.0)))),
         events: &r.events,
         projectile: setting.projectile,
+        contact_counts: base64(&touching.clone().flat_map(|own| (own.len() as u16).to_le_bytes()).collect::<Vec<u8>>()),
+        contacts: floats(&mut touching.flatten().flatten().flatten().copied()),
+        newton: newton(setting.model, space.size),
     };
     // A name cannot end the script that contains it.
     let data = serde_json::to_string(&motion).unwrap_or_default().replace('<', "\\u003c");
@@ -160,6 +170,13 @@ pub(super) fn svg(r: &Recording, setting: &Setting<'_>) -> Result<String, Functi
     let times: Vec<f64> = chosen.iter().map(|&k| r.t[k]).collect();
     let room = Room { up: space.up, ground: space.ground, center: space.center, radius: space.radius };
     Ok(animation::svg(&figure, &placements, &room, &times, setting.title, speed))
+}
+
+/// The length at which a newton is drawn, m: the weight of all that moves is half as long as the
+/// robot.
+fn newton(model: &Model<f64>, size: f64) -> f64 {
+    let weight = model.moving_mass() * Vector3::from(model.gravity()).norm();
+    if weight > 0.0 { 0.5 * size / weight } else { 0.0 }
 }
 
 /// The template with its places filled, each text as it is.

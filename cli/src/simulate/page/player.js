@@ -93,6 +93,17 @@
     return since > 0 ? add(way, scaled(ball.gravity, since * since / 2)) : way;
   }
 
+  // Points and forces of the contacts of each frame.
+  const touching = (() => {
+    const counts = new Uint16Array(bytes(motion.contactCounts)), numbers = new Float32Array(bytes(motion.contacts)), all = [];
+    let at = 0;
+    const three = () => { at += 3; return [...numbers.subarray(at - 3, at)]; };
+    for (const count of counts) all.push(Array.from({ length: count }, () => ({ point: three(), force: three() })));
+    return all;
+  })();
+  const touches = touching.some(all => all.length);
+  const TOUCH = '#c2185b';
+
   // The corners of the box about a mesh, in its body.
   function corners(x) {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], all = x.mesh.points;
@@ -323,6 +334,21 @@
       ctx.strokeStyle = 'rgba(160, 40, 40, .8)'; ctx.lineWidth = 1;
       ctx.beginPath(); ctx.arc(x, y, Math.max(1, b.radius * z), 0, 2 * Math.PI); ctx.stroke();
     }
+    if (shown.contacts) {
+      // Of the nearest frame: contacts begin and end within a step.
+      const [a, b, s] = find(t);
+      ctx.strokeStyle = ctx.fillStyle = TOUCH; ctx.lineWidth = 2.2;
+      for (const { point, force } of touching[s < 0.5 ? a : b] || []) {
+        const tip = add(point, scaled(force, Math.min(motion.newton, 1.5 * motion.size / (Math.hypot(...force) || 1))));
+        if (cam.depth(point) < cam.near || cam.depth(tip) < cam.near) continue;
+        const [x, y] = cam.show(point), [x2, y2] = cam.show(tip), long = Math.hypot(x2 - x, y2 - y), head = Math.min(8, 0.5 * long);
+        ctx.beginPath(); ctx.arc(x, y, 2.6, 0, 2 * Math.PI); ctx.fill();
+        if (long < 1) continue;
+        const [dx, dy] = [(x2 - x) / long, (y2 - y) / long], back = side => [x2 - head * dx - side * head * 0.5 * dy, y2 - head * dy + side * head * 0.5 * dx];
+        ctx.beginPath(); ctx.moveTo(x, y); ctx.lineTo(x2 - 0.8 * head * dx, y2 - 0.8 * head * dy); ctx.stroke();
+        ctx.beginPath(); ctx.moveTo(x2, y2); ctx.lineTo(...back(1)); ctx.lineTo(...back(-1)); ctx.fill();
+      }
+    }
     if (ball) {
       // Its way since it was hit, and where it is.
       const now = flight(t), from = ball.time !== null && t > ball.time;
@@ -412,13 +438,14 @@
   // From here on: buttons, mouse, clock.
   const view = $('view'), stripCanvas = $('strip'), scrub = $('scrub'), play = $('play'), tip = $('tip');
   const state = { t: first, playing: true, before: null, spots: [], written: [], recorder: null, ending: false };
-  const TOGGLES = ['looks', 'collision', 'boxes', 'sticks', 'names', 'follow'];
+  const TOGGLES = ['looks', 'collision', 'boxes', 'sticks', 'names', 'contacts', 'follow'];
   const shown = () => Object.fromEntries(TOGGLES.map(name => [name, $(name).checked]));
   // What is not there has no toggle; boxes are for robots without a look of their own.
   $('boxes').checked = !isThere('visual');
   // Sticks and names would be inside meshes, and in front of them.
   for (const name of ['sticks', 'names']) $(name).checked = !motion.hasMeshes;
   for (const [name, kind] of [['looks', 'visual'], ['collision', 'collision'], ['boxes', 'inertia']]) $(name).parentElement.hidden = !isThere(kind);
+  $('contacts').parentElement.hidden = !touches;
   const panels = () => ['head', 'numbers', 'legend'].map($).filter(panel => !panel.hidden).map(panel => panel.getBoundingClientRect()).map(b => [b.left, b.top, b.right, b.bottom]);
   // The legend of what is shown: materials by their names, and all else by its kind.
   function legend() {
@@ -428,6 +455,7 @@
     if (solids.some(x => x.kind === 'inertia' && isShown(x, now))) put('inertia box', css(hue(HUES[0], 0.45, 0.66)));
     if (now.collision && isThere('collision')) put('collision shape', css(COLLISION));
     if (motion.balls.length) put('contact sphere', '#a02828', true);
+    if (now.contacts && touches) put('contact force', TOUCH, true);
     if (now.sticks && motion.joints.length) put('joint', '#d9622b', true);
     if (ball) put('ball', '#f2a93b', true);
     const all = [...rows], most = 12, box = $('legend');

@@ -110,6 +110,9 @@ pub(super) fn declare(out: &mut String, module: &Module, prefix: &str, infinity:
         let _ = writeln!(out, "/** Number of actuators: the length of ctrl. */\n#define {up}_NU {controls}");
         let _ = writeln!(out, "/** Number of actuators with an activation: the length of act. */\n#define {up}_NA {activations}");
     }
+    if module.functions.iter().any(Function::is_of_contacts) {
+        let _ = writeln!(out, "/** Number of places where shapes may touch. */\n#define {up}_CONTACTS {}", model.shape().contacts);
+    }
     if !module.parameters.is_empty() {
         let n: usize = module.parameters.iter().map(|p| p.nominal.len()).sum();
         let _ = writeln!(out, "/** Number of parameters. */\n#define {up}_PARAMETERS {n}");

@@ -21,6 +21,8 @@ pub enum Dim {
     Controls,
     /// One for each actuator with an activation.
     Activations,
+    /// One for each place where shapes may touch.
+    Contacts,
     /// This many.
     Of(usize),
 }
@@ -35,6 +37,7 @@ impl Dim {
             Self::Links => shape.links,
             Self::Controls => shape.controls,
             Self::Activations => shape.activations,
+            Self::Contacts => shape.contacts,
             Self::Of(n) => n,
         }
     }
@@ -50,6 +53,7 @@ impl fmt::Display for Dim {
             Self::Links => f.write_str("LINKS"),
             Self::Controls => f.write_str("NU"),
             Self::Activations => f.write_str("NA"),
+            Self::Contacts => f.write_str("CONTACTS"),
             Self::Of(n) => write!(f, "{n}"),
         }
     }
@@ -70,6 +74,7 @@ macro_rules! dims {
     (one Links) => { "[links]" };
     (one Controls) => { "[nu]" };
     (one Activations) => { "[na]" };
+    (one Contacts) => { "[contacts]" };
     (one Of $n:literal) => { concat!("[", $n, "]") };
 }
 
@@ -190,7 +195,7 @@ const fn have_same_lengths(one: &[Dim], other: &[Dim]) -> bool {
     while k < one.len() && k < other.len() {
         match (one[k], other[k]) {
             (Dim::Nq, Dim::Nq) | (Dim::Nv, Dim::Nv) | (Dim::Frames, Dim::Frames) | (Dim::Links, Dim::Links) => {}
-            (Dim::Controls, Dim::Controls) | (Dim::Activations, Dim::Activations) => {}
+            (Dim::Controls, Dim::Controls) | (Dim::Activations, Dim::Activations) | (Dim::Contacts, Dim::Contacts) => {}
             (Dim::Of(n), Dim::Of(m)) if n == m => {}
             _ => return false,
         }

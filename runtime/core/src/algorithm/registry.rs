@@ -22,6 +22,9 @@ pub struct Shape {
     pub controls: usize,
     /// Number of actuators with an activation.
     pub activations: usize,
+    /// Number of places where shapes may touch
+    /// ([`Constraints::contacts`](crate::constraint::Constraints::contacts)).
+    pub contacts: usize,
 }
 
 impl<S: Scalar> Model<S> {
@@ -41,6 +44,7 @@ impl<S: Scalar> Model<S> {
             links: self.links().count(),
             controls: self.actuators.laws.len(),
             activations: self.actuators.activations(),
+            contacts: self.constraints.contacts(),
         }
     }
 }

@@ -131,12 +131,28 @@ impl<S: Scalar> Contact<S> {
         self.reference.len()
     }
 
+    /// Its point from the origin.
+    pub(super) fn point(&self) -> Vector3<S> {
+        self.point
+    }
+
+    /// The normal.
+    pub(super) fn normal(&self) -> Vector3<S> {
+        self.frame[0]
+    }
+
+    /// The force of f, and its moment about the point.
+    pub(super) fn acting(&self, f: &[S]) -> [Vector3<S>; 2] {
+        let along = |f: &[S]| self.frame.iter().zip(f).fold(Vector3::zeros(), |sum: Vector3<S>, (axis, f)| sum + axis * *f);
+        let (forces, moments) = f.split_at(f.len().min(3));
+        [along(forces), along(moments)]
+    }
+
     /// Bᵀ f.
     pub(super) fn wrench(&self, f: &[S]) -> Wrench<S> {
-        let along = |f: &[S]| self.frame.iter().zip(f).fold(Vector3::zeros(), |sum: Vector3<S>, (axis, f)| sum + axis * *f);
-        let force = along(&f[..f.len().min(3)]);
+        let [force, turn] = self.acting(f);
         let moment = self.point.cross(&force);
-        Wrench { moment: if f.len() > 3 { moment + along(&f[3..]) } else { moment }, force }
+        Wrench { moment: if f.len() > 3 { moment + turn } else { moment }, force }
     }
 
     /// B V.

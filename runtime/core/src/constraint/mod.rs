@@ -17,6 +17,7 @@
 
 mod anchors;
 mod contact;
+mod forces;
 mod joints;
 mod motion;
 mod newton;
@@ -29,7 +30,9 @@ use alloc::vec::Vec;
 
 pub use anchors::{Anchor, poses};
 pub use contact::MOST_ROWS;
-pub(crate) use newton::{Smooth, constrained};
+pub use forces::CONTACT;
+pub(crate) use forces::contact_forces;
+pub(crate) use newton::{Certificate, Smooth, certified, constrained, searched};
 pub use soft::{Impedance, Soft};
 pub use sums::{Sum, SumLaw, Term};
 pub use weights::{Weights, weights};

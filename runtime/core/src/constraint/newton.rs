@@ -19,7 +19,7 @@ use super::Cone;
 use super::anchors::{self, Moving};
 use super::contact::{self, Contact, Law};
 use super::joints::JointRow;
-use super::motion::{Column, Twists};
+use super::motion::{self, Column, Twists};
 use super::pairs::{self, Found};
 use crate::Scalar;
 use crate::algorithm::ltdl::{factor, path_to_root, solve};
@@ -27,7 +27,7 @@ use crate::algorithm::{Placed as Bodies, Workspace, mass_matrix};
 use crate::index::{BodyId, ById};
 use crate::model::Model;
 use crate::scalar::{flag, of_precision};
-use crate::spatial::{ArticulatedInertia, Matrix3, Placement, Twist, Vector3, Wrench};
+use crate::spatial::{ArticulatedInertia, Matrix3, Twist, Vector3, Wrench};
 
 /// Largest number of steps of Newton's method.
 const MOST: usize = 50;
@@ -56,30 +56,33 @@ pub(crate) struct Smooth<'a, S> {
 /// The acceleration with constraints, of origins d²p/dt², and Jᵀ f of their forces.
 pub(crate) fn constrained<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, smooth: &Smooth<'_, S>) -> (Vec<S>, Vec<S>) {
     let problem = Problem::new(model, ws, smooth);
-    let mut x = smooth.a.to_vec();
-    S::held(&mut x, |x| x.copy_from_slice(&problem.minimum(smooth.warm)));
-    // δ = 0 solves g(x + δ, p) = 0. Its derivative is −H⁻¹ ∂g/∂p, that of x(p) by the implicit
-    // function theorem. Each time x has derivatives of one more order.
-    let mut hessian = vec![S::zero(); x.len() * x.len()];
-    if S::orders() > 0 {
-        S::held(&mut hessian, |hessian| hessian.copy_from_slice(&problem.curvature(&x)));
-    }
-    for _ in 0..S::orders() {
-        let mut correction = vec![S::zero(); x.len()];
-        let residual = |_: &mut (), correction: &[S], r: &mut [S]| {
-            let moved: Vec<S> = x.iter().zip(correction).map(|(x, own)| *x + *own).collect();
-            r.copy_from_slice(&problem.slope(&moved).0);
-        };
-        let inverse = |_: &mut (), b: &mut [S]| {
-            let mut matrix = hessian.clone();
-            factor(&mut matrix, &problem.parents);
-            solve(&matrix, &problem.parents, b);
-        };
-        S::implicit(&mut (), &mut correction, |_, correction| correction.fill(S::zero()), residual, inverse);
-        x.iter_mut().zip(correction).for_each(|(x, own)| *x += own);
-    }
+    let x = problem.solved(smooth.warm, None);
     let forces = times(&problem.mass, &problem.branches, &problem.beyond(&x));
     (x, forces)
+}
+
+/// How exact an acceleration is.
+pub(crate) struct Certificate<S> {
+    /// No less than the distance to the optimum: ‖x − x*‖_M ≤ √(gᵀ M⁻¹ g), as the cost less that of
+    /// inertia is convex.
+    pub(crate) error: S,
+    /// ‖x₀‖_M of the acceleration without constraints.
+    pub(crate) size: S,
+}
+
+/// The acceleration with constraints, of origins d²p/dt², its certificate, and how many steps of
+/// Newton's method found it.
+pub(crate) fn searched<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, smooth: &Smooth<'_, S>) -> (Vec<S>, Certificate<S>, S) {
+    let problem = Problem::new(model, ws, smooth);
+    let mut steps = S::zero();
+    let x = problem.solved(smooth.warm, Some(&mut steps));
+    let certificate = problem.certificate(&x);
+    (x, certificate, steps)
+}
+
+/// The certificate of the acceleration `smooth.warm`.
+pub(crate) fn certified<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, smooth: &Smooth<'_, S>) -> Certificate<S> {
+    Problem::new(model, ws, smooth).certificate(smooth.warm)
 }
 
 /// Contacts of one dimension of two bodies, of which the first may be the base.
@@ -119,13 +122,10 @@ impl<'a, S: Scalar> Problem<'a, S> {
         let nv = model.nv;
         let mut mass = vec![S::zero(); nv * nv];
         mass_matrix(model, ws, smooth.q, &mut mass);
-        let floats = model.bodies.get(BodyId(1)).is_some_and(|body| body.joint.is_unconstrained());
         let branches = ws.parent_dof.clone();
         let placed = Bodies::at(model, ws, smooth.q);
-        // All moments are about the first body, if it floats: numbers stay small far from the
-        // origin of the world.
-        let origin = if floats { placed.frame(BodyId(1), &Placement::identity()).position } else { Vector3::zeros() };
-        let columns = placed.columns(origin).map(|(body, at, axis)| Column { body, at, axis }).collect();
+        let origin = motion::origin(model, &placed);
+        let columns = motion::columns(&placed, origin);
         let constraints = &model.constraints;
         let mut problem = Self {
             model,
@@ -141,7 +141,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
         let twists = problem.motion(smooth.v);
         let moving = Moving { model, placed: &placed, columns: &problem.columns, origin, twists: &twists };
         anchors::rows(&constraints.anchors, &moving, &mut problem.rows);
-        for Found { bodies, dimension, rows } in pairs::contacts(constraints, &placed, origin, &twists) {
+        for Found { bodies, dimension, rows, .. } in pairs::contacts(constraints, &placed, origin, &twists) {
             problem.add(bodies, dimension, &rows);
         }
         problem.parents = problem.ways();
@@ -197,16 +197,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
 
     /// The twists of all bodies about the origin at these rates.
     fn motion(&self, x: &[S]) -> Twists<S> {
-        let mut bodies: Twists<S> = vec![Twist::zero(); self.model.bodies.len()].into();
-        let mut next = self.columns.iter().peekable();
-        for body in self.model.outward() {
-            let mut twist = bodies[self.model.bodies[body].parent];
-            while let Some(column) = next.next_if(|column| column.body == body) {
-                twist = twist + column.axis.times(x[column.at]);
-            }
-            bodies[body] = twist;
-        }
-        bodies
+        motion::twists(self.model, &self.columns, x)
     }
 
     /// Visits the contacts of a group that act, with the relative twists of N motions:
@@ -434,18 +425,71 @@ impl<'a, S: Scalar> Problem<'a, S> {
         [of(slope), of(size)]
     }
 
-    /// The x at which the cost is least.
-    fn minimum(&self, warm: &[S]) -> Vec<S> {
+    /// The x at which the cost is least, with derivatives. `steps`: how many steps were made.
+    fn solved(&self, warm: &[S], steps: Option<&mut S>) -> Vec<S> {
+        let mut x = self.start.to_vec();
+        match steps {
+            None => S::held(&mut x, |x| x.copy_from_slice(&self.minimum(warm, false))),
+            Some(steps) => {
+                x.push(S::zero());
+                S::held(&mut x, |x| x.copy_from_slice(&self.minimum(warm, true)));
+                *steps = x.pop().unwrap_or(S::zero());
+            }
+        }
+        // δ = 0 solves g(x + δ, p) = 0. Its derivative is −H⁻¹ ∂g/∂p, that of x(p) by the implicit
+        // function theorem. Each time x has derivatives of one more order.
+        let mut hessian = vec![S::zero(); x.len() * x.len()];
+        if S::orders() > 0 {
+            S::held(&mut hessian, |hessian| hessian.copy_from_slice(&self.curvature(&x)));
+        }
+        for _ in 0..S::orders() {
+            let mut correction = vec![S::zero(); x.len()];
+            let residual = |_: &mut (), correction: &[S], r: &mut [S]| {
+                let moved: Vec<S> = x.iter().zip(correction).map(|(x, own)| *x + *own).collect();
+                r.copy_from_slice(&self.slope(&moved).0);
+            };
+            let inverse = |_: &mut (), b: &mut [S]| {
+                let mut matrix = hessian.clone();
+                factor(&mut matrix, &self.parents);
+                solve(&matrix, &self.parents, b);
+            };
+            S::implicit(&mut (), &mut correction, |_, correction| correction.fill(S::zero()), residual, inverse);
+            x.iter_mut().zip(correction).for_each(|(x, own)| *x += own);
+        }
+        x
+    }
+
+    /// How far x is from the optimum.
+    fn certificate(&self, x: &[S]) -> Certificate<S> {
+        let gradient = self.slope(x).0;
+        let (mut matrix, mut moved) = (self.mass.clone(), gradient.clone());
+        factor(&mut matrix, &self.branches);
+        solve(&matrix, &self.branches, &mut moved);
+        let norm = |a: &[S], b: &[S]| {
+            let square = a.iter().zip(b).fold(S::zero(), |sum, (a, b)| sum + *a * *b);
+            let is_some = square.positive();
+            S::select(is_some, S::select(is_some, square, S::one()).sqrt(), square)
+        };
+        let size = norm(self.start, &times(&self.mass, &self.branches, self.start));
+        Certificate { error: norm(&gradient, &moved), size }
+    }
+
+    /// The x at which the cost is least. `counted`: behind it the number of steps.
+    fn minimum(&self, warm: &[S], counted: bool) -> Vec<S> {
         let (nv, one) = (self.start.len(), S::one());
         let mut state = self.start.to_vec();
         if !warm.is_empty() {
             let is_better = (self.cost(self.start) - self.cost(warm)).positive();
             state.iter_mut().zip(warm).for_each(|(x, warm)| *x = S::select(is_better, *warm, *x));
         }
+        if counted {
+            state.push(S::zero());
+        }
         // The last square of the gradient; −1: there is none.
         state.push(-one);
         let _converged = S::repeat(MOST, &mut state, |state| {
-            let (x, last) = state.split_at_mut(nv);
+            let (x, rest) = state.split_at_mut(nv);
+            let (count, last) = rest.split_at_mut(usize::from(counted));
             let slope = self.slope(x);
             let [square, size] = self.squares(&slope);
             let [settled, small] = [SETTLED, SMALL].map(|n| of_precision(size, n.map(|n| 2 * n)));
@@ -455,6 +499,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
             let falls = S::select((-last[0]).positive(), one, flag::<S>((last[0] - square - square).positive()));
             let is_done = flag::<S>((is_settled + is_small * (one - falls)).positive());
             last[0] = square;
+            count.iter_mut().for_each(|count| *count += one - is_done);
             S::when((one - is_done).positive(), x, |x| {
                 let mut dx: Vec<S> = slope.0.iter().map(|g| -*g).collect();
                 let mut hessian = self.curvature(x);
@@ -465,7 +510,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
             });
             is_done.positive()
         });
-        state.truncate(nv);
+        state.pop();
         state
     }
 
@@ -502,10 +547,11 @@ fn of_triangle<S: Scalar>(k: &[S]) -> ArticulatedInertia<S> {
 mod tests {
     use super::*;
     use crate::collision::{Form, Shape};
-    use crate::constraint::{Bound, Constraints, DryFriction, Limit, Pair, Soft};
+    use crate::constraint::{Bound, CONTACT, Constraints, DryFriction, Limit, Pair, Soft, contact_forces};
     use crate::description::{Base, Description, Inertial, Joint, JointKind, Link, LinkId, Origin};
     use crate::dual::Dual;
     use crate::scalar::two_to;
+    use crate::spatial::Placement;
 
     const MASS: f64 = 2.0;
 
@@ -579,7 +625,28 @@ mod tests {
             let (found, _) = constrained(&model, &mut Workspace::new(&model), &smooth);
             assert!((found[0].slope + 0.9 * B).abs() < 1e-12 * B, "{:?}", found[0]);
         }
+        // The force of the contact, and the certificate of another acceleration: with one mass it is
+        // not less than √m times the distance, and not more than that with the stiffest row.
+        let (q, v, a) = (0.095, -1.0, -9.81);
+        let exact = solved(&touching, q, v, a);
+        let mut ws = Workspace::new(&touching);
+        let mut place = [0.0; CONTACT];
+        contact_forces(&touching, &mut ws, (&[q], &[v]), &[exact], &mut place);
+        let expected = [1.0, 0.0, 0.0, 0.5 * (q - 0.1), 0.0, 0.0, 1.0, 0.0, 0.0, MASS * (exact - a), 0.0, 0.0, 0.0];
+        assert!(place.iter().zip(expected).all(|(x, y)| (x - y).abs() < 1e-12 * y.abs().max(1.0)), "{place:?}");
+        for moved in [0.0, 1e-3, -1e-3, 5.0, -200.0] {
+            let smooth = Smooth { q: &[q], v: &[v], a: &[a], warm: &[exact + moved] };
+            let Certificate { error, size } = certified(&touching, &mut ws, &smooth);
+            let distance = MASS.sqrt() * f64::abs(moved);
+            assert!(error >= distance * (1.0 - 1e-12) && error < 10.1 * distance + 1e-11, "{moved}: {error} {distance}");
+            assert!((size - MASS.sqrt() * a.abs()).abs() < 1e-12 * size);
+        }
+        let smooth = Smooth { q: &[q], v: &[v], a: &[a], warm: &[] };
+        let (found, Certificate { error, .. }, steps) = searched(&touching, &mut ws, &smooth);
+        assert!(found[0] == exact && error < 1e-11 && (1.0..4.0).contains(&steps), "{found:?} {error} {steps}");
         // Not in contact
+        contact_forces(&touching, &mut ws, (&[0.11], &[v]), &[a], &mut place);
+        assert_eq!(place, [0.0; CONTACT]);
         assert_eq!((solved(&touching, 0.11, -1.0, -9.81), solved(&limited, 0.11, -1.0, -9.81)), (-9.81, -9.81));
     }
 

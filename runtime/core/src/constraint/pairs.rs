@@ -19,6 +19,8 @@ use crate::spatial::{Placement, Twist, Vector3};
 
 /// Contacts of a pair.
 pub(super) struct Found<S> {
+    /// The place of the pair in [`Constraints::pairs`].
+    pub(super) pair: usize,
     /// The bodies, the base first.
     pub(super) bodies: [BodyId; 2],
     pub(super) dimension: usize,
@@ -49,12 +51,12 @@ pub(super) fn contacts<S: Scalar>(
         power: pair.soft.impedance.twice_power(),
         is_reversed: shape(pair)[1].body.is_base(),
     };
-    let mut sorts: Vec<(Sort, Vec<&Pair<S>>)> = Vec::new();
-    for pair in &constraints.pairs {
+    let mut sorts: Vec<(Sort, Vec<(usize, &Pair<S>)>)> = Vec::new();
+    for (index, pair) in constraints.pairs.iter().enumerate() {
         let own = sort(pair);
         match sorts.iter_mut().find(|(other, _)| *other == own) {
-            Some((_, pairs)) => pairs.push(pair),
-            None => sorts.push((own, [pair].into())),
+            Some((_, pairs)) => pairs.push((index, pair)),
+            None => sorts.push((own, [(index, pair)].into())),
         }
     }
     let place = |shape: usize| {
@@ -67,12 +69,12 @@ pub(super) fn contacts<S: Scalar>(
     };
     let mut found = Vec::new();
     for (Sort { dimension, is_reversed, .. }, pairs) in sorts {
-        let first = pairs[0];
+        let (_, first) = pairs[0];
         let forms = shape(first).map(|shape| &shape.form);
         let length = contact::length_of_place(dimension);
         let places = length * Form::places(forms[0], forms[1]).unwrap_or(0);
         let mut table = Vec::new();
-        for pair in &pairs {
+        for (_, pair) in &pairs {
             let bodies = shape(pair).map(|shape| shape.body);
             let (forms, relative) = (shape(pair).map(|shape| &shape.form), twists[bodies[1]] - twists[bodies[0]]);
             table.extend(numbers(|see| {
@@ -102,10 +104,10 @@ pub(super) fn contacts<S: Scalar>(
                 }
             });
         });
-        for (pair, places) in pairs.iter().zip(results.chunks(places.max(1))) {
+        for ((index, pair), places) in pairs.iter().zip(results.chunks(places.max(1))) {
             let [one, other] = shape(pair).map(|shape| shape.body);
             let rows = places.chunks(length).flat_map(|place| Contact::row_of(pair, place)).collect();
-            found.push(Found { bodies: if is_reversed { [other, one] } else { [one, other] }, dimension, rows });
+            found.push(Found { pair: *index, bodies: if is_reversed { [other, one] } else { [one, other] }, dimension, rows });
         }
     }
     found

@@ -1,16 +1,17 @@
-//! Accelerations with constraints: limits, dry friction and contacts.
+//! Accelerations with constraints: limits, dry friction and contacts; how exact they are, and the
+//! forces of contacts.
 
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{ACT, CTRL, Drive, H, Start, Steps, WARM, free};
+use super::{ACT, CTRL, Drive, FOUND, H, Start, Steps, WARM, free};
 use crate::Scalar;
 use crate::algorithm::registry::{Group, Inputs, Needs};
 use crate::algorithm::{
-    Argument, Dim, Function, FunctionId, Variant, Workspace, always, articulated_body_with_wrenches, factorization,
+    Argument, Dim, Function, FunctionId, Port, Variant, Workspace, always, articulated_body_with_wrenches, factorization,
     forward_dynamics_with_wrenches, nothing, untied,
 };
-use crate::constraint::{Smooth, constrained};
+use crate::constraint::{CONTACT, Certificate, Smooth, certified, constrained, contact_forces, searched};
 use crate::model::Model;
 use core::cell::RefCell;
 
@@ -69,6 +70,111 @@ impl<S: Scalar> Steps<S> {
         ],
         unsolved: None,
     };
+
+    pub(super) const constrained_search: Function<S> = Function {
+        name: "constrained_search",
+        summary: "the search of constrained_acceleration: what it finds, no less than ‖a − optimum‖_M, ‖a₀‖_M, and its steps",
+        source: "Boyd & Vandenberghe, Convex Optimization, 2004, §9.1.2",
+        gives: &[],
+        outputs: &[
+            Port::new("found", &[Dim::Nv], "rad/s²|m/s², `warm_next` of a step"),
+            ERROR,
+            SIZE,
+            Port::new("steps", &[], "1, steps of Newton's method"),
+        ],
+        unit: "",
+        ways: &[
+            Variant {
+                name: "ABA",
+                applies: untied,
+                least: nothing,
+                run: &|model, ws, inputs, out| search(model, ws, inputs, articulated_body_with_wrenches, out),
+            },
+            Variant {
+                name: "LTDL",
+                applies: always,
+                least: factorization,
+                run: &|model, ws, inputs, out| search(model, ws, inputs, forward_dynamics_with_wrenches, out),
+            },
+        ],
+        ..Self::constrained_acceleration
+    };
+
+    pub(super) const constrained_error: Function<S> = Function {
+        name: "constrained_error",
+        summary: "how far any acceleration is from constrained_acceleration: no less than ‖a − optimum‖_M, and ‖a₀‖_M",
+        source: "Boyd & Vandenberghe, Convex Optimization, 2004, §9.1.2",
+        takes: &[Argument::Q, Argument::V, ACT, CTRL, FOUND],
+        gives: &[],
+        outputs: &[ERROR, SIZE],
+        unit: "",
+        ways: &[
+            Variant {
+                name: "ABA",
+                applies: untied,
+                least: nothing,
+                run: &|model, ws, inputs, out| certify(model, ws, inputs, articulated_body_with_wrenches, out),
+            },
+            Variant {
+                name: "LTDL",
+                applies: always,
+                least: factorization,
+                run: &|model, ws, inputs, out| certify(model, ws, inputs, forward_dynamics_with_wrenches, out),
+            },
+        ],
+        ..Self::constrained_acceleration
+    };
+
+    pub(super) const contact_forces: Function<S> = Function {
+        name: "contact_forces",
+        summary: "for each place of contact 1, its point, normal, force and moment in axes of the world; 0 where nothing touches",
+        source: "MuJoCo documentation, Computation: constraint model",
+        takes: &[Argument::Q, Argument::V, FOUND],
+        gives: &[Dim::Contacts, Dim::Of(CONTACT)],
+        unit: "1, m, 1, N, N·m",
+        needs: Needs::Nothing,
+        contains: &[],
+        ways: &[Variant {
+            name: "direct",
+            applies: always,
+            least: nothing,
+            run: &|model, ws, inputs, out| {
+                let [q, v, found] = [Argument::Q, Argument::V, FOUND].map(|argument| inputs.get(argument));
+                contact_forces(model, ws, (q, v), found, out);
+            },
+        }],
+        ..Self::constrained_acceleration
+    };
+}
+
+const ERROR: Port = Port::new("error", &[], "√kg·m/s², no less than ‖found − optimum‖_M");
+const SIZE: Port = Port::new("size", &[], "√kg·m/s², ‖a₀‖_M of the acceleration without constraints");
+
+/// Calls `solve` with the smooth motion, whose acceleration is that of origins.
+fn with_smooth<S: Scalar, T>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    inputs: &Inputs<'_, S>,
+    (accelerate, warm): (super::Accelerate<S>, &[S]),
+    solve: impl FnOnce(&Model<S>, &mut Workspace<S>, &Smooth<'_, S>) -> T,
+) -> T {
+    let [q, v, act, ctrl] = [Argument::Q, Argument::V, ACT, CTRL].map(|argument| inputs.get(argument));
+    let start = Start { model, q, v, act, drive: Drive::Controls(ctrl), h: S::zero(), accelerate, warm: None };
+    let mut a = vec![S::zero(); model.nv];
+    start.acceleration(ws, (q, v, act), &mut a);
+    free::of_origins(model, v, &mut a);
+    solve(model, ws, &Smooth { q, v, a: &a, warm })
+}
+
+fn search<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, inputs: &Inputs<'_, S>, accelerate: super::Accelerate<S>, out: &mut [S]) {
+    let (found, Certificate { error, size }, steps) = with_smooth(model, ws, inputs, (accelerate, inputs.get(WARM)), searched);
+    out[..model.nv].copy_from_slice(&found);
+    out[model.nv..].copy_from_slice(&[error, size, steps]);
+}
+
+fn certify<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, inputs: &Inputs<'_, S>, accelerate: super::Accelerate<S>, out: &mut [S]) {
+    let Certificate { error, size } = with_smooth(model, ws, inputs, (accelerate, inputs.get(FOUND)), certified);
+    out.copy_from_slice(&[error, size]);
 }
 
 /// Activations are those at the state, also of actuators whose force has the next one in a step.

@@ -45,6 +45,9 @@ pub const CTRL: Argument = Argument::new(&Port::new("ctrl", &[Dim::Controls], "c
 pub const WARM: Argument =
     Argument::new(&Port::new("warm", &[Dim::Nv], "rad/s²|m/s², where the search begins: `warm_next` of the last step, or 0"));
 
+/// An acceleration with constraints that was found.
+pub const FOUND: Argument = Argument::new(&Port::new("found", &[Dim::Nv], "rad/s²|m/s², `warm_next` of a step from this state"));
+
 const TAKES: &[Argument] = &[Argument::Q, Argument::V, Argument::Tau, H];
 const GIVES: &[Port] = &[Q_NEXT, V_NEXT];
 const ACTUATED_TAKES: &[Argument] = &[Argument::Q, Argument::V, ACT, CTRL, H];
@@ -171,7 +174,7 @@ fn run<S: Scalar>(
 }
 
 macro_rules! steps {
-    ($list:ident, $group:ident, $takes:ident, $gives:ident, [$($first:ident)?];
+    ($list:ident, $group:ident, $takes:ident, $gives:ident, [$($first:ident)*];
      $($name:ident: $method:path, $applies:path, [$($contains:ident),*], $summary:literal, $source:literal;)*) => {
         #[allow(non_upper_case_globals)]
         impl<S: Scalar> Steps<S> {
@@ -207,7 +210,7 @@ macro_rules! steps {
                 unsolved: None,
             };)*
 
-            const $list: &'static [Function<S>] = &[$(Self::$first,)? $(Self::$name),*];
+            const $list: &'static [Function<S>] = &[$(Self::$first,)* $(Self::$name),*];
         }
     };
 }
@@ -262,7 +265,7 @@ steps! { OF_ACTUATORS, Actuators, ACTUATED_TAKES, ACTUATED_GIVES, [actuator_torq
         "MuJoCo documentation, Actuation model; Numerical integration";
 }
 
-steps! { OF_CONSTRAINTS, Constraints, CONSTRAINED_TAKES, CONSTRAINED_GIVES, [constrained_acceleration];
+steps! { OF_CONSTRAINTS, Constraints, CONSTRAINED_TAKES, CONSTRAINED_GIVES, [constrained_acceleration constrained_search constrained_error contact_forces];
     constrained_step_semi_implicit_euler: euler::semi_implicit, untied, [forward_dynamics_with_wrenches],
         "actuated_step_semi_implicit_euler with limits, dry friction and contacts",
         "MuJoCo documentation, Computation: constraint model";

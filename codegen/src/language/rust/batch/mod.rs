@@ -93,6 +93,9 @@ impl Variant {
         // Functions of the robot could have the names of the lanes' functions: only its constants
         // are imported.
         let mut more = if functions.iter().any(|f| f.function.is_of_actuators()) { ", NA, NU".to_owned() } else { String::new() };
+        if functions.iter().any(|f| f.function.is_of_contacts()) {
+            more += ", CONTACTS";
+        }
         if functions.iter().any(|f| f.inputs().iter().any(|a| a.is_parameters)) {
             more += ", PARAMETERS";
         }

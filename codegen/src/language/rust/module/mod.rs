@@ -11,6 +11,7 @@ use std::fmt::Write;
 
 use articulated_core::actuator::Actuators;
 use articulated_core::algorithm::{Dim, neutral};
+use articulated_core::constraint::Constraints;
 use articulated_core::description::Limit;
 use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
 
@@ -37,6 +38,9 @@ pub(crate) fn module(module: &Module, rust: &RustOptions) -> String {
     if has_actuators {
         of_actuators(&mut text.public, model.actuators());
     }
+    if functions.iter().any(Function::is_of_contacts) {
+        of_contacts(&mut text.public, model.constraints());
+    }
     indices(&mut text.public, model, &Names::of(model, request));
     inputs(&mut text.public, parameters);
     let (forbid_unsafe, level) = (rust.forbid_unsafe, request.options.level);
@@ -62,6 +66,9 @@ pub(crate) fn module(module: &Module, rust: &RustOptions) -> String {
     out += &warnings::warnings(warnings);
     out.push('\n');
     let mut more = if has_actuators { ", NA, NU".to_owned() } else { String::new() };
+    if functions.iter().any(Function::is_of_contacts) {
+        more += ", CONTACTS";
+    }
     if !parameters.is_empty() {
         more += ", PARAMETERS";
     }
@@ -141,6 +148,16 @@ fn of_actuators(out: &mut String, actuators: &Actuators) {
         let values: Vec<String> = laws.iter().map(|law| literal(law.control_range.map_or(none, |range| range[side]))).collect();
         constant(out, doc, &format!("{NUMBERS}\npub const {name}: [f64; NU] = [{}];", values.join(", ")));
     }
+}
+
+/// The number of places of contact, and their shapes.
+fn of_contacts(out: &mut String, constraints: &Constraints) {
+    let _ = writeln!(out, "/// Number of places where shapes may touch.\npub const CONTACTS: usize = {};", constraints.contacts());
+    let names: Vec<[&str; 2]> = constraints
+        .pair_of_contacts()
+        .map(|pair| constraints.pairs[pair].shapes.map(|shape| constraints.shapes[shape].name.as_str()))
+        .collect();
+    constant(out, "Names of the two shapes of each such place.", &format!("pub const CONTACT_SHAPES: [[&str; 2]; CONTACTS] = {names:?};"));
 }
 
 /// A constant, which stays one line however long it is.
