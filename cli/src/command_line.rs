@@ -116,14 +116,19 @@ pub(crate) enum Command {
 }
 
 fn overview() -> String {
-    let robots: String = articulated_models::ROBOTS.iter().map(|r| format!("  {:16} {}\n", r.name, r.summary)).collect();
+    let robots: String =
+        articulated_models::ROBOTS.iter().chain(articulated_models::MJCF).map(|r| format!("  {:18} {}\n", r.name, r.summary)).collect();
     let group = |g: Group| format!("  {}: {}\n", g.name(), g.title());
     let one = |name: &'static str| function::<f64>(name).map(|f| format!("    {name:42} {}\n", f.summary)).unwrap_or_default();
     let functions: String = Group::ALL.into_iter().map(|g| group(g) + &g.functions().map(one).collect::<String>()).collect();
     let step = |f: &Function<f64>| format!("    {:42} {}\n", f.name, f.summary);
     let beside = Group::BESIDE.into_iter().map(|g| group(g) + &of_group(g).iter().map(step).collect::<String>());
     let functions = functions + &beside.collect::<String>();
-    let scenes: String = articulated_models::SCENES.iter().map(|s| format!("  {:16} {}\n", s.name, s.summary())).collect();
+    let scenes: String = articulated_models::SCENES
+        .iter()
+        .chain(articulated_models::LAW_SCENES)
+        .map(|s| format!("  {:18} {}\n", s.name, s.summary()))
+        .collect();
     let functions = format!("Functions, in groups whose names stand for all of them:\n{functions}");
     format!("Bundled robots:\n{robots}\nBundled scenes:\n{scenes}\n{functions}\n{STATUSES}")
 }

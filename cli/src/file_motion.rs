@@ -10,11 +10,10 @@ use articulated_scene::RobotInWorld;
 
 use crate::console;
 use crate::failure::Failure;
+use crate::robot_scene::HOME;
 
 /// The step of a file that has none, s.
 const STEP: f64 = 1e-3;
-/// The keyframe with which a motion starts, if the file has it.
-const HOME: &str = "home";
 
 /// Where a motion starts.
 pub(crate) struct Start {
@@ -49,7 +48,8 @@ impl Start {
             robot.put(&keyframe.v, true, &mut state.v);
         }
         if let Some(keyframe) = found {
-            put_controls(model.actuators(), keyframe, &mut state, &mut ctrl);
+            ctrl.iter_mut().zip(&keyframe.control).for_each(|(u, value)| *u = *value);
+            put_activations(model.actuators(), keyframe, &mut state);
         }
         let controls = if ctrl.is_empty() { "" } else { ", controls of 0" };
         let source = match found {
@@ -61,8 +61,8 @@ impl Start {
     }
 }
 
-fn put_controls(actuators: &Actuators, keyframe: &Keyframe, state: &mut State, ctrl: &mut [f64]) {
-    ctrl.iter_mut().zip(&keyframe.control).for_each(|(u, value)| *u = *value);
+/// Writes the activations of a keyframe into a state.
+pub(crate) fn put_activations(actuators: &Actuators, keyframe: &Keyframe, state: &mut State) {
     let own = actuators.laws.iter().zip(&keyframe.activation).filter(|(law, _)| law.activation.is_some());
     state.act.iter_mut().zip(own).for_each(|(w, (_, value))| *w = *value);
 }

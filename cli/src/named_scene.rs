@@ -81,11 +81,12 @@ fn ends_with(path: &Path, ending: &str) -> bool {
 
 /// The robots that scenes may call by name.
 fn robots() -> Vec<Bundled<'static>> {
-    articulated_models::ROBOTS.iter().map(|robot| Bundled { name: robot.name, document: robot.urdf, base: robot.base }).collect()
+    let all = articulated_models::ROBOTS.iter().chain(articulated_models::MJCF);
+    all.map(|robot| Bundled { name: robot.name, document: robot.urdf, base: robot.base }).collect()
 }
 
 fn unknown(name: &str) -> Failure {
-    let names = || articulated_models::SCENES.iter().map(|s| s.name);
+    let names = || articulated_models::SCENES.iter().chain(articulated_models::LAW_SCENES).map(|s| s.name);
     let bundled = || nearest(name.strip_suffix(".toml").unwrap_or(name), names());
     let near = nearest_file(name.as_ref()).or_else(bundled).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
     let robot = if articulated_models::robot(name).is_some() { "; that is a robot, and a scene says what to do with it" } else { "" };

@@ -48,7 +48,7 @@ impl Robot {
         if named_scene::is_scene(name) {
             return Self::of_scene(name, arguments);
         }
-        let scenes: Vec<&str> = articulated_models::SCENES.iter().map(|scene| scene.name).collect();
+        let scenes: Vec<&str> = articulated_models::SCENES.iter().chain(articulated_models::LAW_SCENES).map(|scene| scene.name).collect();
         let (file, document) = document(name, &scenes)?;
         let bundled = name.to_str().and_then(articulated_models::robot);
         let base = bundled.map_or(Base::Fixed, |b| b.base);
@@ -259,7 +259,7 @@ fn included(file: &str, document: &[u8], robot: &RobotOptions) -> Included {
 /// or a file. `scenes` are other accepted names.
 fn document(path: &Path, scenes: &[&str]) -> Result<(String, Vec<u8>), Failure> {
     match path.to_str().and_then(articulated_models::robot) {
-        Some(bundled) => Ok((format!("{}.urdf", bundled.name), bundled.urdf.as_bytes().to_vec())),
+        Some(bundled) => Ok((bundled.file(), bundled.urdf.as_bytes().to_vec())),
         None if is_standard_input(path) => Ok(("<stdin>".to_owned(), read_file(path, scenes)?)),
         None => Ok((path.display().to_string(), read_file(path, scenes)?)),
     }

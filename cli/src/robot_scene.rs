@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use articulated_core::description::Joint;
 use articulated_core::model::GRAVITY;
+use articulated_formats::world::Touching;
 use articulated_formats::{Environment, LeaveOut, Options, Reading, included, read_file, read_with};
 use articulated_scene::{folder_of, smooth_in_file};
 
@@ -17,10 +18,24 @@ const END: f64 = 5.0;
 /// A scene, as TOML, with the smooth forces of the file. Its comments list the other forces.
 /// Errors: those of the file.
 pub(crate) fn text(path: &Path, leave_out: &[LeaveOut]) -> Result<String, Failure> {
+    Ok(written(path, &read(path, leave_out)?, leave_out, false))
+}
+
+/// The scene of the motion as `simulate` steps it: with constraints, if the file has some.
+pub(crate) fn printed(path: &Path, leave_out: &[LeaveOut]) -> Result<String, Failure> {
     let reading = read(path, leave_out)?;
+    let has_law = reading.world.touching.as_ref().is_some_and(Touching::has_some);
+    Ok(written(path, &reading, leave_out, has_law))
+}
+
+/// The keyframe with which a motion starts, if the file has it.
+pub(crate) const HOME: &str = "home";
+
+fn written(path: &Path, reading: &Reading, leave_out: &[LeaveOut], has_law: bool) -> String {
     let (joints, world) = (&reading.description.joints, &reading.world);
     let name = quoted(&path.file_name().unwrap_or(path.as_os_str()).to_string_lossy());
-    let mut out = format!("# The smooth motion of {name}.\nfile = {name}\n");
+    let what = if has_law { "motion" } else { "smooth motion" };
+    let mut out = format!("# The {what} of {name}.\nfile = {name}\n");
     if !leave_out.is_empty() {
         let kinds: Vec<String> = leave_out.iter().map(|kind| quoted(kind.name())).collect();
         let _ = writeln!(out, "leave_out = [{}]", kinds.join(", "));
@@ -29,35 +44,52 @@ pub(crate) fn text(path: &Path, leave_out: &[LeaveOut]) -> Result<String, Failur
     for row in smooth_in_file(joints, world) {
         let _ = writeln!(out, "{} = \"file\"", row.name);
     }
-    for (line, what, has) in OTHERS {
+    for (line, what, has) in OTHERS.into_iter().filter(|_| !has_law) {
         if joints.iter().any(has) {
             let _ = writeln!(out, "# {line}  # {what}");
         }
     }
-    if reading.description.links.iter().any(|link| !link.collision.is_empty()) {
+    if !has_law && reading.description.links.iter().any(|link| !link.collision.is_empty()) {
         let (plane, ground) =
             if world.planes.is_empty() { ("", "the ground z = 0") } else { (", plane = \"file\"", "the planes of the file") };
-        let Resting { stiffness, damping_time, on } = Resting::of(&reading);
+        let Resting { stiffness, damping_time, on } = Resting::of(reading);
         let contact =
             format!("from = \"collision\"{plane}, stiffness = {stiffness:.1e}, damping_time = {damping_time:.1e}, friction = 0.8");
         let _ = writeln!(out, "# contact = {{ \"*\" = {{ {contact} }} }}  # against {ground}; {on}");
     }
+    let home = world.keyframes.iter().find(|keyframe| has_law && keyframe.name == HOME);
     let keyframes: Vec<String> = world.keyframes.iter().map(|keyframe| quoted(&keyframe.name)).collect();
     if !keyframes.is_empty() {
-        let _ = writeln!(out, "\n[initial]\n# keyframe = {}", keyframes.join("  # or "));
+        match home {
+            Some(home) => {
+                let others: Vec<String> = keyframes.iter().filter(|name| **name != quoted(&home.name)).cloned().collect();
+                let others = if others.is_empty() { String::new() } else { format!("  # or {}", others.join(", ")) };
+                let _ = writeln!(out, "\n[initial]\nkeyframe = {}{others}", quoted(&home.name));
+            }
+            None => {
+                let _ = writeln!(out, "\n[initial]\n# keyframe = {}", keyframes.join("  # or "));
+            }
+        }
     }
     if !world.actuators.is_empty() || !world.passive.is_empty() {
         out += "\n[control]\nkind = \"actuators\"\n";
+        if let Some(home) = home {
+            let _ = writeln!(out, "keyframe = {}", quoted(&home.name));
+        }
         for actuator in &world.actuators {
             let range = actuator.control_range.map(|[lower, upper]| format!("  # {lower:?} to {upper:?}")).unwrap_or_default();
-            let _ = writeln!(out, "ctrl.{} = 0.0{range}", quoted(&actuator.name));
+            // The keyframe has its own.
+            let mark = if home.is_some() { "# " } else { "" };
+            let _ = writeln!(out, "{mark}ctrl.{} = 0.0{range}", quoted(&actuator.name));
         }
     }
     let _ = writeln!(out, "\n[simulation]\nend = {END:?}");
-    if let Some(step) = world.step {
+    if has_law {
+        out += "law = \"mujoco\"\nstep = \"file\"\n";
+    } else if let Some(step) = world.step {
         let _ = writeln!(out, "# integrator = \"semi_implicit_euler\"\n# step = \"file\"  # {step:?} s");
     }
-    Ok(out)
+    out
 }
 
 /// Parameters of contacts on which a robot rests: they sink in by [`SINKS`] and are damped

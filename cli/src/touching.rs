@@ -24,8 +24,8 @@ pub(crate) struct Contact {
 /// What constraints do in a state.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Touching {
-    /// No less than the distance of the acceleration from the optimum, over the acceleration without
-    /// constraints, both in the norm of the mass matrix.
+    /// No less than the distance of the acceleration from the optimum, over the acceleration
+    /// without constraints, both in the norm of the mass matrix.
     pub(crate) relative_error: f64,
     /// Steps of Newton's method.
     pub(crate) search_steps: u32,

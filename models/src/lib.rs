@@ -1,5 +1,6 @@
-//! The bundled robots: eleven URDF files, written for this project from published figures, and the
-//! bundled scenes. The crate's README names their sources and their purpose.
+//! The bundled robots: eleven URDF files, written for this project from published figures, two MJCF
+//! files with contacts, and the bundled scenes. The crate's README names their sources and their
+//! purpose.
 //!
 //! Two robots are also generated code: [`quadruped`] by the macro, [`panda_like`] by the build
 //! script. A user's crate generates any of them in the same few lines.
@@ -17,9 +18,9 @@ use articulated_core::description::Base;
 /// A robot that comes with the crate.
 #[derive(Clone, Copy, Debug)]
 pub struct Bundled {
-    /// Its name on the command line; the file is `<name>.urdf`.
+    /// Its name on the command line; the file is [`Bundled::file`].
     pub name: &'static str,
-    /// The text of the URDF.
+    /// The text of the file: URDF, or MJCF of the robots of [`MJCF`].
     pub urdf: &'static str,
     /// The base it is meant to be used with.
     pub base: Base,
@@ -27,19 +28,28 @@ pub struct Bundled {
     pub summary: &'static str,
 }
 
+impl Bundled {
+    /// Name of its file in errors.
+    pub fn file(&self) -> String {
+        let ending = if MJCF.iter().any(|own| own.name == self.name) { "xml" } else { "urdf" };
+        format!("{}.{ending}", self.name)
+    }
+}
+
 macro_rules! robots {
-    ($($name:literal, $base:ident, $summary:literal;)*) => {
+    ($folder:literal, $ending:literal; $($name:literal, $base:ident, $summary:literal;)*) => {
         &[$(Bundled {
             name: $name,
-            urdf: include_str!(concat!("../urdf/", $name, ".urdf")),
+            urdf: include_str!(concat!("../", $folder, "/", $name, ".", $ending)),
             base: Base::$base,
             summary: $summary,
         }),*]
     };
 }
 
-/// All robots, from small to large.
+/// Robots of URDF files, from small to large.
 pub const ROBOTS: &[Bundled] = robots! {
+    "urdf", "urdf";
     "simple_pendulum", Fixed, "one revolute joint; closed form";
     "double_pendulum", Fixed, "two parallel axes; closed form";
     "cart_pole", Fixed, "a cart on a rail and a pole on the cart; closed form";
@@ -53,13 +63,21 @@ pub const ROBOTS: &[Bundled] = robots! {
     "t_handle", Floating, "a free rigid body with three different moments; closed form";
 };
 
+/// Robots of MJCF files, with a floor, actuators and keyframes: for functions with constraints, and
+/// for scenes with a law.
+pub const MJCF: &[Bundled] = robots! {
+    "mjcf", "xml";
+    "landing_quadruped", Fixed, "MJCF: four legs of three joints on a floor, position servos";
+    "standing_humanoid", Fixed, "MJCF: 15 joints on flat feet and a floor, position servos";
+};
+
 /// The robot called `name`.
 pub fn robot(name: &str) -> Option<&'static Bundled> {
-    ROBOTS.iter().find(|r| r.name == name)
+    ROBOTS.iter().chain(MJCF).find(|r| r.name == name)
 }
 
 /// A scene that comes with the crate: TOML, as the crate `articulated-scene` reads it. The robot
-/// that it names is among [`ROBOTS`].
+/// that it names is among [`ROBOTS`] or [`MJCF`].
 #[derive(Clone, Copy, Debug)]
 pub struct BundledScene {
     /// Its name on the command line; the file is `<name>.toml`.
@@ -87,7 +105,7 @@ macro_rules! scenes {
     };
 }
 
-/// All scenes, from small to large.
+/// Scenes that an integrator steps, from small to large.
 pub const SCENES: &[BundledScene] = scenes! {
     "pendulum"
     "double_pendulum"
@@ -102,9 +120,15 @@ pub const SCENES: &[BundledScene] = scenes! {
     "humanoid_float"
 };
 
+/// Scenes of [`MJCF`] robots, with contacts by MuJoCo's law.
+pub const LAW_SCENES: &[BundledScene] = scenes! {
+    "quadruped_lands"
+    "humanoid_stands"
+};
+
 /// The scene called `name`.
 pub fn scene(name: &str) -> Option<&'static BundledScene> {
-    SCENES.iter().find(|s| s.name == name)
+    SCENES.iter().chain(LAW_SCENES).find(|s| s.name == name)
 }
 
 /// The seven-axis arm, fixed base, written out by this crate's build script.

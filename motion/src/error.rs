@@ -32,6 +32,8 @@ pub enum Fault {
     Scene(Diagnostic),
     /// The scene has no `[simulation]`, and so no end time.
     NoSimulation,
+    /// The scene has a law of constraints, whose steps are whole: no integrator takes them.
+    Law,
     /// A setting that cannot be used.
     Setting(SettingError),
     /// A smoothing speed of friction or contact that the tolerance of velocities does not resolve.
@@ -187,6 +189,9 @@ impl fmt::Display for Fault {
         match self {
             Self::Scene(error) => f.write_str(&error.message()),
             Self::NoSimulation => f.write_str("simulation: found nothing, expected [simulation] with `end`, s"),
+            Self::Law => f.write_str(
+                "simulation.law: found \"mujoco\", expected no law: `articulated simulate`, Python's `simulate` and functions of the group `constraints` step by it",
+            ),
             Self::Setting(error) => error.fmt(f),
             Self::Speed { key, found, expected, atol } => write!(
                 f,

@@ -83,6 +83,9 @@ impl Session {
         R::Workspace: 'a,
     {
         let file = &self.scene.file;
+        if self.scene.law().is_some() {
+            return Err(MotionErrors::one(file, Fault::Law));
+        }
         let mut faults = self.faults_of(&settings);
         faults.extend(self.shape_mismatches(robot, frames));
         faults.extend(self.missing_functions(robot, settings.integrator));

@@ -350,6 +350,20 @@ class Robot(_Functions):
         method: str = "implicit_velocity",
         threads: Optional[int] = None,
     ) -> ActuatedRolloutGradient: ...
+    def constrained_rollout_gradient(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        ctrl: ArrayLike,
+        h: float,
+        *,
+        act: Optional[ArrayLike] = None,
+        weights_q: Optional[ArrayLike] = None,
+        weights_v: Optional[ArrayLike] = None,
+        weights_act: Optional[ArrayLike] = None,
+        method: str = "implicit_damping",
+        threads: Optional[int] = None,
+    ) -> ActuatedRolloutGradient: ...
     def mujoco_state(self, q: ArrayLike, v: ArrayLike) -> MujocoState: ...
     def state_of_mujoco(self, qpos: ArrayLike, qvel: ArrayLike) -> State: ...
     def wheel(

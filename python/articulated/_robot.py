@@ -483,6 +483,27 @@ class Robot(_native.Robot):
         weights = {"weights_q": weights_q, "weights_v": weights_v, "weights_act": weights_act}
         return _rollout.gradient(self, q, v, act, ctrl, h, weights, method, threads, _rollout.ACTUATED)
 
+    def constrained_rollout_gradient(
+        self, q, v, ctrl, h, *, act=None, weights_q=None, weights_v=None, weights_act=None, method="implicit_damping", threads=None
+    ):
+        """The gradient of a weighted sum of all states of a ``constrained_rollout``, from the last step to the first.
+
+        What touches in a step stays as it is: where a contact begins or ends, the gradient is that of one side.
+
+        Args:
+            q, v, ctrl, h, act, method, threads: As for ``constrained_rollout``.
+            weights_q, weights_v, weights_act: As for ``actuated_rollout_gradient``.
+
+        Returns:
+            ActuatedRolloutGradient: by the start q (in the tangent space) and v, [..., nv], by act, [..., na], and
+            by ctrl, [..., steps, nu].
+
+        Raises:
+            RobotError, ValueError: As ``constrained_rollout``.
+        """
+        weights = {"weights_q": weights_q, "weights_v": weights_v, "weights_act": weights_act}
+        return _rollout.gradient(self, q, v, act, ctrl, h, weights, method, threads, _rollout.CONSTRAINED)
+
     def mujoco_state(self, q, v):
         """The state in MuJoCo's conventions: quaternions (w, x, y, z), and rates of free joints as the velocity in axes of
         the parent, then ω in axes of the body. Joints that follow others, and locked ones, have no coordinates here.
@@ -803,7 +824,8 @@ def bundled(name, base=None, gravity=None, frames=None, wrenches_in="body"):
     if not isinstance(name, str) or name not in robots:
         raise _unknown("name", name, robots, "one of " + ", ".join(robots))
     urdf, own = robots[name]
-    return _robot(f"{name}.urdf", urdf.encode(), own if base is None else base, gravity, frames, wrenches_in, False)
+    ending = "xml" if "<mujoco" in urdf else "urdf"
+    return _robot(f"{name}.{ending}", urdf.encode(), own if base is None else base, gravity, frames, wrenches_in, False)
 
 
 def bundled_names():

@@ -27,7 +27,7 @@ class Steps:
     """A method of steps of one kind."""
 
     def __init__(self, robot, method, kind):
-        self.robot, self.actuated = robot, kind != STEP
+        self.robot, self.actuated, self.constrained = robot, kind != STEP, kind == CONSTRAINED
         self.name = method if str(method).startswith(kind) else f"{kind}{method}"
         if kind == CONSTRAINED and robot not in _CHECKED:
             for warning in robot._check_constraints():
@@ -123,13 +123,15 @@ def gradient(robot, q, v, act, held, h, weights, method, threads, kind):
         except ValueError:
             raise ValueError(f"{label}: found shape {array.shape}, expected {(*batch, steps, size)}") from None
     pull, by_held = method.pull(), np.empty_like(held)
+    # Where the search of an acceleration begins, and the weights of where it ended: neither counts.
+    search = [np.zeros((count, robot.nv))] if method.constrained else []
     by = [np.zeros((count, own.shape[-1])) for own in given]
     # From the last step to the first; by q in the tangent space at the state before the step.
     for k in reversed(range(steps)):
         before = (q, v, act) if k == 0 else [end[:, k - 1] for end in ends]
         after = [own + one[:, k] for own, one in zip(by, given)]
         if method.actuated:
-            *by, by_held[:, k] = pull(*before, held[:, k], h, *after, threads=threads)
+            *by, by_held[:, k] = pull(*before, held[:, k], *search, h, *after, *search, threads=threads)
         else:
             *by, by_held[:, k] = pull(*before[:2], held[:, k], h, *after, threads=threads)
     parts = [*by, by_held]

@@ -61,10 +61,11 @@ fn table(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     Ok(rows)
 }
 
-/// The bundled robots: name, text of the URDF, base, summary.
+/// The bundled robots: name, text of the file, base, summary.
 #[pyfunction]
 fn bundled_robots() -> Vec<(&'static str, &'static str, &'static str, &'static str)> {
-    articulated_models::ROBOTS.iter().map(|r| (r.name, r.urdf, robot::name_of(r.base), r.summary)).collect()
+    let all = articulated_models::ROBOTS.iter().chain(articulated_models::MJCF);
+    all.map(|r| (r.name, r.urdf, robot::name_of(r.base), r.summary)).collect()
 }
 
 /// The bytes of a robot's file.

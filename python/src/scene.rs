@@ -15,7 +15,7 @@ const BLOCK: u64 = 1 << 8;
 /// The bundled scenes: name and summary.
 #[pyfunction]
 pub(crate) fn bundled_scenes() -> Vec<(&'static str, &'static str)> {
-    articulated_models::SCENES.iter().map(|scene| (scene.name, scene.summary())).collect()
+    articulated_models::SCENES.iter().chain(articulated_models::LAW_SCENES).map(|scene| (scene.name, scene.summary())).collect()
 }
 
 /// `articulated.RobotError` with the findings of a refusal.

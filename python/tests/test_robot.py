@@ -47,7 +47,7 @@ def test_a_floating_robot():
 
 
 def test_all_bundled_robots():
-    assert len(articulated.bundled_names()) == 11
+    assert len(articulated.bundled_names()) == 13
     for name, summary in articulated.bundled_names().items():
         robot = articulated.bundled(name)
         assert summary and robot.gravity_torque(robot.neutral).shape == (robot.nv,)

@@ -204,3 +204,44 @@ def test_a_ball_comes_to_rest_on_its_floor():
     egg = BALL.replace(b'type="sphere" size="0.1"', b'type="ellipsoid" size="0.1 0.1 0.2"')
     with pytest.raises(articulated.RobotError, match="leave_out"):
         articulated.loads(egg).constrained_rollout(q, np.zeros(6), np.zeros((1, 0)), 0.005)
+
+
+SLIDER = b"""<mujoco><option cone="elliptic"/><worldbody><geom type="plane" size="1 1 1"/>
+  <body pos="0 0 0.1"><joint name="x" type="slide" axis="1 0 0"/><joint name="z" type="slide" axis="0 0 1"/><joint name="turn" axis="0 1 0" armature="0.01"/>
+    <geom size="0.1" mass="1" friction="0.5"/></body></worldbody>
+  <actuator><motor joint="x"/><motor joint="z"/></actuator></mujoco>"""
+
+
+def test_gradients_through_contacts_are_those_of_differences():
+    robot, random, h = articulated.loads(SLIDER, effects="file"), np.random.default_rng(4), 0.002
+    q, v, ctrl = np.array([0.2, -7e-4, 0.0]), np.array([0.3, -0.1, 0.0]), np.column_stack([random.uniform(5, 9, 12), random.uniform(-3, 0, 12)])
+    by_q, by_v = random.normal(size=(2, 12, 3))
+
+    def value(q, v, ctrl):
+        ends = robot.constrained_rollout(q, v, ctrl, h)
+        return (by_q * ends.q).sum() + (by_v * ends.v).sum()
+
+    for method in ("implicit_damping", "rk4_mujoco"):
+        gradient = robot.constrained_rollout_gradient(q, v, ctrl, h, weights_q=by_q, weights_v=by_v, method=method)
+        if method == "rk4_mujoco":
+            assert np.isfinite(gradient.v).all() and np.abs(gradient.ctrl).max() > 0
+            continue
+        for own, given in ((gradient.q, 0), (gradient.v, 1), (gradient.ctrl, 2)):
+            start = [q, v, ctrl]
+            for place in np.ndindex(start[given].shape):
+                ends = []
+                for by in (1e-6, -1e-6):
+                    moved = [one.copy() for one in start]
+                    moved[given][place] += by
+                    ends.append(value(*moved))
+                assert abs((ends[0] - ends[1]) / 2e-6 - own[place]) < 1e-5 * max(1.0, np.abs(own).max()), (given, place)
+
+
+def test_bundled_robots_stand():
+    robot = articulated.bundled("landing_quadruped")
+    assert robot.nv == 18 and len(robot.actuators) == 12
+    scene = articulated.Scene("quadruped_lands")
+    summary = scene.run(end=1.0).summary
+    assert summary["constraints"]["most_contacts"] == 4 and summary["constraints"]["largest_relative_error"] < 1e-10
+    with pytest.raises(articulated.RobotError, match="simulation.law"):
+        scene.run(integrator="dopri5")

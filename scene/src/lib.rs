@@ -72,6 +72,6 @@ pub use robot::{
 pub use scene::{CodeOptions, Places, Robot, Scene};
 pub use series::{Between, Reader, Source, open_table};
 pub use shaft::ShaftRequest;
-pub use simulation::{EventClass, Simulation};
+pub use simulation::{EventClass, Law, Simulation};
 pub use tree::{Entry, Node, Value};
 pub use world::RobotInWorld;

@@ -12,14 +12,14 @@ use articulated_core::precision::Precision;
 use articulated_core::spatial::Reference;
 use articulated_formats::{LeaveOut, SNAP_EXPECTED, can_snap};
 
-use crate::control::{self, Control};
+use crate::control::{self, Control, Drive};
 use crate::document;
 use crate::edits::{self, APPEND, Append, Follower, LOAD, Load, Lock};
 use crate::effects::{self, EffectRequest};
 use crate::impact::{self, Impact};
 use crate::initial::{self, Initial};
 use crate::shaft::ShaftRequest;
-use crate::simulation::{self, Simulation};
+use crate::simulation::{self, Law, Simulation};
 use crate::table::{Cursor, Row};
 use crate::tree::{Node, Value};
 
@@ -250,6 +250,35 @@ impl Scene {
             && let Some(right) = simulation.settings.wrong_period(period)
         {
             spot.clash(log, Plain(period).to_string(), right);
+        }
+        if self.law().is_some() {
+            self.beside_law(&spot, log);
+        }
+    }
+
+    /// The law of limits, dry friction, equations and contacts of the robot's file, if they act.
+    pub fn law(&self) -> Option<Law> {
+        self.simulation.as_ref()?.law.map(|(law, _)| law)
+    }
+
+    /// Reports what does not act in steps by a law.
+    fn beside_law(&self, root: &Cursor<'_>, log: &mut Diagnostics) {
+        const OTHER_LAWS: [EffectId; 3] = [EffectId::friction, EffectId::limit, EffectId::contact];
+        for asked in self.effects.iter().filter(|asked| OTHER_LAWS.contains(&asked.effect) && asked.says.is_some()) {
+            let found = format!("{} beside simulation.law", asked.effect.row().name);
+            log.error((asked.place, &asked.key), Code::Together, found, "one of them: the law has its own");
+        }
+        let expected = "control of kind \"none\" or \"actuators\" with `ctrl`, `keyframe` or a table";
+        if !matches!(self.control.drive, Drive::None | Drive::Actuators(_)) {
+            log.error((self.control.place, "control.kind"), Code::Together, "torques beside simulation.law", expected);
+        }
+        for key in ["period", "without"] {
+            if let Some(spot) = root.get("control").and_then(|control| control.get(key)) {
+                spot.clash(log, format!("{key} beside simulation.law"), expected);
+            }
+        }
+        if let Some(spot) = root.get("impact") {
+            spot.clash(log, "a ball beside simulation.law", "a scene without one of them");
         }
     }
 }

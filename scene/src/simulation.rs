@@ -22,7 +22,23 @@ pub struct Simulation {
     pub names_integrator: bool,
     /// Whether the fixed step is that of the robot's file, and the place of this setting.
     pub file_step: Option<At>,
+    /// The law of limits, dry friction, equations and contacts of the robot's file, if they act, and
+    /// the place of this setting. Steps are then whole, by the method of the file.
+    pub law: Option<(Law, At)>,
 }
+
+/// Laws of what touches and holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// That of MuJoCo.
+    Mujoco,
+}
+
+const LAWS: &[(&str, Law)] = &[("mujoco", Law::Mujoco)];
+
+/// Keys that say nothing of steps by a law.
+const WITHOUT_LAW: [&str; 9] =
+    ["integrator", "rtol", "atol", "min_step", "max_step", "first_step", "events", "event_tolerance", "stiffness"];
 
 /// Kinds of events to detect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -75,10 +91,18 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         },
     },
     Row {
+        name: "law",
+        required: false,
+        value: "`\"mujoco\"`",
+        default: "none: the effects of the scene alone",
+        what: "limits, dry friction, equations and contacts of the robot's file (MJCF) act by this law, in steps by the method of the file; not beside `integrator`, tolerances, `events` and `stiffness`",
+        read: |x, s, log| x.law = s.word(log, LAWS).map(|law| (law, s.at)),
+    },
+    Row {
         name: "step",
         required: false,
         value: "number, s, or `\"file\"`",
-        default: "chosen by the errors; has to be given for `semi_implicit_euler`, `rk4` and `lie_midpoint`",
+        default: "chosen by the errors; that of the robot's file with a `law`; has to be given for `semi_implicit_euler`, `rk4` and `lie_midpoint`",
         what: "length of all steps, above 0, and more than the time's rounding; `\"file\"`: that of the robot's file (MJCF)",
         read: |x, s, log| match &s.node.value {
             Value::Text(word) if word == "file" => x.file_step = Some(s.at),
@@ -196,6 +220,11 @@ fn check(settings: &Settings, spot: &Cursor<'_>, right: &[&str], log: &mut Diagn
             let at = about.find_map(|key| spot.get(key)).map_or(spot.at, |there| there.at);
             let kind = if with.is_empty() { Code::Number } else { Code::Together };
             log.error((at, &format!("{}.{key}", spot.key)), kind, found, expected);
+        }
+    }
+    if spot.get("law").is_some() {
+        for spot in WITHOUT_LAW.into_iter().filter_map(|key| spot.get(key)) {
+            spot.clash(log, format!("{} beside a law", spot.key), "no such key: steps are those of the robot's file");
         }
     }
     if spot.get("step").is_some() {

@@ -123,7 +123,7 @@ def scene_of(path, model, start, control, end):
     """The scene that the command makes of the file, with this start and these controls."""
     import re
 
-    printed = subprocess.run([str(COMMAND), "simulate", str(path), "--print-scene"], capture_output=True, text=True)
+    printed = subprocess.run([str(COMMAND), "simulate", str(path), "--print-scene", "--smooth"], capture_output=True, text=True)
     if printed.returncode:
         raise RuntimeError(printed.stderr)
     text = re.sub(r"^file = .*$", f"file = {json.dumps(str(path))}", printed.stdout, flags=re.MULTILINE)

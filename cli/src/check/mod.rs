@@ -43,7 +43,7 @@ fn examine(robot: &Robot, scene: Option<&Path>, functions: &[String]) -> Report 
         }
     }
     // Joints may be locked in addition to the scene's: its motion is that of the scene alone.
-    match scene.map(crate::simulate::motion::look_over) {
+    match scene.map(crate::simulate::look_over::look_over) {
         Some(Ok(warning)) => warning.into_iter().for_each(|line| report.warn(Diagnostic::from(line).into_warning())),
         Some(Err(failure)) => report.errors.extend(failure.errors),
         None => {}

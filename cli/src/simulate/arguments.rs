@@ -19,7 +19,7 @@ pub(crate) struct SimulateArguments {
     /// The smooth motion that a robot's file describes, without contacts, limits and dry friction:
     /// its method, step and actuators, from its keyframe `home` or its initial state. As MuJoCo's
     /// with constraints off
-    #[arg(long, conflicts_with_all = ["print_scene", "all", "generated", "against", "integrator", "rtol", "atol"])]
+    #[arg(long, conflicts_with_all = ["all", "generated", "against", "integrator", "rtol", "atol"])]
     pub(crate) smooth: bool,
     /// The same with limits, dry friction, equations and contacts of the file, by MuJoCo's law: the
     /// default of an MJCF that has some
@@ -31,7 +31,8 @@ pub(crate) struct SimulateArguments {
     /// Start with this keyframe of the file, and its controls, instead of `home`
     #[arg(long, value_name = "NAME")]
     pub(crate) keyframe: Option<String>,
-    /// Print the scene that a robot's file is simulated as, to begin a scene of your own
+    /// Print the scene that a robot's file is simulated as, to begin a scene of your own; with
+    /// `--smooth` that of an integrator, with effects in place of a law
     #[arg(long, conflicts_with_all = ["all", "output", "mcap", "generated", "against", "end", "integrator", "step", "rtol", "atol", "every"])]
     pub(crate) print_scene: bool,
     /// Instead of one scene, how fast each bundled scene is, by generated and by generic code

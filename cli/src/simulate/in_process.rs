@@ -12,6 +12,7 @@ use articulated_lab::session::{Generic, Session};
 use super::arguments::{self, SimulateArguments};
 use super::files::{FIELDS, Files};
 use super::motion::{self, Motion};
+use super::of_file::OfFile;
 use super::settings;
 use super::summary::Summary;
 use super::table;
@@ -129,13 +130,28 @@ impl Scene {
             let settings = changes.arguments().and_then(|arguments| settings::of(session, &arguments));
             let (settings, initial) = Failure::both(settings, session.start().map_err(Failure::from))?;
             motion::solvable(session)?;
-            let motion = motion::run(session, &initial, &Generic, &settings, &Progress::hidden(), go_on)?;
+            let (mut settings, progress) = (settings, Progress::hidden());
+            let motion = match session.scene.law() {
+                None => motion::run(session, &initial, &Generic, &settings, &progress, go_on)?,
+                Some(_) if changes.choose_steps() => {
+                    let expected = "no integrator and no tolerances: steps are those of the robot's file";
+                    return Err(Failure::input([format!("{}: found simulation.law, expected {expected}", session.scene.file)]));
+                }
+                Some(_) => OfFile::of_scene(session, &initial, &mut settings)?.run(session, &settings, &progress, go_on)?,
+            };
             let summary = Summary::new(session, &motion, &settings, "generic");
             for warning in summary.out_of_balance().iter().chain(&motion.error) {
                 crate::console::warn(&format!("{}: {warning}", session.scene.file));
             }
             Ok(Recorded { session: Arc::clone(session), motion, settings, summary })
         })
+    }
+}
+
+impl Changes {
+    /// Whether they say how steps are chosen.
+    fn choose_steps(&self) -> bool {
+        self.integrator.is_some() || self.rtol.is_some() || self.atol.is_some()
     }
 }
 

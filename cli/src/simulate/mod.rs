@@ -3,9 +3,11 @@
 pub(crate) mod arguments;
 #[cfg_attr(not(feature = "measure"), path = "uncompiled.rs")]
 mod compiled;
+mod constrained;
 mod files;
 pub mod in_process;
 mod label;
+pub(crate) mod look_over;
 mod mcap;
 mod method;
 mod monitor;
@@ -56,7 +58,10 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
                 scene.display()
             )]));
         }
-        let text = robot_scene::text(scene, &[])?;
+        let text = match arguments.smooth {
+            true => robot_scene::text(scene, &arguments.leave_out)?,
+            false => robot_scene::printed(scene, &arguments.leave_out)?,
+        };
         console::report(format, || text.clone(), || crate::json(&PrintedScene { scene: &text }))?;
         return Ok(OK);
     }
@@ -70,7 +75,13 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
         return Err(Failure::usage(format!("{}: {option}: found no file of a robot, expected {expected}", scene.display())));
     }
     let session = named_scene::session_without(scene, &arguments.leave_out)?;
+    let law = session.scene.law();
+    if let (Some(_), Some(option)) = (law, beside_law(arguments)) {
+        let expected = "no such option: its steps are those of the robot's file";
+        return Err(Failure::usage(format!("{}: {option}: found simulation.law in the scene, expected {expected}", scene.display())));
+    }
     let of_file = match of_file {
+        _ if law.is_some() => None,
         Some((constraints, _)) => Some(constraints),
         None => (named_scene::is_robot(scene) && is_of_file(arguments, &session)).then_some(true),
     };
@@ -87,20 +98,26 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     }
     has_room(&session.scene.file, session.model.nv())?;
     let settings = settings::of(&session, arguments);
-    let (mut settings, initial) = Failure::both(settings, session.start().map_err(Failure::from))?;
+    // The start of a file is not that of its scene.
+    let initial = if of_file.is_some() { session.initial_state().map_err(Failure::from) } else { session.start().map_err(Failure::from) };
+    let (mut settings, initial) = Failure::both(settings, initial)?;
     if let Some(file) = &arguments.against {
         return compiled::against(&session, &initial, &settings, file, format);
     }
     motion::solvable(&session)?;
     let keyframe = arguments.keyframe.as_deref();
-    let of_file = of_file.map(|constraints| OfFile::of(&session, constraints, keyframe, arguments.step, &mut settings)).transpose()?;
+    let of_file = match (law, of_file) {
+        (Some(_), _) => Some(OfFile::of_scene(&session, &initial, &mut settings)?),
+        (None, Some(constraints)) => Some(OfFile::of(&session, constraints, keyframe, arguments.step, &mut settings)?),
+        (None, None) => None,
+    };
     let compiler = arguments.generated.then(Compiler::find).transpose()?;
     let size = Size::look_ahead(session.model.shape(), &mut settings, arguments)?;
     let files = arguments.output.as_deref().map(|path| Files::at(path, &arguments.package, &settings, files::OPTIONS)).transpose()?;
     arguments.mcap.as_deref().map_or(Ok(()), |path| output::file("--mcap", path))?;
     let progress = Progress::of_whole(format!("{}: motion", session.name));
     let (mut motion, code) = match (&compiler, &of_file) {
-        (_, Some(of_file)) => (of_file.run(&session, &settings, &progress)?, "generic"),
+        (_, Some(of_file)) => (of_file.run(&session, &settings, &progress, &mut || true)?, "generic"),
         (Some(compiler), None) => (compiler.run(&session, &initial, &settings, &progress)?, "generated"),
         (None, None) => (by_generic_code(&session, &initial, &settings, &progress)?, "generic"),
     };
@@ -136,6 +153,19 @@ fn is_of_file(arguments: &SimulateArguments, session: &Session) -> bool {
     let SimulateArguments { integrator, rtol, atol, generated, against, .. } = arguments;
     let is_asked = integrator.is_none() && rtol.is_none() && atol.is_none() && !generated && against.is_none();
     is_asked && session.world.touching.as_ref().is_some_and(Touching::has_some)
+}
+
+/// The first option that says something else than a scene with a law.
+fn beside_law(arguments: &SimulateArguments) -> Option<&'static str> {
+    let SimulateArguments { integrator, rtol, atol, generated, against, .. } = arguments;
+    let given = [
+        (integrator.is_some(), "--integrator"),
+        (rtol.is_some(), "--rtol"),
+        (atol.is_some(), "--atol"),
+        (*generated, "--generated"),
+        (against.is_some(), "--against"),
+    ];
+    given.into_iter().find_map(|(is_given, option)| is_given.then_some(option))
 }
 
 fn by_generic_code(session: &Session, initial: &InitialState, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {

@@ -1,7 +1,6 @@
 //! A scene's motion as the command runs it: with warnings, progress, and the names that its outputs
 //! need.
 
-use std::path::Path;
 use std::time::Duration;
 
 use articulated::FunctionId;
@@ -9,14 +8,12 @@ use articulated::simulate::{Balance, Counts, Recording as Run, Settings};
 use articulated_lab::session::{Code, Session};
 use articulated_motion::{Creep, Ending, InitialState, Occurrence, Outcome, Slide};
 
+use super::constrained::Constrained;
 use super::method::Method;
 use super::monitor::RunMonitor;
-use super::of_file::Constrained;
 use super::recording::{EventRecord, Recording};
 use crate::console::{self, Progress};
 use crate::failure::Failure;
-use crate::named_scene;
-use crate::robot::has_room;
 
 /// The result.
 pub(super) struct Motion {
@@ -43,32 +40,6 @@ pub(super) struct Motion {
     pub(super) of_file: Option<Method>,
     /// How limits, dry friction and contacts of the file were kept, if it has them.
     pub(super) constraints: Option<Constrained>,
-}
-
-/// The warnings about a scene's motion. Errors: everything that keeps the motion from starting, or
-/// else the error of its first step.
-pub(crate) fn look_over(scene: &Path) -> Result<Vec<String>, Failure> {
-    let session = named_scene::quiet_session(scene)?;
-    let (initial, unavailable) = Failure::both(session.initial_state().map_err(Failure::from), requested_events(&session))?;
-    if session.scene.simulation.is_some() {
-        let mut motion = session.motion(&session.model, &session.frame_names(), session.settings()?)?;
-        if let Some(error) = motion.first_step(&initial)? {
-            return Err(Failure::input([format!("{}: the motion ends with its first step: {error}", session.scene.file)]));
-        }
-    }
-    Ok(session.warnings(&initial).into_iter().chain(unavailable).collect())
-}
-
-/// Requested events that cannot occur. Errors: everything that would keep the motion from starting,
-/// except its initial state and a missing end time, which an option may set.
-fn requested_events(session: &Session) -> Result<Vec<String>, Failure> {
-    if session.scene.simulation.is_none() {
-        return Ok(Vec::new());
-    }
-    has_room(&session.scene.file, session.model.nv())?;
-    let motion = session.settings().and_then(|settings| session.motion(&session.model, &session.frame_names(), settings));
-    let (motion, ()) = Failure::both(motion.map_err(Failure::from), solvable(session))?;
-    Ok(motion.unavailable_events().iter().map(ToString::to_string).collect())
 }
 
 /// Checks that torques determine accelerations: generic code is refused for the same robots as

@@ -5,27 +5,31 @@ use std::time::Instant;
 
 use articulated::simulate::{Balance, Counts, Output, Settings};
 use articulated_core::algorithm::{Function, FunctionError, Workspace, function};
+use articulated_core::control::{Controller, Signal};
 use articulated_core::model::Model;
 use articulated_core::step::{self, CTRL, WARM, rollout};
+use articulated_formats::world::World;
 use articulated_lab::session::Session;
-use articulated_motion::Ending;
-use serde::Serialize;
+use articulated_motion::{Ending, InitialState};
 
+use super::constrained::Constrained;
 use super::method::Method;
 use super::monitor::RunMonitor;
 use super::motion::Motion;
 use super::recording::Recording;
 use crate::console::{self, Progress};
 use crate::failure::Failure;
-use crate::file_motion::{Start, are_computed, step_length, step_of_file};
-use crate::touching::{FOUND, Touching};
+use crate::file_motion::{Start, are_computed, put_activations, step_length, step_of_file};
+use crate::touching::Touching;
 
 /// How a file's motion is stepped.
 pub(super) struct OfFile {
     method: &'static Function<f64>,
     /// s.
     step: f64,
-    start: Start,
+    /// At the start.
+    state: step::State,
+    controls: Signal,
 }
 
 impl OfFile {
@@ -41,22 +45,39 @@ impl OfFile {
         settings: &mut Settings,
     ) -> Result<Self, Failure> {
         let (model, world, file) = (&session.model, &session.world, &session.scene.file);
-        let [plain, actuated] = step_of_file(world.stepping.as_ref());
-        let name = match constraints {
-            true => format!("constrained_{plain}"),
-            false if model.actuators().is_empty() => plain.to_owned(),
-            false => actuated.to_owned(),
-        };
-        let method = step::step(&name).ok_or_else(|| Failure::usage(format!("--constraints: found no step {name}")))?;
+        let method = method_of_file(world, model, constraints)?;
         if constraints {
             are_computed(file, (&session.description, world), model)?;
             articulated_codegen::defined(file, model, &articulated_codegen::massless(model), method)?;
         }
-        let start = Start::of_file(&session.scene.file, world, model, keyframe)?;
+        let Start { state, ctrl, source } = Start::of_file(&session.scene.file, world, model, keyframe)?;
         let step = step_length(step, world);
-        console::note(&format!("steps of {step} s by {name}, starts with {}", start.source));
+        console::note(&format!("steps of {step} s by {}, starts with {source}", method.name));
         settings.step = Some(step);
-        Ok(Self { method, step, start })
+        Ok(Self { method, step, state, controls: Signal::Still(ctrl) })
+    }
+
+    /// The motion of a scene with a law: its state and controls, by the method of the file.
+    ///
+    /// # Errors
+    /// Constraints that are not computed.
+    pub(super) fn of_scene(session: &Session, initial: &InitialState, settings: &mut Settings) -> Result<Self, Failure> {
+        let (model, world, file) = (&session.model, &session.world, &session.scene.file);
+        let method = method_of_file(world, model, true)?;
+        are_computed(file, (&session.description, world), model)?;
+        articulated_codegen::defined(file, model, &articulated_codegen::massless(model), method)?;
+        let mut state = step::State { q: initial.q.clone(), v: initial.v.clone(), ..step::State::neutral(model) };
+        let named = session.scene.initial.keyframe.as_ref().map(|(name, _)| name);
+        if let Some(keyframe) = world.keyframes.iter().find(|keyframe| named == Some(&keyframe.name)) {
+            put_activations(model.actuators(), keyframe, &mut state);
+        }
+        let controls = match &initial.controller {
+            Controller::Actuators { controls, .. } => controls.clone(),
+            _ => Signal::Still(vec![0.0; model.actuators().laws.len()]),
+        };
+        let step = step_length(settings.step, world);
+        settings.step = Some(step);
+        Ok(Self { method, step, state, controls })
     }
 
     fn has_constraints(&self) -> bool {
@@ -68,23 +89,50 @@ impl OfFile {
         Method { name: self.method.name, order: step::order(self.method), step_s: Some(self.step), rtol: 0.0, atol: 0.0 }
     }
 
+    /// The controls at a time: a step holds those at its start.
+    fn controls_at(&self, t: f64) -> Vec<f64> {
+        match &self.controls {
+            Signal::Still(values) => values.clone(),
+            Signal::Moving(series) => {
+                let mut values = vec![0.0; series.rows.first().map_or(0, Vec::len)];
+                series.at(t, &mut values);
+                values
+            }
+        }
+    }
+
     /// Steps to the end, in whole steps. A state that is not finite ends the motion.
-    pub(super) fn run(&self, session: &Session, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
+    pub(super) fn run(
+        &self,
+        session: &Session,
+        settings: &Settings,
+        progress: &Progress,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Motion, Failure> {
         let model = &session.model;
         let length = (settings.end - settings.start) / self.step;
         let needed = (length - ROUNDING).ceil().max(1.0);
         let count = needed.min(settings.max_steps as f64) as usize;
-        let held = if self.method.takes.contains(&CTRL) { self.start.ctrl.clone() } else { vec![0.0; model.nv()] };
+        let torques = vec![0.0; model.nv()];
+        let is_actuated = self.method.takes.contains(&CTRL);
         let constraints = self.has_constraints().then(Constrained::default);
-        let mut own = Own { of_file: self, model, ws: Workspace::new(model), torques: vec![0.0; model.nv()], constraints };
+        let mut own = Own {
+            of_file: self,
+            model,
+            ws: Workspace::new(model),
+            torques: torques.clone(),
+            ctrl: self.controls_at(settings.start),
+            constraints,
+        };
         let mut recording = Recording::of(model);
-        let mut energy = Sums::start(own.energies(&self.start.state)?, self.has_constraints());
-        own.record(settings.start, &self.start.state, &energy, &mut recording)?;
+        let mut energy = Sums::start(own.energies(&self.state)?, self.has_constraints());
+        own.record(settings.start, &self.state, &energy, &mut recording)?;
         let (mut monitor, mut counts) = (RunMonitor::new(session, settings, progress), Counts::default());
-        let (mut last, mut error) = (settings.start, None);
-        let (mut state, clock) = (self.start.state.clone(), Instant::now());
+        let (mut last, mut error, mut is_stopped) = (settings.start, None, false);
+        let (mut state, clock) = (self.state.clone(), Instant::now());
         let mut ws = Workspace::new(model);
         for k in 1..=count {
+            let held = if is_actuated { &own.ctrl } else { &torques };
             rollout(self.method, (model, &mut ws), &mut state, self.step, [held.as_slice()], |_, _| {}).map_err(of_function)?;
             let t = settings.start + k as f64 * self.step;
             (counts.steps, last) = (k as u64, t);
@@ -95,19 +143,28 @@ impl OfFile {
                 ));
                 break;
             }
+            own.ctrl = self.controls_at(t);
             energy.add(own.energies(&state)?, self.step);
             if k == count || is_recorded(&settings.output, settings.start, t, self.step) {
                 own.record(t, &state, &energy, &mut recording)?;
             }
             monitor.look(t, &counts);
+            if !go_on() {
+                is_stopped = true;
+                break;
+            }
         }
-        if error.is_none() && needed > count as f64 {
+        if error.is_none() && !is_stopped && needed > count as f64 {
             let most = settings.max_steps;
             error = Some(format!("{needed:.1e} steps to the end, of which {most} are made: expected longer steps, or an earlier end"));
         }
         counts.evaluations = counts.steps * self.method.contains.len() as u64;
         (counts.largest_step, counts.smallest_step) = (self.step, self.step);
-        let ending = if error.is_some() { Ending::ByError } else { Ending::AtEnd };
+        let ending = match (&error, is_stopped) {
+            (Some(_), _) => Ending::ByError,
+            (None, true) => Ending::ByObserver,
+            (None, false) => Ending::AtEnd,
+        };
         Ok(Motion {
             recording,
             counts,
@@ -124,6 +181,17 @@ impl OfFile {
             constraints: own.constraints,
         })
     }
+}
+
+/// The step that a file requests, with torques, actuators or constraints.
+fn method_of_file(world: &World, model: &Model<f64>, constraints: bool) -> Result<&'static Function<f64>, Failure> {
+    let [plain, actuated] = step_of_file(world.stepping.as_ref());
+    let name = match constraints {
+        true => format!("constrained_{plain}"),
+        false if model.actuators().is_empty() => plain.to_owned(),
+        false => actuated.to_owned(),
+    };
+    step::step(&name).ok_or_else(|| Failure::usage(format!("--constraints: found no step {name}")))
 }
 
 /// Part of a step that a motion may end before its end: times are sums of rounded steps.
@@ -147,41 +215,9 @@ struct Own<'a> {
     ws: Workspace<f64>,
     /// Of actuators, N·m or N.
     torques: Vec<f64>,
+    /// Controls from the present time on.
+    ctrl: Vec<f64>,
     constraints: Option<Constrained>,
-}
-
-/// How limits, dry friction and contacts were kept at the recorded times.
-#[derive(Clone, Debug, Default, Serialize)]
-pub(super) struct Constrained {
-    /// The most contacts at once.
-    pub(super) most_contacts: usize,
-    /// The largest bound of the error of an acceleration, see [`Touching::relative_error`].
-    pub(super) largest_relative_error: f64,
-    /// The most steps of Newton's method.
-    pub(super) most_search_steps: u32,
-    /// The first time at which the search did not find the acceleration, s.
-    pub(super) not_found_at_s: Option<f64>,
-}
-
-impl Constrained {
-    fn add(&mut self, t: f64, touching: &Touching) {
-        self.most_contacts = self.most_contacts.max(touching.contacts.len());
-        self.most_search_steps = self.most_search_steps.max(touching.search_steps);
-        if !(touching.relative_error <= self.largest_relative_error) {
-            self.largest_relative_error = touching.relative_error;
-        }
-        if !touching.is_found() {
-            self.not_found_at_s.get_or_insert(t);
-        }
-    }
-
-    /// Of accelerations that were not found.
-    fn warning(&self, file: &str) -> Option<String> {
-        let error = self.largest_relative_error;
-        self.not_found_at_s.map(|t| {
-            format!("{file}: the search of accelerations with constraints did not end at t = {t} s: relative error {error:.1e}, expected {FOUND:e}")
-        })
-    }
 }
 
 /// Energies of a state, J, and their rates, W.
@@ -212,7 +248,7 @@ impl Own<'_> {
         let loss = one("dissipation", &[q, v])?;
         let mut tau = vec![0.0; v.len()];
         if self.of_file.method.takes.contains(&CTRL) {
-            let ctrl = self.of_file.start.ctrl.clone();
+            let ctrl = self.ctrl.clone();
             self.call("actuator_torques", &[q, v, &state.act, &ctrl], &mut tau)?;
         }
         let power = tau.iter().zip(v).map(|(tau, v)| tau * v).sum();
@@ -228,7 +264,7 @@ impl Own<'_> {
             self.call("centroidal_momentum", &[&state.q, &state.v], &mut momentum)?;
         }
         if let Some(constraints) = &mut self.constraints {
-            let touching = Touching::of(self.model, &mut self.ws, state, &self.of_file.start.ctrl).map_err(of_function)?;
+            let touching = Touching::of(self.model, &mut self.ws, state, &self.ctrl).map_err(of_function)?;
             constraints.add(t, &touching);
             to.contacts.push(touching.contacts.iter().map(|contact| [contact.point, contact.force]).collect());
         }

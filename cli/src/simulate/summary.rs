@@ -1,14 +1,14 @@
 //! The report about a motion, as data.
 
 use articulated::simulate::{Balance, Counts, Settings};
-use articulated_core::description::JointKind;
+use articulated_core::description::{Base, JointKind};
 use articulated_core::effect::EffectId;
 use articulated_motion::{Creep, Slide};
 use serde::Serialize;
 
+use super::constrained::Constrained;
 use super::method::Method;
 use super::motion::Motion;
-use super::of_file::Constrained;
 use super::recording::{EventRecord, Recording};
 use crate::effects::sorts;
 use articulated_lab::json::Units;
@@ -29,8 +29,8 @@ pub(super) struct Summary {
     /// warning, and the status stays `ok`.
     #[serde(skip)]
     pub(super) is_of_file: bool,
-    /// How limits, dry friction and contacts of the file were kept, if it has them: then there is no
-    /// balance of energy.
+    /// How limits, dry friction and contacts of the file were kept, if it has them: then there is
+    /// no balance of energy.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) constraints: Option<Constrained>,
     pub(super) start_s: f64,
@@ -203,7 +203,7 @@ impl Summary {
         Self {
             scene: session.name.clone(),
             robot: session.model.name().to_owned(),
-            base: if session.base() == articulated_core::description::Base::Floating { "floating" } else { "fixed" },
+            base: if floats(session) { "floating" } else { "fixed" },
             degrees_of_freedom: session.model.nv(),
             effects: sorts(&session.effects),
             code,
@@ -250,6 +250,12 @@ impl Summary {
         }
         self
     }
+}
+
+/// Whether the base floats, by the scene or by the first joint of the robot's file.
+fn floats(session: &Session) -> bool {
+    let first = session.model.joints().first();
+    session.base() == Base::Floating || first.is_some_and(|joint| joint.kind == JointKind::Floating)
 }
 
 impl Energy {

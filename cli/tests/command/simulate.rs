@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use crate::{File, run};
+use crate::{Ended, File, run};
 
 /// The outputs of a scene in a folder of their own.
 fn written(scene: &str, words: &[&str]) -> tempfile::TempDir {
@@ -386,7 +386,7 @@ fn a_file_of_a_robot_moves_smoothly() {
     assert_eq!(ended.status, 0, "{}", ended.err);
     assert!(ended.err.contains("pendulum.xml: the smooth motion, without dry friction, limits, contacts; --print-scene"), "{}", ended.err);
     assert!(ended.out.contains("armature, damping"), "{}", ended.out);
-    let printed = run(&["simulate", file.name(), "--print-scene"]).out;
+    let printed = run(&["simulate", file.name(), "--print-scene", "--smooth"]).out;
     let expected = r#"# The smooth motion of "pendulum.xml".
 file = "pendulum.xml"
 
@@ -762,4 +762,81 @@ fn the_picture_of_the_readme_is_what_the_command_writes() {
     let (made, kept) = (sticks(&made), sticks(&kept));
     assert!(made.len() == kept.len() && made.len() > 1000);
     assert!(made.iter().zip(&kept).all(|(a, b)| (a - b).abs() <= 2.0), "docs/motion.svg is out of date: run with UPDATE_GOLDEN=1");
+}
+
+/// A scene with a law is the motion of its robot's file: printed, bundled, and with other controls.
+#[test]
+fn scenes_with_a_law_touch() {
+    let ended = run(&["simulate", "quadruped_lands", "--format", "json"]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let summary: serde_json::Value = serde_json::from_str(&ended.out).unwrap();
+    assert_eq!((&summary["base"], &summary["constraints"]["most_contacts"]), (&"floating".into(), &4.into()));
+    assert!(summary["constraints"]["largest_relative_error"].as_f64().unwrap() < 1e-10, "{}", ended.out);
+    // It has come to rest on its feet: 15.2 kg, about 0.29 m up.
+    assert!(
+        summary["energy"]["kinetic_end"].as_f64().unwrap() < 1e-3 && summary["energy"]["end"].as_f64().unwrap() > 35.0,
+        "{}",
+        ended.out
+    );
+
+    // The printed scene is that of the file's motion.
+    let robot = articulated_models::robot("landing_quadruped").unwrap();
+    let file = File::new("quadruped.xml", robot.urdf.as_bytes());
+    let printed = run(&["simulate", file.name(), "--print-scene"]);
+    assert!(printed.out.contains("law = \"mujoco\"") && printed.out.contains("keyframe = \"home\""), "{}", printed.out);
+    let folder = std::path::Path::new(file.name()).parent().unwrap();
+    let scene = folder.join("scene.toml");
+    let with = |text: &str| {
+        std::fs::write(&scene, text).unwrap();
+        run(&["simulate", scene.to_str().unwrap(), "--end", "0.4", "--format", "json"])
+    };
+    let last = |ended: &Ended| {
+        assert_eq!(ended.status, 0, "{}", ended.err);
+        let summary: serde_json::Value = serde_json::from_str(&ended.out).unwrap();
+        summary["energy"]["end"].as_f64().unwrap()
+    };
+    let by_scene = with(&printed.out);
+    let by_file = run(&["simulate", file.name(), "--end", "0.4", "--format", "json"]);
+    assert_eq!(last(&by_scene), last(&by_file));
+    // Controls over time, by a table of actuators.
+    let table = printed.out.replace("keyframe = \"home\"\n# ctrl", "columns = [\"actuator_2\"]\nrows = [[0.0, -1.6], [0.4, -1.2]]\n# ctrl");
+    assert!(last(&with(&table)).is_finite() && last(&with(&table)) != last(&by_scene), "{table}");
+
+    for (from, to, lines) in [
+        ("law = \"mujoco\"", "law = \"bullet\"", vec!["simulation.law: found \"bullet\", expected one of \"mujoco\""]),
+        (
+            "law = \"mujoco\"",
+            "law = \"mujoco\"\nrtol = 1e-3\nevents = [\"limits\"]",
+            vec!["simulation.rtol: found", "simulation.events: found"],
+        ),
+        ("[effects]", "[effects]\nfriction = \"file\"", vec!["effects.friction", "beside simulation.law"]),
+        ("kind = \"actuators\"\nkeyframe = \"home\"", "kind = \"torque\"", vec!["control.kind: found torques beside simulation.law"]),
+    ] {
+        let ended = with(&printed.out.replace(from, to));
+        assert_eq!(ended.status, 1, "{to}: {}", ended.err);
+        assert!(lines.iter().all(|line| ended.err.contains(line)), "{to}: {}", ended.err);
+    }
+    let ended = run(&["simulate", "quadruped_lands", "--integrator", "dopri5"]);
+    assert!(ended.status == 2 && ended.err.contains("--integrator: found simulation.law"), "{}", ended.err);
+    let ended = run(&["check", "quadruped_lands"]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+}
+
+/// What touches after a rollout, and how exact the accelerations are.
+#[test]
+fn a_rollout_lists_its_contacts() {
+    let robot = File::new("humanoid.xml", articulated_models::robot("standing_humanoid").unwrap().urdf.as_bytes());
+    let words = ["rollout", robot.name(), "--constraints", "--contacts", "--steps", "500"];
+    let ended = run(&words);
+    assert!(ended.status == 0 && ended.out.contains("8 contacts") && ended.out.contains("floor, left_foot"), "{}{}", ended.out, ended.err);
+    let ended = run(&[&words[..], &["--format", "json"]].concat());
+    let report: serde_json::Value = serde_json::from_str(&ended.out).unwrap();
+    let state = &report["states"][0];
+    assert!(state["relative_error"].as_f64().unwrap() < 1e-10, "{}", ended.out);
+    // The feet carry the weight, but for a sway of less than 2 %: its mass is that of volumes at the density of water.
+    let up: f64 = state["contacts"].as_array().unwrap().iter().map(|contact| contact["force"][2].as_f64().unwrap()).sum();
+    let info = run(&["check", robot.name(), "--format", "json"]);
+    let mass = serde_json::from_str::<serde_json::Value>(&info.out).unwrap()["totals"]["mass"].as_f64().unwrap();
+    assert!((up / (9.81 * mass) - 1.0).abs() < 0.02, "{up} N of {mass} kg");
+    assert!(run(&["rollout", robot.name(), "--contacts", "--steps", "5"]).status == 2);
 }

@@ -60,7 +60,9 @@ impl Editing<'_> {
         let (Reading { world, unused, .. }, scene) = (&mut self.reading, self.request.scene);
         let is_driven = scene.is_some_and(|scene| matches!(scene.control.drive, Drive::Actuators(_)));
         let is_placed = scene.is_some_and(|scene| scene.initial.keyframe.is_some());
-        let is_stepped = scene.and_then(|scene| scene.simulation.as_ref()).is_some_and(|simulation| simulation.file_step.is_some());
+        let is_stepped = scene
+            .and_then(|scene| scene.simulation.as_ref())
+            .is_some_and(|simulation| simulation.file_step.is_some() || simulation.law.is_some());
         let count = |n: usize, what: &str| if n == 1 { format!("one {what}") } else { format!("{n} {what}s") };
         let mut list = |tag: &str, place: At, why: String| {
             unused.push(Unused { line: place.line(), subject: Subject::Document, tag: tag.to_owned(), why });
@@ -96,7 +98,7 @@ impl Editing<'_> {
     /// A scene has no states but those of the robot, and torques of joints: actuators with an
     /// activation, and those of sites, give no force in it.
     fn warn_of_activations(&mut self) {
-        let Some(control) = self.request.scene.map(|scene| &scene.control) else { return };
+        let Some(control) = self.request.scene.filter(|scene| scene.law().is_none()).map(|scene| &scene.control) else { return };
         if !matches!(control.drive, Drive::Actuators(_)) {
             return;
         }
@@ -106,7 +108,7 @@ impl Editing<'_> {
         for actuator in world.actuators.iter().filter(is_lost) {
             let place = Place { at: actuator.place, subject: &Subject::Document, field: "actuator" };
             let what = if actuator.site.is_some() { "a site" } else { "an activation" };
-            let found = format!("{what} of the actuator {:?}, which gives no force in a scene", actuator.name);
+            let found = format!("{what} of the actuator {:?}, which gives no force in a scene without `law`", actuator.name);
             let expected = "`articulated simulate FILE --smooth` or `articulated rollout`, which step it, or `without` in [control]";
             warnings.push(warning(self.request.file, &place, Code::LostDynamics, found, expected));
         }

@@ -1,6 +1,7 @@
 //! Steps with limits, dry friction and contacts: generated code against the library, which
 //! tests/mjcf/contact.py compares with MuJoCo, and their derivatives.
 
+use articulated_codegen::bound::bounds;
 use articulated_codegen::lir::interpret::interpret;
 use articulated_codegen::{Generated, Options, Request, generate};
 use articulated_core::algorithm::Workspace;
@@ -126,6 +127,26 @@ fn certificates_and_forces_are_those_of_the_library() {
         }
     }
     assert!(touching >= 4, "{touching} places touch");
+}
+
+/// The error of an acceleration and its roundings have bounds, but where it is uncertain what touches.
+#[test]
+fn certificates_have_bounds_of_their_own_roundings() {
+    let generated = generated(BALL, &["constrained_error"]);
+    let (model, mut certain) = (&generated.model, 0);
+    for given in given(model, 0.095, 8) {
+        let found = called(NAMES[0], model, &given);
+        let mut inputs = given.clone();
+        inputs[4].copy_from_slice(&found);
+        // ω × v of a floating joint is the difference of d²p/dt² and of v̇.
+        let (w, v) = (&given[1][..3], &given[1][3..6]);
+        (0..3).for_each(|k| inputs[4][3 + k] += w[(k + 1) % 3] * v[(k + 2) % 3] - w[(k + 2) % 3] * v[(k + 1) % 3]);
+        let [error, size] = generated.graphs[0].evaluate(|argument, k| inputs[argument][k])[..] else { panic!("two numbers") };
+        let roundings = bounds(&generated.graphs[0], generated.level, &|argument, k| (inputs[argument][k], 0.0)).unwrap();
+        assert!(error <= roundings[0] && error < 1e-11 * size, "{error} {size} {roundings:?}");
+        certain += usize::from(roundings[0] < 1e-6 * size);
+    }
+    assert!(certain >= 6, "{certain} states are certain");
 }
 
 /// Derivatives are those of the optimum.

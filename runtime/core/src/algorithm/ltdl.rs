@@ -62,6 +62,18 @@ pub(crate) fn solve<S: Scalar>(l: &[S], parent_dof: &[usize], x: &mut [S]) {
     }
 }
 
+/// bᵀ M⁻¹ b = |D^−½ L⁻ᵀ b|²: not negative, also with roundings.
+pub(crate) fn inverse_square<S: Scalar>(l: &[S], parent_dof: &[usize], b: &[S]) -> S {
+    let (n, mut x) = (parent_dof.len(), b.to_vec());
+    for k in (0..n).rev() {
+        for i in path_to_root(parent_dof, k) {
+            let product = l[k * n + i] * x[k];
+            x[i] -= product;
+        }
+    }
+    (0..n).fold(S::zero(), |sum, k| sum + x[k] * x[k] * l[k * n + k])
+}
+
 /// X = M⁻¹ B in place, for a matrix B of `below.len()` columns, row by row: all its columns at
 /// once.
 pub(crate) fn solve_rows<S: Scalar>(l: &[S], parent_dof: &[usize], x: &mut [S]) {

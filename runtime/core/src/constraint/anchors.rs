@@ -149,8 +149,8 @@ impl<S: Scalar> Moving<'_, S> {
     }
 }
 
-/// Frames in the world at q `[nq]`, positions in m. `frames`: each with its body, in the frame of the
-/// body.
+/// Frames in the world at q `[nq]`, positions in m. `frames`: each with its body, in the frame of
+/// the body.
 pub fn poses(model: &Model<f64>, q: &[f64], frames: &[(BodyId, Placement<f64>)]) -> Vec<Placement<f64>> {
     let mut ws = crate::algorithm::Workspace::new(model);
     let placed = Placed::at(model, &mut ws, q);

@@ -14,7 +14,8 @@ use crate::collision::Form;
 use crate::model::Model;
 use crate::spatial::{Twist, Vector3};
 
-/// How many numbers a place of contact has: whether it acts, its point, its normal, force and moment.
+/// How many numbers a place of contact has: whether it acts, its point, its normal, force and
+/// moment.
 pub const CONTACT: usize = 13;
 
 impl<S> Constraints<S> {

@@ -19,8 +19,8 @@ pub(super) struct Column<S> {
 /// The twists of bodies.
 pub(super) type Twists<S> = ById<BodyId, Twist<S>>;
 
-/// The point about which twists and moments are: the origin of the first body, if it floats, so that
-/// numbers stay small far from the origin of the world.
+/// The point about which twists and moments are: the origin of the first body, if it floats, so
+/// that numbers stay small far from the origin of the world.
 pub(super) fn origin<S: Scalar>(model: &Model<S>, placed: &Bodies<'_, S>) -> Vector3<S> {
     let floats = model.bodies.get(BodyId(1)).is_some_and(|body| body.joint.is_unconstrained());
     if floats { placed.frame(BodyId(1), &Placement::identity()).position } else { Vector3::zeros() }

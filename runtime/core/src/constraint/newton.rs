@@ -22,11 +22,11 @@ use super::joints::JointRow;
 use super::motion::{self, Column, Twists};
 use super::pairs::{self, Found};
 use crate::Scalar;
-use crate::algorithm::ltdl::{factor, path_to_root, solve};
+use crate::algorithm::ltdl::{factor, inverse_square, path_to_root, solve};
 use crate::algorithm::{Placed as Bodies, Workspace, mass_matrix};
 use crate::index::{BodyId, ById};
 use crate::model::Model;
-use crate::scalar::{flag, of_precision};
+use crate::scalar::{flag, greater, of_precision};
 use crate::spatial::{ArticulatedInertia, Matrix3, Twist, Vector3, Wrench};
 
 /// Largest number of steps of Newton's method.
@@ -461,17 +461,12 @@ impl<'a, S: Scalar> Problem<'a, S> {
 
     /// How far x is from the optimum.
     fn certificate(&self, x: &[S]) -> Certificate<S> {
-        let gradient = self.slope(x).0;
-        let (mut matrix, mut moved) = (self.mass.clone(), gradient.clone());
+        let mut matrix = self.mass.clone();
         factor(&mut matrix, &self.branches);
-        solve(&matrix, &self.branches, &mut moved);
-        let norm = |a: &[S], b: &[S]| {
-            let square = a.iter().zip(b).fold(S::zero(), |sum, (a, b)| sum + *a * *b);
-            let is_some = square.positive();
-            S::select(is_some, S::select(is_some, square, S::one()).sqrt(), square)
-        };
-        let size = norm(self.start, &times(&self.mass, &self.branches, self.start));
-        Certificate { error: norm(&gradient, &moved), size }
+        let error = inverse_square(&matrix, &self.branches, &self.slope(x).0).sqrt();
+        let pushed = times(&self.mass, &self.branches, self.start);
+        let size = self.start.iter().zip(pushed).fold(S::zero(), |sum, (a, b)| sum + *a * b);
+        Certificate { error, size: greater(size, S::zero()).sqrt() }
     }
 
     /// The x at which the cost is least. `counted`: behind it the number of steps.
@@ -625,8 +620,8 @@ mod tests {
             let (found, _) = constrained(&model, &mut Workspace::new(&model), &smooth);
             assert!((found[0].slope + 0.9 * B).abs() < 1e-12 * B, "{:?}", found[0]);
         }
-        // The force of the contact, and the certificate of another acceleration: with one mass it is
-        // not less than √m times the distance, and not more than that with the stiffest row.
+        // The force of the contact, and the certificate of another acceleration: with one mass it
+        // is not less than √m times the distance, and not more than that with the stiffest row.
         let (q, v, a) = (0.095, -1.0, -9.81);
         let exact = solved(&touching, q, v, a);
         let mut ws = Workspace::new(&touching);

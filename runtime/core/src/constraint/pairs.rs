@@ -28,6 +28,9 @@ pub(super) struct Found<S> {
     pub(super) rows: Vec<S>,
 }
 
+/// A pair with its place in [`Constraints::pairs`].
+type Numbered<'a, S> = (usize, &'a Pair<S>);
+
 /// What of a pair is not a number.
 #[derive(PartialEq)]
 struct Sort {
@@ -51,7 +54,7 @@ pub(super) fn contacts<S: Scalar>(
         power: pair.soft.impedance.twice_power(),
         is_reversed: shape(pair)[1].body.is_base(),
     };
-    let mut sorts: Vec<(Sort, Vec<(usize, &Pair<S>)>)> = Vec::new();
+    let mut sorts: Vec<(Sort, Vec<Numbered<'_, S>>)> = Vec::new();
     for (index, pair) in constraints.pairs.iter().enumerate() {
         let own = sort(pair);
         match sorts.iter_mut().find(|(other, _)| *other == own) {
