@@ -22,8 +22,8 @@ pub struct Simulation {
     pub names_integrator: bool,
     /// Whether the fixed step is that of the robot's file, and the place of this setting.
     pub file_step: Option<At>,
-    /// The law of limits, dry friction, equations and contacts of the robot's file, if they act, and
-    /// the place of this setting. Steps are then whole, by the method of the file.
+    /// The law of limits, dry friction, equations and contacts of the robot's file, if they act,
+    /// and the place of this setting. Steps are then whole, by the method of the file.
     pub law: Option<(Law, At)>,
 }
 

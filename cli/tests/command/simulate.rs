@@ -833,7 +833,7 @@ fn a_rollout_lists_its_contacts() {
     let report: serde_json::Value = serde_json::from_str(&ended.out).unwrap();
     let state = &report["states"][0];
     assert!(state["relative_error"].as_f64().unwrap() < 1e-10, "{}", ended.out);
-    // The feet carry the weight, but for a sway of less than 2 %: its mass is that of volumes at the density of water.
+    // The feet carry the weight, but for a sway of less than 2 %.
     let up: f64 = state["contacts"].as_array().unwrap().iter().map(|contact| contact["force"][2].as_f64().unwrap()).sum();
     let info = run(&["check", robot.name(), "--format", "json"]);
     let mass = serde_json::from_str::<serde_json::Value>(&info.out).unwrap()["totals"]["mass"].as_f64().unwrap();

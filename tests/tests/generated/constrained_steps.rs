@@ -129,7 +129,8 @@ fn certificates_and_forces_are_those_of_the_library() {
     assert!(touching >= 4, "{touching} places touch");
 }
 
-/// The error of an acceleration and its roundings have bounds, but where it is uncertain what touches.
+/// The error of an acceleration and its roundings have bounds, but where it is uncertain what
+/// touches.
 #[test]
 fn certificates_have_bounds_of_their_own_roundings() {
     let generated = generated(BALL, &["constrained_error"]);
