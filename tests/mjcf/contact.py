@@ -215,8 +215,8 @@ def leave_out(model):
     return ", ".join([*sorted(lost), *missing])
 
 
-def motion(model, data, random, count, gap=40):
-    """States of a motion with random controls (qpos, qvel, qfrc_applied, act, ctrl), some steps apart."""
+def motion(model, data, random, count, most=160):
+    """States of a motion with random controls (qpos, qvel, qfrc_applied, act, ctrl), up to so many steps apart."""
     import mujoco
     import numpy as np
 
@@ -229,7 +229,7 @@ def motion(model, data, random, count, gap=40):
         if model.nu:
             within = random.uniform(np.where(bounded, low, -0.4), np.where(bounded, high, 0.4))
             data.ctrl[:] = within
-        for _ in range(1 + k % gap):
+        for _ in range(1 + 61 * k % most):
             mujoco.mj_step(model, data)
         if not np.isfinite(data.qvel).all() or np.abs(data.qvel).max(initial=0) > 1e4:
             mujoco.mj_resetData(model, data)
