@@ -128,16 +128,12 @@ impl Made<'_> {
                 self.follower(&own.joint, "dry friction");
                 continue;
             };
-            if joint.quaternion().is_some() && joint.v.1 == 6 {
-                self.lost(LeaveOut::Constraint, format!("dry friction of the free joint {:?}", own.joint), At::Nowhere);
-                continue;
-            }
             let Some(soft) = self.soft(own.reference, own.impedance, &format!("dry friction of joint {:?}", own.joint)) else { continue };
-            all.friction.extend((joint.v.0..joint.v.0 + joint.v.1).map(|v| DryFriction {
-                v,
-                loss: own.loss,
-                soft: soft.clone(),
-                weight: weights.freedoms[v],
+            all.friction.extend((0..joint.v.1).map(|k| {
+                // A free joint: turns in axes of the body, translations in axes of the world
+                let along = (joint.v.1 == 6 && k >= 3).then(|| (joint.q.0 + 3, k - 3));
+                let v = joint.v.0 + if along.is_some() { 3 } else { k };
+                DryFriction { v, along, loss: own.loss, soft: soft.clone(), weight: weights.freedoms[v] }
             }));
         }
         for ((own, terms, law), of_tendons) in sums.into_iter().zip(weights.sums.chunks(2)) {

@@ -641,9 +641,11 @@ fn dynamics(values: &Values<'_>, kind: Kind, flags: Flags, angle: &dyn Fn(f64) -
         let rest = if kind == Kind::Ball { None } else { values.number("springref", log).map(angle) };
         return JointDynamics { damping, friction, armature, stiffness, rest: rest.filter(|_| stiffness.is_some()) };
     }
-    let lost = [("frictionloss", friction), ("stiffness", stiffness)];
-    for (name, _) in lost.iter().filter(|(_, number)| number.is_some_and(|number| number != 0.0)) {
-        let expected = "none: a free joint keeps no such number";
+    let lost = [
+        ("frictionloss", friction, "none, or functions with constraints, which alone keep it"),
+        ("stiffness", stiffness, "none: a free joint keeps no such number"),
+    ];
+    for (name, _, expected) in lost.into_iter().filter(|(_, number, _)| number.is_some_and(|number| number != 0.0)) {
         values.element.warning((&values.subject, name), Code::LostDynamics, format!("{name} of a free joint"), expected, log);
     }
     // Armature of a free joint is an effect on its body: see `surroundings`.

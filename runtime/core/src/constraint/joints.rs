@@ -77,7 +77,7 @@ impl<S: Scalar> JointRow<S> {
 impl<S: Scalar> Constraints<S> {
     /// The rows of joints in a state.
     pub(super) fn joint_rows(&self, q: &[S], v: &[S]) -> Vec<JointRow<S>> {
-        let mut rows: Vec<JointRow<S>> = self.friction.iter().map(|own| own.row(v)).collect();
+        let mut rows: Vec<JointRow<S>> = self.friction.iter().map(|own| own.row(q, v)).collect();
         self.limits.iter().for_each(|limit| limit.rows(q, v, &mut rows));
         self.sums.iter().for_each(|sum| sum.rows(q, v, &mut rows));
         rows
@@ -85,11 +85,20 @@ impl<S: Scalar> Constraints<S> {
 }
 
 impl<S: Scalar> DryFriction<S> {
-    fn row(&self, v: &[S]) -> JointRow<S> {
+    fn row(&self, q: &[S], v: &[S]) -> JointRow<S> {
+        let entries: Vec<(usize, S)> = match self.along {
+            None => [(self.v, S::one())].into(),
+            // Velocities are in axes of the body: a row of its rotation matrix
+            Some((at, axis)) => {
+                let rotation = quaternion(&q[at..]).to_rotation();
+                (0..3).map(|k| (self.v + k, rotation[(axis, k)])).collect()
+            }
+        };
         // Its violation is zero.
-        let (reference, give) = self.soft.row(S::zero(), v[self.v], self.weight);
+        let rate = entries.iter().fold(S::zero(), |sum, (k, entry)| sum + *entry * v[*k]);
+        let (reference, give) = self.soft.row(S::zero(), rate, self.weight);
         JointRow {
-            entries: [(self.v, S::one())].into(),
+            entries,
             curvature: S::one() / give,
             reference,
             side: Side::Within([give * self.loss, self.loss]),

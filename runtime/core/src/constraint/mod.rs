@@ -112,8 +112,11 @@ pub enum Bound<S = f64> {
 /// Dry friction of a degree of freedom.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DryFriction<S = f64> {
-    /// The degree of freedom.
+    /// The degree of freedom; of a free joint's translation the first of its three.
     pub v: usize,
+    /// Of a free joint's translation: where its quaternion is in q, and the axis of the parent along
+    /// which it acts.
+    pub along: Option<(usize, usize)>,
     /// Its greatest force, N·m or N.
     pub loss: S,
     /// How it gives way.
@@ -178,7 +181,7 @@ impl<S: Scalar> Limit<S> {
 
 impl<S: Scalar> DryFriction<S> {
     fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> DryFriction<T> {
-        DryFriction { v: self.v, loss: f(self.loss), soft: self.soft.map(f), weight: f(self.weight) }
+        DryFriction { v: self.v, along: self.along, loss: f(self.loss), soft: self.soft.map(f), weight: f(self.weight) }
     }
 }
 

@@ -648,7 +648,7 @@ mod tests {
     /// It holds what is weaker than it, and slows what is stronger.
     #[test]
     fn dry_friction_has_a_greatest_force() {
-        let friction = DryFriction { v: 0, loss: 3.0, soft: soft(), weight: 1.0 / MASS };
+        let friction = DryFriction { v: 0, along: None, loss: 3.0, soft: soft(), weight: 1.0 / MASS };
         let model = ball(Constraints { friction: [friction].into(), ..Constraints::default() });
         assert!((solved(&model, 0.0, 0.0, 1.0) - 0.1).abs() < 1e-14);
         assert!((solved(&model, 0.0, 0.0, -8.0) - (-8.0 + 3.0 / MASS)).abs() < 1e-14);
