@@ -18,7 +18,7 @@ the way is a start. What is not computed here is off in MuJoCo too: pairs of sha
 * "steps": after 1000 steps from 3 states, the difference over the largest of four MuJoCo rollouts whose starts differ by one unit
   in the last place of each number, or over one rounding of each step if that is more. Left out where a state grows without bound.
 
-Exit status: 0 if one step differs by at most 1e-10, its contacts by 1e-9, and 1000 steps by at most 10 times the latter (30 with a free body), else 1.
+Exit status: 0 if one step differs by at most 1e-10, its contacts by 1e-8, and 1000 steps by at most 10 times the latter (30 with a free body), else 1.
 """
 
 import argparse
@@ -34,7 +34,8 @@ from speed import METHODS, Program, apart, in_package
 from steps import LONGEST, MANY, MANY_OF_FREE, ROUNDING, mjcf_files, of_mujoco, reported, rolled, smooth
 
 ONE_STEP = 1e-10
-FORCES = 1e-9
+# An upright cylinder on a plane touches at places around it from the direction of its tilt on: a rounding over the tilt.
+FORCES = 1e-8
 STATES, STEPS = 60, 1000
 SPEED_STATES, SPEED_STEPS, ROUNDS = 64, 10, 11
 MODELS = [

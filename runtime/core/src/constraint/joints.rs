@@ -97,12 +97,7 @@ impl<S: Scalar> DryFriction<S> {
         // Its violation is zero.
         let rate = entries.iter().fold(S::zero(), |sum, (k, entry)| sum + *entry * v[*k]);
         let (reference, give) = self.soft.row(S::zero(), rate, self.weight);
-        JointRow {
-            entries,
-            curvature: S::one() / give,
-            reference,
-            side: Side::Within([give * self.loss, self.loss]),
-        }
+        JointRow { entries, curvature: S::one() / give, reference, side: Side::Within([give * self.loss, self.loss]) }
     }
 }
 

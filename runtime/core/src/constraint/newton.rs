@@ -39,9 +39,10 @@ const LINE: f64 = 1.0 / 256.0;
 /// Powers of two, of `f64` and of `f32`: a change of α that is none.
 const STILL: [i32; 2] = [-50, -20];
 /// The same: a gradient in parts of its terms that ends the iteration, and one that ends it if it
-/// no longer falls.
+/// no longer falls; a step in parts of x that ends it then too, where stiff rows multiply roundings.
 const SETTLED: [i32; 2] = [-49, -16];
 const SMALL: [i32; 2] = [-30, -10];
+const SHORT: [i32; 2] = [-46, -18];
 
 /// State and smooth motion of a robot.
 pub(crate) struct Smooth<'a, S> {
@@ -418,6 +419,12 @@ impl<'a, S: Scalar> Problem<'a, S> {
         state[0]
     }
 
+    /// Σ M x², with M's diagonal.
+    fn size(&self, x: &[S]) -> S {
+        let n = x.len();
+        x.iter().enumerate().fold(S::zero(), |sum, (i, x)| sum + *x * *x * self.mass[i * n + i])
+    }
+
     /// Σ g² / M, and the same of the sizes of its terms.
     fn squares(&self, (slope, size): &(Vec<S>, Vec<S>)) -> [S; 2] {
         let n = slope.len();
@@ -480,32 +487,40 @@ impl<'a, S: Scalar> Problem<'a, S> {
         if counted {
             state.push(S::zero());
         }
-        // The last square of the gradient; −1: there is none.
-        state.push(-one);
+        // The last square of the gradient, −1: there is none; whether the last step was short.
+        state.extend([-one, S::zero()]);
         let _converged = S::repeat(MOST, &mut state, |state| {
-            let (x, rest) = state.split_at_mut(nv);
-            let (count, last) = rest.split_at_mut(usize::from(counted));
+            let (moving, rest) = state.split_at_mut(nv + usize::from(counted));
+            let [last, short] = rest else { return one.positive() };
+            let (x, count) = moving.split_at_mut(nv);
             let slope = self.slope(x);
             let [square, size] = self.squares(&slope);
             let [settled, small] = [SETTLED, SMALL].map(|n| of_precision(size, n.map(|n| 2 * n)));
             // Also of zeros, and of what is no number
             let is_settled = one - flag::<S>((square - settled * size).positive());
             let is_small = flag::<S>((small * size - square).positive());
-            let falls = S::select((-last[0]).positive(), one, flag::<S>((last[0] - square - square).positive()));
-            let is_done = flag::<S>((is_settled + is_small * (one - falls)).positive());
-            last[0] = square;
+            let falls = S::select((-*last).positive(), one, flag::<S>((*last - square - square).positive()));
+            let is_done = flag::<S>((is_settled + (is_small + *short) * (one - falls)).positive());
+            *last = square;
             count.iter_mut().for_each(|count| *count += one - is_done);
-            S::when((one - is_done).positive(), x, |x| {
+            let mut moved = [&*x, &[*short]].concat();
+            S::when((one - is_done).positive(), &mut moved, |moved| {
+                let (x, short) = moved.split_at_mut(nv);
                 let mut dx: Vec<S> = slope.0.iter().map(|g| -*g).collect();
                 let mut hessian = self.curvature(x);
                 factor(&mut hessian, &self.parents);
                 solve(&hessian, &self.parents, &mut dx);
                 let alpha = self.line(x, &dx, &slope.0);
-                x.iter_mut().zip(&dx).for_each(|(x, dx)| *x += alpha * *dx);
+                let before = self.size(x);
+                dx.iter_mut().for_each(|dx| *dx *= alpha);
+                short[0] = flag::<S>((of_precision(before, SHORT.map(|n| 2 * n)) * before - self.size(&dx)).positive());
+                x.iter_mut().zip(&dx).for_each(|(x, dx)| *x += *dx);
             });
+            x.copy_from_slice(&moved[..nv]);
+            *short = moved[nv];
             is_done.positive()
         });
-        state.pop();
+        state.truncate(nv + usize::from(counted));
         state
     }
 
