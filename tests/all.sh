@@ -94,6 +94,7 @@ oracles() {
     step python3 tests/mjcf/contact.py --check
     step python3 tests/mjcf/pairs.py --check
     step python3 tests/mjcf/standing.py
+    step python3 tests/mjcf/given.py
     step python3 tests/sdf/oracle.py --sample
     step python3 tests/xacro/oracle.py --sample
 }

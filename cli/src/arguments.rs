@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use articulated_codegen::Precision;
 use articulated_core::lanes::Real;
+use articulated_formats::world::GivenContact;
 use articulated_formats::{LeaveOut, SNAP_EXPECTED, can_snap};
 use clap::{Args, ValueEnum};
 
@@ -54,6 +55,10 @@ pub(crate) struct RobotArguments {
     /// composite, plugin, constraint, contact. Those of another kind are errors
     #[arg(long, value_name = "KINDS", value_delimiter = ',')]
     pub(crate) leave_out: Vec<LeaveOut>,
+    /// The contacts of two geoms of an MJCF are found by the caller of functions of the group
+    /// `given_contacts`, in so many places; repeatable
+    #[arg(long, value_name = "GEOM,GEOM[,PLACES]", value_parser = given_contact)]
+    pub(crate) given_contact: Vec<GivenContact>,
     /// Read a URDF of a version other than 1.0, 1.1 and 1.2 as 1.0, with a warning
     #[arg(long)]
     pub(crate) allow_unknown_version: bool,
@@ -121,6 +126,7 @@ impl RobotArguments {
             allow_unphysical_inertia: false,
             first_of_duplicates: false,
             leave_out: Vec::new(),
+            given_contact: Vec::new(),
             allow_unknown_version: false,
             snap_angles: None,
             arg: Vec::new(),
@@ -295,6 +301,19 @@ pub(crate) fn names_in_rust(rename: &[(String, String)]) -> Result<(), Failure> 
 
 fn tolerance(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|x| can_snap(*x)).ok_or_else(|| format!("expected {SNAP_EXPECTED}"))
+}
+
+/// `GEOM,GEOM` or `GEOM,GEOM,PLACES`.
+fn given_contact(text: &str) -> Result<GivenContact, String> {
+    let words: Vec<&str> = text.split(',').collect();
+    let (names, places) = match words.as_slice() {
+        [first, second] => ([*first, *second], 1),
+        [first, second, places] => {
+            ([*first, *second], places.parse().map_err(|_| format!("found {places:?}, expected a number of places"))?)
+        }
+        _ => return Err("expected two names of geoms, and in how many places they touch, as in foot,floor,4".into()),
+    };
+    Ok(GivenContact { shapes: names.map(str::to_owned), places })
 }
 
 /// `NAME=VALUE`.

@@ -64,6 +64,7 @@ impl Robot {
         options.robot.allow_unphysical_inertia = arguments.allow_unphysical_inertia;
         options.robot.first_of_duplicates = arguments.first_of_duplicates;
         options.robot.leave_out = arguments.leave_out.iter().copied().collect();
+        options.robot.given_contacts = arguments.given_contact.iter().cloned().map(Into::into).collect();
         options.robot.allow_unknown_version = arguments.allow_unknown_version;
         options.robot.snap_angles = arguments.snap_angles;
         options.rename = arguments.rename.iter().cloned().map(Into::into).collect();
@@ -92,6 +93,7 @@ impl Robot {
         options.robot.allow_unphysical_inertia |= arguments.allow_unphysical_inertia;
         options.robot.first_of_duplicates |= arguments.first_of_duplicates;
         options.robot.leave_out.extend(&arguments.leave_out);
+        options.robot.given_contacts.extend(arguments.given_contact.iter().cloned().map(Into::into));
         options.robot.allow_unknown_version |= arguments.allow_unknown_version;
         options.robot.snap_angles = arguments.snap_angles.or(options.robot.snap_angles);
         arguments.rename.iter().for_each(|(from, to)| options.set_name(from, to));

@@ -190,7 +190,7 @@ impl Kind {
 
 /// The method.
 fn method(arguments: &RolloutArguments, of_file: Option<&Stepping>, kind: Kind) -> Result<&'static Function<f64>, Failure> {
-    let is_step = |row: &&Function<f64>| row.takes.contains(&step::H);
+    let is_step = |row: &&Function<f64>| row.takes.contains(&step::H) && !row.takes.contains(&step::CONTACTS);
     let Some(name) = &arguments.method else {
         let [plain, _] = step_of_file(of_file);
         return kind.beside(plain).ok_or_else(|| Failure::usage(format!("--method: found no step beside {plain}")));

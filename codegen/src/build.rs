@@ -8,6 +8,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use articulated_core::algorithm::UserFunction;
 use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Span, Spanned, summary};
 use articulated_formats::LeaveOut;
+use articulated_formats::world::GivenContact;
 use articulated_scene::{Loader, Robot, Scene, beside};
 
 use crate::cache::Cache;
@@ -174,6 +175,15 @@ impl Build {
     #[must_use]
     pub fn leave_out(mut self, kinds: impl IntoIterator<Item = LeaveOut>) -> Self {
         self.request.options.robot.leave_out.extend(kinds);
+        self
+    }
+
+    /// Contacts of these geoms of an MJCF are found by the caller, in so many places: an argument
+    /// of functions of the group `given_contacts`. Normals are from the first geom to the second.
+    #[must_use]
+    pub fn given_contact(mut self, first: impl Into<String>, second: impl Into<String>, places: usize) -> Self {
+        let given = GivenContact { shapes: [first.into(), second.into()], places };
+        self.request.options.robot.given_contacts.push(given.into());
         self
     }
 

@@ -59,12 +59,13 @@ pub(crate) fn plan(request: &Request, members: &BTreeMap<String, String>, log: &
     let entries = fitting(request, &model, &massless, entries, (members, &mut without), log);
     robot.reading.warnings.extend(without);
     let has_group = |group: Group| entries.iter().any(|(_, function)| function.parts.iter().any(|part| part.function.group == group));
-    if has_group(Group::Constraints) {
+    let touches = has_group(Group::Constraints) || has_group(Group::GivenContacts);
+    if touches {
         let of_robot = (&robot.reading.description, &robot.reading.world, &robot.model);
         let warnings = unread_constraints(&request.file, of_robot, log);
         robot.reading.warnings.extend(warnings);
     }
-    if has_group(Group::Actuators) || has_group(Group::Constraints) {
+    if has_group(Group::Actuators) || touches {
         let warnings = locked_actuators(&request.file, &robot.reading.world, &robot.model);
         let of_file = forces_of_the_file(&request.file, &robot);
         robot.reading.warnings.extend(warnings.into_iter().chain(of_file));
@@ -110,7 +111,11 @@ pub fn unread_constraints(
         let is_left_out = left_out.contains(&kind);
         let expected = match is_left_out {
             true => format!("constraints that are computed: `leave_out` has {}, and the motion is that without it", quote(kind.name())),
-            false => format!("constraints that are computed; {} leaves it out", kind.option()),
+            false => {
+                let given = "; with the key `given_contacts` (`--given-contact`, method `Build::given_contact`) a caller finds contacts";
+                let given = if kind == LeaveOut::Contact { given } else { "" };
+                format!("constraints that are computed; {} leaves it out{given}", kind.option())
+            }
         };
         let finding = Diagnostic::error(file, (At::Nowhere, kind.name()), Code::Unsupported, found, expected);
         if is_left_out { warnings.push(finding.into_warning()) } else { log.push(finding) }
@@ -277,6 +282,10 @@ pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], f
     if function.group == Group::Actuators && model.actuators().is_empty() {
         let expected = "a file with actuators or tendons (MJCF), or functions with torques as an argument";
         return lacks(Code::NoActuators, "no actuator".into(), expected);
+    }
+    if function.group == Group::GivenContacts && model.constraints().pair_of_given().next().is_none() {
+        let expected = "the key `given_contacts` (`--given-contact`, method `Build::given_contact`) with pairs of geoms, or functions without contacts as argument";
+        return lacks(Code::NoConstraints, "no contact that a caller gives".into(), expected);
     }
     if function.group == Group::Constraints && model.constraints().is_empty() {
         let expected = "a file with limits, dry friction or contacts (MJCF), or functions without constraints";

@@ -122,7 +122,7 @@ impl Tree {
         let frames = if part.function.asks_for_frames() { self.frames } else { 0.0 };
         let constraints = match part.function.group {
             Group::Constraints if part.function.name.contains("rk4") => 4.0 * self.constraints,
-            Group::Constraints => self.constraints,
+            Group::Constraints | Group::GivenContacts => self.constraints,
             _ => 0.0,
         };
         own + constraints + 100.0 * self.bodies + 20.0 * frames

@@ -155,7 +155,12 @@ impl Made<'_> {
             if bodies[0] == bodies[1] {
                 continue;
             }
-            let Some((shapes, soft)) = self.pair(pair) else { continue };
+            let given = touching.given.iter().find_map(|own| Some((touching.is_of(pair, &own.shapes)?, own.places)));
+            let found = match given {
+                Some((shapes, places)) => self.soft(pair.reference, pair.impedance, "a given contact").map(|soft| (shapes, soft, places)),
+                None => self.pair(pair).map(|(shapes, soft)| (shapes, soft, 0)),
+            };
+            let Some((shapes, soft, given)) = found else { continue };
             let shapes = shapes.map(|shape| {
                 *places[shape].get_or_insert_with(|| {
                     let own = &touching.shapes[shape];
@@ -171,6 +176,7 @@ impl Made<'_> {
             let across = pair.reference_across != [0.0; 2];
             all.pairs.push(Pair {
                 shapes,
+                given,
                 dimension: pair.dimension,
                 friction: pair.friction,
                 mu: mu / touching.impedance_ratio.max(1e-15).sqrt(),

@@ -95,9 +95,35 @@ pub struct Touching {
     pub unread: Vec<Unread>,
     /// What the options leave out.
     pub left_out: BTreeSet<LeaveOut>,
+    /// Pairs whose contacts a caller finds.
+    pub given: Vec<GivenContact>,
 }
 
+/// A pair of shapes whose contacts a caller finds, and gives to functions as an argument.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct GivenContact {
+    /// Names of the shapes; normals are from the first to the second.
+    pub shapes: [String; 2],
+    /// In how many places they touch at most.
+    pub places: usize,
+}
+
+/// No pair has more.
+pub const MOST_GIVEN: usize = 64;
+
 impl Touching {
+    /// Whether two shapes of these names may touch, by masks and the tree.
+    pub fn may_touch(&self, names: &[String; 2]) -> bool {
+        self.pairs.iter().any(|pair| self.is_of(pair, names).is_some())
+    }
+
+    /// Whether a pair is of these names: its shapes in their order.
+    pub(crate) fn is_of(&self, pair: &TouchingPair, names: &[String; 2]) -> Option<[usize; 2]> {
+        let [first, second] = pair.shapes;
+        let is = |shapes: [usize; 2]| shapes.iter().zip(names).all(|(shape, name)| self.shapes[*shape].name == *name);
+        [[first, second], [second, first]].into_iter().find(|shapes| is(*shapes))
+    }
+
     /// Whether the file has a constraint, whether or not it is computed.
     pub fn has_some(&self) -> bool {
         self.has_read() || !self.unread.is_empty()

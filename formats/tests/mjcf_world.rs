@@ -581,3 +581,15 @@ fn tendons_and_equations_are_constraints_of_sums() {
     assert_eq!(held.coupling.as_deref(), Some("a"));
     assert!(read.world.loops.iter().all(|own| own.is_computed) && touching.unread.is_empty());
 }
+
+/// A pair that is twice in a file makes contact twice, as in MuJoCo.
+#[test]
+fn a_pair_may_be_there_twice() {
+    let text = "<mujoco><worldbody><geom name='floor' type='plane' size='1 1 1'/>\
+        <body><freejoint/><geom name='ball' size='0.1' contype='0' conaffinity='0'/></body></worldbody>\
+        <contact><pair geom1='floor' geom2='ball' condim='1'/><pair geom1='ball' geom2='floor'/></contact></mujoco>";
+    let reading = articulated_formats::read(text.as_bytes(), &articulated_formats::Options::default()).unwrap();
+    let touching = reading.world.touching.unwrap();
+    let dimensions: Vec<usize> = touching.pairs.iter().map(|pair| pair.dimension).collect();
+    assert_eq!((dimensions.as_slice(), touching.shapes.len()), ([1, 3].as_slice(), 2));
+}

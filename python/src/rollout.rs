@@ -2,7 +2,7 @@
 
 use articulated::Model;
 use articulated_core::algorithm::Workspace;
-use articulated_core::step::{CTRL, H, State, beside_the_table, rollout, step};
+use articulated_core::step::{CONTACTS, CTRL, H, State, beside_the_table, rollout, step};
 use numpy::{PyArray3, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -28,10 +28,13 @@ pub(crate) fn run<'py>(
     every: usize,
     threads: usize,
 ) -> PyResult<Ends<'py>> {
-    let row = step::<f64>(method).filter(|row| row.takes.contains(&H)).ok_or_else(|| {
+    let row = step::<f64>(method).filter(|row| row.takes.contains(&H) && !row.takes.contains(&CONTACTS)).ok_or_else(|| {
         let prefix = KINDS.into_iter().find(|kind| method.starts_with(kind)).unwrap_or(KINDS[0]);
         let found = method.strip_prefix(prefix).unwrap_or(method);
-        let all: Vec<&str> = beside_the_table::<f64>().filter_map(|row| row.name.strip_prefix(prefix)).collect();
+        let all: Vec<&str> = beside_the_table::<f64>()
+            .filter(|row| !row.takes.contains(&CONTACTS))
+            .filter_map(|row| row.name.strip_prefix(prefix))
+            .collect();
         PyValueError::new_err(format!("method: found {found:?}, expected one of {}", all.join(", ")))
     })?;
     let is_actuated = row.takes.contains(&CTRL);

@@ -10,6 +10,7 @@ use articulated_core::integrator::IntegratorId;
 use articulated_core::lanes::Real;
 use articulated_core::precision::Precision;
 use articulated_core::spatial::Reference;
+use articulated_formats::world::{GivenContact, MOST_GIVEN};
 use articulated_formats::{LeaveOut, SNAP_EXPECTED, can_snap};
 
 use crate::control::{self, Control, Drive};
@@ -102,6 +103,8 @@ pub struct CodeOptions {
     pub first_of_duplicates: Option<bool>,
     /// Elements of an MJCF that are not read, to leave out.
     pub leave_out: Option<BTreeSet<LeaveOut>>,
+    /// Pairs of geoms of an MJCF whose contacts a caller finds, each with its place.
+    pub given_contacts: Vec<(GivenContact, At)>,
     /// Read a URDF of an unknown version.
     pub allow_unknown_version: Option<bool>,
     /// Rounds angles that are this near to a multiple of π/2, rad.
@@ -479,6 +482,14 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         read: |s, spot, log| s.code.leave_out = left_out(spot, log),
     },
     Row {
+        name: "given_contacts",
+        required: false,
+        value: "list of [geom, geom] or [geom, geom, number]",
+        default: "none",
+        what: "pairs of geoms of an MJCF whose contacts a caller finds, in so many places, or 1: an argument of functions of the group `given_contacts`",
+        read: |s, spot, log| s.code.given_contacts = given_contacts(spot, log),
+    },
+    Row {
         name: "allow_unknown_version",
         required: false,
         value: "true or false",
@@ -608,6 +619,28 @@ fn left_out(spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<BTreeSet<LeaveOu
         return None;
     };
     Some(list.iter().filter_map(|item| item.word(log, &LeaveOut::WORDS)).collect())
+}
+
+fn given_contacts(spot: &Cursor<'_>, log: &mut Diagnostics) -> Vec<(GivenContact, At)> {
+    let Some(list) = spot.list() else {
+        spot.wrong(log, "a list of pairs, as [[\"foot\", \"floor\", 4]]");
+        return Vec::new();
+    };
+    let pair = |item: &Cursor<'_>| {
+        let own = item.list().unwrap_or_default();
+        let (Some(first), Some(second), 2..=3) = (own.first(), own.get(1), own.len()) else {
+            item.wrong(log, "two names of geoms, and in how many places they touch");
+            return None;
+        };
+        let names = [first, second].map(|name| name.text(log, "the name of a geom").map(str::to_owned));
+        let places = match own.get(2) {
+            Some(count) => count.whole(log, 1, MOST_GIVEN as u64)? as usize,
+            None => 1,
+        };
+        let [Some(first), Some(second)] = names else { return None };
+        Some((GivenContact { shapes: [first, second], places }, item.at))
+    };
+    list.iter().filter_map(pair).collect()
 }
 
 fn level(spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<Precision> {

@@ -238,7 +238,7 @@ fn check(settings: &Settings, spot: &Cursor<'_>, right: &[&str], log: &mut Diagn
 const A_STEP: f64 = 1e-3;
 
 /// Outputs of the smallest robot fit every robot.
-const ANY_ROBOT: Shape = Shape { nq: 0, nv: 0, frames: 0, links: 0, controls: 0, activations: 0, contacts: 0 };
+const ANY_ROBOT: Shape = Shape { nq: 0, nv: 0, frames: 0, links: 0, controls: 0, activations: 0, contacts: 0, given: 0 };
 
 fn integrator(spot: &Cursor<'_>, log: &mut Diagnostics) -> Option<IntegratorId> {
     spot.word_like(log, &words(), |found| resolve_synonym(found).map_or(found, |row| row.name))

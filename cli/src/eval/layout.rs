@@ -25,7 +25,7 @@ impl Names {
                 let own = model.actuators().laws.iter().filter(|law| law.activation.is_some());
                 Some(own.map(|law| (law.name.clone(), 1)).collect())
             }
-            Dim::Contacts | Dim::Of(_) => None,
+            Dim::Contacts | Dim::Given | Dim::Of(_) => None,
         };
         Self { parts, length: dim.len(model.shape()) }
     }

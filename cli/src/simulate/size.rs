@@ -108,7 +108,7 @@ fn rows(settings: &Settings) -> Option<f64> {
 mod tests {
     use super::*;
 
-    const SHAPE: Shape = Shape { nq: 7, nv: 6, frames: 0, links: 1, controls: 0, activations: 0, contacts: 0 };
+    const SHAPE: Shape = Shape { nq: 7, nv: 6, frames: 0, links: 1, controls: 0, activations: 0, contacts: 0, given: 0 };
 
     fn arguments(size: Option<u64>) -> SimulateArguments {
         use clap::Parser;

@@ -243,3 +243,33 @@ fn code_with_odd_names_has_no_warnings() {
         assert!(ended.status.success(), "{robot}: {}", String::from_utf8_lossy(&ended.stderr));
     }
 }
+
+/// Contacts that a caller finds are an argument, with the names of their geoms.
+#[test]
+fn contacts_of_meshes_may_be_given() {
+    let text = include_str!("../../../tests/mjcf/models/given.xml");
+    let file = File::new("given.xml", text.as_bytes());
+    let name = "constrained_step_implicit_damping_with_contacts";
+    let words = ["generate", file.name(), "--effects", "file", "--functions", name, "--leave-out", "contact"];
+    let ended = run(&[&words[..], &["--given-contact", "floor,gem,3", "--given-contact", "egg,step"]].concat());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    for line in [
+        "pub const GIVEN: usize = 4;",
+        "[\"floor\", \"gem\"], [\"egg\", \"step\"]]",
+        "Given by the caller: contacts of \"floor\" and \"gem\" in 3 places.",
+    ] {
+        assert!(ended.out.contains(line), "{line}");
+    }
+    for (given, expected) in [
+        ("floor,gam", "given_contacts[0]: found no pair of the geoms \"floor\" and \"gam\" that may touch"),
+        ("floor,gem,0", "given_contacts[0]: found 0 places, expected 1 to 64 places"),
+        ("floor", "expected two names of geoms"),
+    ] {
+        let ended = run(&[&words[..], &["--given-contact", given]].concat());
+        assert!(ended.status != 0 && ended.err.contains(expected), "{given}: {}", ended.err);
+    }
+    assert!(run(&words).err.contains("no contact that a caller gives"), "{}", run(&words).err);
+    // Without the option the error names both ways on.
+    let refused = run(&[&words[..6], &["--given-contact", "floor,gem"]].concat());
+    assert!(refused.err.contains("--leave-out contact") && refused.err.contains("--given-contact"), "{}", refused.err);
+}

@@ -98,6 +98,11 @@ impl Function<'_> {
         self.has(&[Dim::Contacts])
     }
 
+    /// Whether it takes contacts that a caller finds.
+    pub(crate) fn is_of_given(&self) -> bool {
+        self.has(&[Dim::Given])
+    }
+
     /// Whether an argument or a result has one of these dimensions.
     fn has(&self, some: &[Dim]) -> bool {
         let has = |dims: &[Dim]| dims.iter().any(|dim| some.contains(dim));

@@ -125,7 +125,8 @@ fn joints(scope: &Scope<'_>, no_limit: bool, all: &mut Touching) {
 
 /// The pairs of shapes: those of the section `<contact>`, and those that masks and the tree allow.
 fn contacts(scope: &mut Scope<'_>, links: &[&str], parents_touch: bool, all: &mut Touching, log: &mut Diagnostics) {
-    let mut pairs: BTreeMap<[usize; 2], (usize, TouchingPair)> = BTreeMap::new();
+    // A pair that is there twice makes contact twice.
+    let mut chosen: Vec<TouchingPair> = Vec::new();
     let mut excluded: BTreeSet<[usize; 2]> = BTreeSet::new();
     for index in 0..scope.tree.parts.len() {
         if scope.is_full() {
@@ -155,15 +156,10 @@ fn contacts(scope: &mut Scope<'_>, links: &[&str], parents_touch: bool, all: &mu
             }
             let class = part.settings.classes.find(element, "class", log).unwrap_or(0);
             let values = Values::new(element, part.settings.classes.tags(class, "pair"), &Subject::Document);
-            pairs.insert(both, (pairs.len(), pair(both, &values, log)));
+            chosen.push(pair(both, &values, log));
         }
     }
-    let explicit: BTreeSet<[usize; 2]> = pairs.keys().copied().collect();
-    let mut chosen: Vec<TouchingPair> = {
-        let mut own: Vec<_> = pairs.into_values().collect();
-        own.sort_by_key(|(order, _)| *order);
-        own.into_iter().map(|(_, pair)| pair).collect()
-    };
+    let explicit: BTreeSet<[usize; 2]> = chosen.iter().map(|pair| pair.shapes).collect();
     if !automatic(scope, (&explicit, &excluded), parents_touch, &mut chosen) {
         let what = format!("very many pairs of geoms, of which {MOST_PAIRS} are computed at most");
         all.unread.push(Unread { kind: LeaveOut::Contact, what, place: Default::default() });

@@ -8,10 +8,11 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use articulated_core::description::{Description, EditError, Editor};
-use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Span, Spanned, Subject, Unused};
+use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Span, Spanned, Subject, Unused, quote};
 use articulated_core::effect::{Applied, EffectError, Fault};
 use articulated_core::model::{Model, ModelError};
 use articulated_core::suggest::Suggester;
+use articulated_formats::world::{GivenContact, MOST_GIVEN, World};
 use articulated_formats::{Options, Reading, SNAP_EXPECTED, can_snap, read_with};
 
 use super::options::{RobotOptions, RobotRequest};
@@ -123,6 +124,8 @@ impl RobotRequest<'_> {
     fn edit(&self, log: &mut Diagnostics) -> Option<Editing<'_>> {
         let reading =
             read_with(&self.options.included, self.document, &self.reader_options()).map_err(|findings| log.take(findings)).ok()?;
+        let mut reading = reading;
+        self.give_contacts(&mut reading.world, log);
         let coupling_files = vec![self.file.to_owned(); reading.world.couplings.len()];
         let mut editing = Editing { request: *self, reading, coupling_files, springs: Vec::new(), frames: None };
         let mut refused = log.apart();
@@ -135,6 +138,32 @@ impl RobotRequest<'_> {
         }
         log.take(refused);
         appended.then_some(editing)
+    }
+
+    /// Notes in the world which contacts a caller finds. A pair that does not touch is an error.
+    fn give_contacts(&self, world: &mut World, log: &mut Diagnostics) {
+        for (k, given) in self.options.given_contacts.iter().enumerate() {
+            let GivenContact { shapes: [first, second], places } = &given.value;
+            let key = format!("given_contacts[{k}]");
+            let mut refuse = |found: String, expected: &str| {
+                let place = given.span.as_ref().map_or(At::Nowhere, |span| span.at);
+                let file = given.span.as_ref().map_or(self.file, |span| span.file.as_str());
+                log.push(Diagnostic::error(file, (place, key.as_str()), Code::UnknownName, found, expected));
+            };
+            if !(1..=MOST_GIVEN).contains(places) {
+                refuse(format!("{places} places"), "1 to 64 places");
+            }
+            let known = world.touching.as_ref().is_some_and(|touching| touching.may_touch(&given.value.shapes));
+            if !known {
+                refuse(
+                    format!("no pair of the geoms {} and {} that may touch", quote(first), quote(second)),
+                    "names of two geoms of the robot's file (MJCF) on two bodies, which their masks let touch",
+                );
+            }
+        }
+        if let Some(touching) = &mut world.touching {
+            touching.given = self.options.given_contacts.iter().map(|given| given.value.clone()).collect();
+        }
     }
 
     fn bare_model(&self, editing: &Editing<'_>, log: &mut Diagnostics) -> Option<Model<f64>> {

@@ -317,6 +317,7 @@ impl Scene {
         options.lock = code.lock.into_iter().map(|lock| self.span((lock.joint, lock.at), lock.place)).collect();
         options.allow_unphysical_inertia = code.allow_unphysical_inertia.unwrap_or(options.allow_unphysical_inertia);
         options.first_of_duplicates = code.first_of_duplicates.unwrap_or(options.first_of_duplicates);
+        options.given_contacts = code.given_contacts.into_iter().map(|(given, place)| self.span(given, place)).collect();
         options.leave_out = code.leave_out.unwrap_or_else(|| std::mem::take(&mut options.leave_out));
         options.allow_unknown_version = code.allow_unknown_version.unwrap_or(options.allow_unknown_version);
         options.snap_angles = code.snap_angles;

@@ -8,7 +8,7 @@ use articulated_core::diagnostic::Spanned;
 use articulated_core::effect::Applied;
 use articulated_core::model::GRAVITY;
 use articulated_core::spatial::Reference;
-use articulated_formats::world::World;
+use articulated_formats::world::{GivenContact, World};
 use articulated_formats::{Formats, Included, LeaveOut};
 
 use crate::scene::Scene;
@@ -44,6 +44,8 @@ pub struct RobotOptions {
     /// Joints to lock and their coordinates, see
     /// [`lock`](articulated_core::description::Description::lock); also joints of appended robots.
     pub lock: Vec<Spanned<(String, Vec<f64>)>>,
+    /// Pairs of geoms of an MJCF whose contacts a caller finds, and gives to functions.
+    pub given_contacts: Vec<Spanned<GivenContact>>,
     /// Effects of the robot besides gravity and the scene's effects; also on joints and links of
     /// appended robots.
     pub effects: Vec<Applied>,
@@ -121,6 +123,7 @@ impl Default for RobotOptions {
             allow_unphysical_inertia: false,
             first_of_duplicates: false,
             leave_out: BTreeSet::new(),
+            given_contacts: Vec::new(),
             allow_unknown_version: false,
             snap_angles: None,
             formats: Formats::default(),

@@ -7,6 +7,7 @@ use articulated_codegen::{Generated, Options, Request, generate};
 use articulated_core::algorithm::Workspace;
 use articulated_core::model::Model;
 use articulated_core::step::{of_constraints, step};
+use articulated_formats::world::GivenContact;
 use articulated_tests::random::Random;
 
 /// Two legs under a trunk that floats: contacts with the floor and of the legs, limits, friction.
@@ -206,4 +207,44 @@ fn second_derivatives_are_those_of_differences() {
         }
     }
     assert!(compared > 6 && largest > 2.0, "{compared} states were compared, of slopes up to {largest}");
+}
+
+/// A contact that a caller finds is the one that is computed.
+#[test]
+fn given_contacts_are_those_that_are_computed() {
+    let names = ["constrained_acceleration_with_contacts", "constrained_step_implicit_damping_with_contacts"];
+    let text =
+        BALL.replace("<geom type='plane'", "<geom name='floor' type='plane'").replace("<geom size='0.1'", "<geom name='ball' size='0.1'");
+    for (shapes, sign) in [(["floor", "ball"], 1.0), (["ball", "floor"], -1.0)] {
+        let mut request = Request::new("ball.xml", text.clone());
+        request.options = Options { functions: names.iter().map(|f| (*f).into()).collect(), ..Options::default() };
+        let pair = GivenContact { shapes: shapes.map(str::to_owned), places: 2 };
+        request.options.robot.given_contacts = vec![pair.into()];
+        let generated = generate(&request).unwrap();
+        let plain = Request::new("ball.xml", text.clone()).build_robot().unwrap().model;
+        assert_eq!((generated.model.shape().given, generated.model.shape().contacts, plain.shape().contacts), (2, 0, 1));
+        for given in given(&plain, 0.095, 6) {
+            let [q, v, act, ctrl, warm, h] = &given;
+            // The second place does not exist, and the third number of a place is its point.
+            let low = q[2] - 0.1;
+            let contact = [1.0, low, q[0], q[1], 0.5 * low, 0.0, 0.0, sign];
+            let contacts = [contact, [0.0, -1.0, 9.0, 9.0, 9.0, 1.0, 0.0, 0.0]].concat();
+            for (k, name) in names.iter().enumerate() {
+                let expected = called(NAMES[k], &plain, &given);
+                let all: [&[f64]; 7] = [q, v, act, ctrl, &contacts, warm, h];
+                assert_close(name, &generated.graphs[k].evaluate(|argument, k| all[argument][k]), &expected, 1e-12);
+                let mut out = vec![0.0; expected.len()];
+                let row = step(name).unwrap();
+                row.call(&generated.model, &mut Workspace::new(&generated.model), &all[..row.takes.len()], &mut out).unwrap();
+                assert_close(name, &out, &expected, 1e-12);
+            }
+        }
+    }
+    // Without such pairs there is no function; unknown names are errors.
+    let mut request = Request::new("ball.xml", text);
+    request.options = Options { functions: vec![names[0].into()], ..Options::default() };
+    assert!(generate(&request).unwrap_err().to_string().contains("no contact that a caller gives"));
+    let pair = GivenContact { shapes: ["floor", "bal"].map(str::to_owned), places: 1 };
+    request.options.robot.given_contacts = vec![pair.into()];
+    assert!(generate(&request).unwrap_err().to_string().contains("no pair of the geoms \"floor\" and \"bal\" that may touch"));
 }

@@ -15,8 +15,8 @@ struct Case {
     v: [f64; 6],
     /// Steps to the state, by MuJoCo's Euler.
     steps: usize,
-    /// No more of the bound of the error in `f64` and in `f32`, over ‖a₀‖_M: with elliptic cones, and
-    /// with pyramids.
+    /// No more of the bound of the error in `f64` and in `f32`, over ‖a₀‖_M: with elliptic cones,
+    /// and with pyramids.
     most: [[f64; 2]; 2],
 }
 

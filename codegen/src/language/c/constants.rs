@@ -113,6 +113,9 @@ pub(super) fn declare(out: &mut String, module: &Module, prefix: &str, infinity:
     if module.functions.iter().any(Function::is_of_contacts) {
         let _ = writeln!(out, "/** Number of places where shapes may touch. */\n#define {up}_CONTACTS {}", model.shape().contacts);
     }
+    if module.functions.iter().any(Function::is_of_given) {
+        let _ = writeln!(out, "/** Number of contacts that a caller gives. */\n#define {up}_GIVEN {}", model.shape().given);
+    }
     if !module.parameters.is_empty() {
         let n: usize = module.parameters.iter().map(|p| p.nominal.len()).sum();
         let _ = writeln!(out, "/** Number of parameters. */\n#define {up}_PARAMETERS {n}");

@@ -23,6 +23,8 @@ pub enum Dim {
     Activations,
     /// One for each place where shapes may touch.
     Contacts,
+    /// One for each contact that a caller gives.
+    Given,
     /// This many.
     Of(usize),
 }
@@ -38,6 +40,7 @@ impl Dim {
             Self::Controls => shape.controls,
             Self::Activations => shape.activations,
             Self::Contacts => shape.contacts,
+            Self::Given => shape.given,
             Self::Of(n) => n,
         }
     }
@@ -54,6 +57,7 @@ impl fmt::Display for Dim {
             Self::Controls => f.write_str("NU"),
             Self::Activations => f.write_str("NA"),
             Self::Contacts => f.write_str("CONTACTS"),
+            Self::Given => f.write_str("GIVEN"),
             Self::Of(n) => write!(f, "{n}"),
         }
     }
@@ -75,6 +79,7 @@ macro_rules! dims {
     (one Controls) => { "[nu]" };
     (one Activations) => { "[na]" };
     (one Contacts) => { "[contacts]" };
+    (one Given) => { "[given]" };
     (one Of $n:literal) => { concat!("[", $n, "]") };
 }
 
@@ -195,7 +200,10 @@ const fn have_same_lengths(one: &[Dim], other: &[Dim]) -> bool {
     while k < one.len() && k < other.len() {
         match (one[k], other[k]) {
             (Dim::Nq, Dim::Nq) | (Dim::Nv, Dim::Nv) | (Dim::Frames, Dim::Frames) | (Dim::Links, Dim::Links) => {}
-            (Dim::Controls, Dim::Controls) | (Dim::Activations, Dim::Activations) | (Dim::Contacts, Dim::Contacts) => {}
+            (Dim::Controls, Dim::Controls)
+            | (Dim::Activations, Dim::Activations)
+            | (Dim::Contacts, Dim::Contacts)
+            | (Dim::Given, Dim::Given) => {}
             (Dim::Of(n), Dim::Of(m)) if n == m => {}
             _ => return false,
         }

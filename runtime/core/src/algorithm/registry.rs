@@ -25,6 +25,8 @@ pub struct Shape {
     /// Number of places where shapes may touch
     /// ([`Constraints::contacts`](crate::constraint::Constraints::contacts)).
     pub contacts: usize,
+    /// Number of contacts that a caller gives.
+    pub given: usize,
 }
 
 impl<S: Scalar> Model<S> {
@@ -45,6 +47,7 @@ impl<S: Scalar> Model<S> {
             controls: self.actuators.laws.len(),
             activations: self.actuators.activations(),
             contacts: self.constraints.contacts(),
+            given: self.constraints.pair_of_given().count(),
         }
     }
 }
@@ -133,6 +136,8 @@ pub enum Group {
     /// What touches: accelerations with constraints and steps with them, which are in a table of
     /// their own.
     Constraints,
+    /// The same with contacts that a caller finds.
+    GivenContacts,
     /// States in MuJoCo's conventions, which are in a table of their own.
     Mujoco,
     /// Functions of users, which are not in the table.
@@ -153,7 +158,7 @@ impl Group {
     ];
 
     /// The groups of the tables of [`crate::step`].
-    pub const BESIDE: [Self; 4] = [Self::Steps, Self::Actuators, Self::Constraints, Self::Mujoco];
+    pub const BESIDE: [Self; 5] = [Self::Steps, Self::Actuators, Self::Constraints, Self::GivenContacts, Self::Mujoco];
 
     /// Its name in lists of functions.
     pub fn name(self) -> &'static str {
@@ -169,6 +174,7 @@ impl Group {
             Self::Steps => "steps",
             Self::Actuators => "actuators",
             Self::Constraints => "constraints",
+            Self::GivenContacts => "given_contacts",
             Self::Mujoco => "mujoco",
             Self::User => "user",
         }
@@ -193,6 +199,7 @@ impl Group {
             Self::Steps => "Steps of time",
             Self::Actuators => "Actuators of the file, and steps of time with them",
             Self::Constraints => "What touches: accelerations and steps with limits, dry friction and contacts",
+            Self::GivenContacts => "Accelerations and steps with constraints, and with contacts that a caller finds",
             Self::Mujoco => "States in MuJoCo's conventions",
             Self::User => "Functions of users",
         }

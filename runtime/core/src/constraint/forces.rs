@@ -4,10 +4,10 @@ use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::Constraints;
 use super::contact::{self, Contact};
 use super::motion;
 use super::pairs::{self, Found};
+use super::{Constraints, Pair};
 use crate::Scalar;
 use crate::algorithm::{Placed as Bodies, Workspace};
 use crate::collision::Form;
@@ -21,17 +21,24 @@ pub const CONTACT: usize = 13;
 impl<S> Constraints<S> {
     /// In how many places its pairs may touch.
     pub fn contacts(&self) -> usize {
-        self.pairs.iter().map(|pair| self.places(pair.shapes)).sum()
+        self.pairs.iter().map(|pair| self.places(pair)).sum()
+    }
+
+    /// The pair of each contact that a caller gives, in their order.
+    pub fn pair_of_given(&self) -> impl Iterator<Item = usize> {
+        self.pairs.iter().enumerate().flat_map(|(index, pair)| core::iter::repeat_n(index, pair.given))
     }
 
     /// The pair of each place where shapes may touch, in their order.
     pub fn pair_of_contacts(&self) -> impl Iterator<Item = usize> {
-        let of = |(index, shapes): (usize, [usize; 2])| core::iter::repeat_n(index, self.places(shapes));
-        self.pairs.iter().map(|pair| pair.shapes).enumerate().flat_map(of)
+        self.pairs.iter().enumerate().flat_map(|(index, pair)| core::iter::repeat_n(index, self.places(pair)))
     }
 
-    fn places(&self, shapes: [usize; 2]) -> usize {
-        let [first, second] = shapes.map(|shape| &self.shapes[shape].form);
+    fn places(&self, pair: &Pair<S>) -> usize {
+        if pair.given > 0 {
+            return 0;
+        }
+        let [first, second] = pair.shapes.map(|shape| &self.shapes[shape].form);
         Form::places(first, second).unwrap_or(0)
     }
 }
@@ -52,7 +59,7 @@ pub(crate) fn contact_forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>,
     places.iter().enumerate().rev().for_each(|(place, pair)| first[*pair] = place);
     // Contacts of one dimension: rows of a table, and their places
     let mut tables: BTreeMap<usize, (Vec<S>, Vec<usize>)> = BTreeMap::new();
-    for Found { pair, bodies: [one, other], dimension, rows } in pairs::contacts(constraints, &placed, origin, &rates) {
+    for Found { pair, bodies: [one, other], dimension, rows } in pairs::contacts(constraints, &placed, (origin, &rates), &[]) {
         let relative = (accelerations[other] - accelerations[one]).to_array();
         let (table, places) = tables.entry(dimension).or_default();
         for (k, row) in rows.chunks(contact::length(dimension)).enumerate() {

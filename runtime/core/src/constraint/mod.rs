@@ -33,6 +33,7 @@ pub use contact::MOST_ROWS;
 pub use forces::CONTACT;
 pub(crate) use forces::contact_forces;
 pub(crate) use newton::{Certificate, Smooth, certified, constrained, searched};
+pub use pairs::GIVEN;
 pub use soft::{Impedance, Soft};
 pub use sums::{Sum, SumLaw, Term};
 pub use weights::{Weights, weights};
@@ -114,8 +115,8 @@ pub enum Bound<S = f64> {
 pub struct DryFriction<S = f64> {
     /// The degree of freedom; of a free joint's translation the first of its three.
     pub v: usize,
-    /// Of a free joint's translation: where its quaternion is in q, and the axis of the parent along
-    /// which it acts.
+    /// Of a free joint's translation: where its quaternion is in q, and the axis of the parent
+    /// along which it acts.
     pub along: Option<(usize, usize)>,
     /// Its greatest force, N·m or N.
     pub loss: S,
@@ -130,6 +131,8 @@ pub struct DryFriction<S = f64> {
 pub struct Pair<S = f64> {
     /// The places of both in [`Constraints::shapes`].
     pub shapes: [usize; 2],
+    /// In how many places a caller says where they touch. 0: they are computed here.
+    pub given: usize,
     /// The number of directions in which the contact has forces: 1, 3 (with friction), 4 (with
     /// torsion) or 6 (with rolling).
     pub dimension: usize,
@@ -189,6 +192,7 @@ impl<S: Scalar> Pair<S> {
     fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> Pair<T> {
         Pair {
             shapes: self.shapes,
+            given: self.given,
             dimension: self.dimension,
             friction: self.friction.map(f),
             mu: f(self.mu),

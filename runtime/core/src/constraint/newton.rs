@@ -39,7 +39,8 @@ const LINE: f64 = 1.0 / 256.0;
 /// Powers of two, of `f64` and of `f32`: a change of α that is none.
 const STILL: [i32; 2] = [-50, -20];
 /// The same: a gradient in parts of its terms that ends the iteration, and one that ends it if it
-/// no longer falls; a step in parts of x that ends it then too, where stiff rows multiply roundings.
+/// no longer falls; a step in parts of x that ends it then too, where stiff rows multiply
+/// roundings.
 const SETTLED: [i32; 2] = [-49, -16];
 const SMALL: [i32; 2] = [-30, -10];
 const SHORT: [i32; 2] = [-46, -18];
@@ -52,6 +53,8 @@ pub(crate) struct Smooth<'a, S> {
     pub(crate) a: &'a [S],
     /// A guess of the acceleration, or empty.
     pub(crate) warm: &'a [S],
+    /// Contacts that a caller found, `[given][8]`, or empty: there are none.
+    pub(crate) given: &'a [S],
 }
 
 /// The acceleration with constraints, of origins d²p/dt², and Jᵀ f of their forces.
@@ -142,7 +145,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
         let twists = problem.motion(smooth.v);
         let moving = Moving { model, placed: &placed, columns: &problem.columns, origin, twists: &twists };
         anchors::rows(&constraints.anchors, &moving, &mut problem.rows);
-        for Found { bodies, dimension, rows, .. } in pairs::contacts(constraints, &placed, origin, &twists) {
+        for Found { bodies, dimension, rows, .. } in pairs::contacts(constraints, &placed, (origin, &twists), smooth.given) {
             problem.add(bodies, dimension, &rows);
         }
         problem.parents = problem.ways();
@@ -590,7 +593,7 @@ mod tests {
     }
 
     fn solved(model: &Model<f64>, q: f64, v: f64, a: f64) -> f64 {
-        let smooth = Smooth { q: &[q], v: &[v], a: &[a], warm: &[] };
+        let smooth = Smooth { q: &[q], v: &[v], a: &[a], warm: &[], given: &[] };
         constrained(model, &mut Workspace::new(model), &smooth).0[0]
     }
 
@@ -609,6 +612,7 @@ mod tests {
         let shape = Shape { name: "ball".into(), body: BodyId(1), placement: Placement::identity(), form: Form::Sphere { radius: 0.1 } };
         let pair = Pair {
             shapes: [0, 1],
+            given: 0,
             dimension: 1,
             friction: [1.0; 5],
             mu: 1.0,
@@ -631,7 +635,7 @@ mod tests {
         // Of dual numbers: da/dv = −d b
         for model in [&touching, &limited] {
             let (model, constant) = (model.map(Dual::constant), |x: f64| Dual::constant(x));
-            let smooth = Smooth { q: &[constant(0.095)], v: &[Dual::variable(-1.0)], a: &[constant(-9.81)], warm: &[] };
+            let smooth = Smooth { q: &[constant(0.095)], v: &[Dual::variable(-1.0)], a: &[constant(-9.81)], warm: &[], given: &[] };
             let (found, _) = constrained(&model, &mut Workspace::new(&model), &smooth);
             assert!((found[0].slope + 0.9 * B).abs() < 1e-12 * B, "{:?}", found[0]);
         }
@@ -645,13 +649,13 @@ mod tests {
         let expected = [1.0, 0.0, 0.0, 0.5 * (q - 0.1), 0.0, 0.0, 1.0, 0.0, 0.0, MASS * (exact - a), 0.0, 0.0, 0.0];
         assert!(place.iter().zip(expected).all(|(x, y)| (x - y).abs() < 1e-12 * y.abs().max(1.0)), "{place:?}");
         for moved in [0.0, 1e-3, -1e-3, 5.0, -200.0] {
-            let smooth = Smooth { q: &[q], v: &[v], a: &[a], warm: &[exact + moved] };
+            let smooth = Smooth { q: &[q], v: &[v], a: &[a], warm: &[exact + moved], given: &[] };
             let Certificate { error, size } = certified(&touching, &mut ws, &smooth);
             let distance = MASS.sqrt() * f64::abs(moved);
             assert!(error >= distance * (1.0 - 1e-12) && error < 10.1 * distance + 1e-11, "{moved}: {error} {distance}");
             assert!((size - MASS.sqrt() * a.abs()).abs() < 1e-12 * size);
         }
-        let smooth = Smooth { q: &[q], v: &[v], a: &[a], warm: &[] };
+        let smooth = Smooth { q: &[q], v: &[v], a: &[a], warm: &[], given: &[] };
         let (found, Certificate { error, .. }, steps) = searched(&touching, &mut ws, &smooth);
         assert!(found[0] == exact && error < 1e-11 && (1.0..4.0).contains(&steps), "{found:?} {error} {steps}");
         // Not in contact

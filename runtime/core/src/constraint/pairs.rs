@@ -12,7 +12,7 @@ use super::motion::Twists;
 use super::{Constraints, Pair};
 use crate::Scalar;
 use crate::algorithm::Placed as Bodies;
-use crate::collision::{Form, Placed, are_near, touches};
+use crate::collision::{Form, Placed, Touch, are_near, touches};
 use crate::index::BodyId;
 use crate::scalar::flag;
 use crate::spatial::{Placement, Twist, Vector3};
@@ -44,8 +44,8 @@ struct Sort {
 pub(super) fn contacts<S: Scalar>(
     constraints: &Constraints<S>,
     placed: &Bodies<'_, S>,
-    origin: Vector3<S>,
-    twists: &Twists<S>,
+    (origin, twists): (Vector3<S>, &Twists<S>),
+    given: &[S],
 ) -> Vec<Found<S>> {
     let shape = |pair: &Pair<S>| pair.shapes.map(|shape| &constraints.shapes[shape]);
     let sort = |pair: &Pair<S>| Sort {
@@ -55,7 +55,7 @@ pub(super) fn contacts<S: Scalar>(
         is_reversed: shape(pair)[1].body.is_base(),
     };
     let mut sorts: Vec<(Sort, Vec<Numbered<'_, S>>)> = Vec::new();
-    for (index, pair) in constraints.pairs.iter().enumerate() {
+    for (index, pair) in constraints.pairs.iter().enumerate().filter(|(_, pair)| pair.given == 0) {
         let own = sort(pair);
         match sorts.iter_mut().find(|(other, _)| *other == own) {
             Some((_, pairs)) => pairs.push((index, pair)),
@@ -113,7 +113,58 @@ pub(super) fn contacts<S: Scalar>(
             found.push(Found { pair: *index, bodies: if is_reversed { [other, one] } else { [one, other] }, dimension, rows });
         }
     }
+    if !given.is_empty() {
+        of_caller(constraints, (origin, twists), given, &mut found);
+    }
     found
+}
+
+/// How many numbers a contact of a caller has: 1 or 0, the distance, the point and the normal in
+/// the world.
+pub const GIVEN: usize = 8;
+
+/// The contacts that a caller gives, in the order of their pairs.
+fn of_caller<S: Scalar>(constraints: &Constraints<S>, (origin, twists): (Vector3<S>, &Twists<S>), given: &[S], found: &mut Vec<Found<S>>) {
+    let bodies = |pair: &Pair<S>| pair.shapes.map(|shape| constraints.shapes[shape].body);
+    // Contacts of one dimension, power and direction are rows of a table, beside their pairs.
+    type Key = (usize, Option<u32>, bool);
+    let mut tables: Vec<(Key, Vec<usize>, Vec<S>)> = Vec::new();
+    for (index, own) in constraints.pair_of_given().zip(given.chunks(GIVEN)) {
+        let pair = &constraints.pairs[index];
+        let [one, other] = bodies(pair);
+        let key = (pair.dimension, pair.soft.impedance.twice_power(), other.is_base());
+        let place = tables.iter().position(|(known, ..)| *known == key).unwrap_or_else(|| {
+            tables.push((key, Vec::new(), Vec::new()));
+            tables.len() - 1
+        });
+        let (_, pairs, table) = &mut tables[place];
+        pairs.push(index);
+        table.extend(numbers(|see| _ = pair.map(see)));
+        table.extend(own.iter().chain(&(twists[other] - twists[one]).to_array()));
+    }
+    for ((dimension, _, is_reversed), pairs, table) in tables {
+        let (first, length) = (&constraints.pairs[pairs[0]], contact::length_of_place(dimension));
+        let mut results = vec![S::zero(); length * pairs.len()];
+        S::for_each(pairs.len(), &table, &mut [], &mut results, |row, _, place| {
+            let row = RefCell::new(row.iter());
+            let next = |other: S| row.borrow_mut().next().copied().unwrap_or(other);
+            let pair = first.map(next);
+            let three = || Vector3::zeros().map(next);
+            let (exists, distance) = (next(S::zero()), next(S::zero()));
+            let touch = Touch { exists, distance, point: three() - origin, normal: three(), tangent: None };
+            let relative = Twist { angular: three(), linear: three() };
+            let acts = flag::<S>((pair.margin - distance).positive()) * flag::<S>(exists.positive());
+            S::when(acts.positive(), place, |place| {
+                let contact = Contact::new(&pair, constraints.cone, &touch, &relative);
+                place.copy_from_slice(&if is_reversed { contact.reversed() } else { contact }.place());
+            });
+        });
+        for (pair, place) in pairs.into_iter().zip(results.chunks(length)) {
+            let [one, other] = bodies(&constraints.pairs[pair]);
+            let rows = Contact::row_of(&constraints.pairs[pair], place);
+            found.push(Found { pair, bodies: if is_reversed { [other, one] } else { [one, other] }, dimension, rows });
+        }
+    }
 }
 
 /// The numbers that `visit` sees, in order.

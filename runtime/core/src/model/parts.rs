@@ -143,7 +143,7 @@ impl<S: Scalar> ModelParts<S> {
             if first.body == second.body {
                 return Err(refused(part(), "one body".into(), "two bodies"));
             }
-            if Form::places(&first.form, &second.form).is_none() {
+            if pair.given == 0 && Form::places(&first.form, &second.form).is_none() {
                 let found = format!("a {} and a {}", first.form.name(), second.form.name());
                 return Err(refused(part(), found, "a pair of `collision::Form::places`"));
             }

@@ -4,7 +4,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{ACT, CTRL, Drive, FOUND, H, Start, Steps, WARM, free};
+use super::{ACT, CONTACTS, CTRL, Drive, FOUND, H, Start, Steps, WARM, free};
 use crate::Scalar;
 use crate::algorithm::registry::{Group, Inputs, Needs};
 use crate::algorithm::{
@@ -20,7 +20,7 @@ use core::cell::RefCell;
 pub(super) fn acceleration<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,
-    (q, v): (&[S], &[S]),
+    (q, v, given): (&[S], &[S], &[S]),
     warm: &mut Vec<S>,
     a: &mut [S],
 ) -> Vec<S> {
@@ -31,7 +31,7 @@ pub(super) fn acceleration<S: Scalar>(
         return vec![S::zero(); model.nv];
     }
     free::of_origins(model, v, a);
-    let (x, forces) = constrained(model, ws, &Smooth { q, v, a, warm });
+    let (x, forces) = constrained(model, ws, &Smooth { q, v, a, warm, given });
     warm.copy_from_slice(&x);
     a.copy_from_slice(&x);
     free::of_bodies(model, v, a);
@@ -69,6 +69,14 @@ impl<S: Scalar> Steps<S> {
             },
         ],
         unsolved: None,
+    };
+
+    pub(super) const constrained_acceleration_with_contacts: Function<S> = Function {
+        name: "constrained_acceleration_with_contacts",
+        summary: "constrained_acceleration with contacts that a caller finds",
+        takes: &[Argument::Q, Argument::V, ACT, CTRL, CONTACTS, WARM],
+        group: Group::GivenContacts,
+        ..Self::constrained_acceleration
     };
 
     pub(super) const constrained_search: Function<S> = Function {
@@ -159,11 +167,11 @@ fn with_smooth<S: Scalar, T>(
     solve: impl FnOnce(&Model<S>, &mut Workspace<S>, &Smooth<'_, S>) -> T,
 ) -> T {
     let [q, v, act, ctrl] = [Argument::Q, Argument::V, ACT, CTRL].map(|argument| inputs.get(argument));
-    let start = Start { model, q, v, act, drive: Drive::Controls(ctrl), h: S::zero(), accelerate, warm: None };
+    let start = Start { model, q, v, act, drive: Drive::Controls(ctrl), h: S::zero(), accelerate, warm: None, given: &[] };
     let mut a = vec![S::zero(); model.nv];
     start.acceleration(ws, (q, v, act), &mut a);
     free::of_origins(model, v, &mut a);
-    solve(model, ws, &Smooth { q, v, a: &a, warm })
+    solve(model, ws, &Smooth { q, v, a: &a, warm, given: &[] })
 }
 
 fn search<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, inputs: &Inputs<'_, S>, accelerate: super::Accelerate<S>, out: &mut [S]) {
@@ -182,6 +190,6 @@ fn run<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, inputs: &Inputs<'_, S
     let [q, v, act, ctrl, warm] = [Argument::Q, Argument::V, ACT, CTRL, WARM].map(|argument| inputs.get(argument));
     let h = inputs.get(H).first().copied().unwrap_or(S::zero());
     let warm = Some(RefCell::new(warm.to_vec()));
-    let start = Start { model, q, v, act, drive: Drive::Controls(ctrl), h, accelerate, warm };
+    let start = Start { model, q, v, act, drive: Drive::Controls(ctrl), h, accelerate, warm, given: inputs.get(CONTACTS) };
     start.acceleration(ws, (q, v, act), out);
 }

@@ -48,6 +48,16 @@ pub const WARM: Argument =
 /// An acceleration with constraints that was found.
 pub const FOUND: Argument = Argument::new(&Port::new("found", &[Dim::Nv], "rad/s²|m/s², `warm_next` of a step from this state"));
 
+/// Contacts that a caller found: 1 or 0, the distance, m, the point, m, and the normal, in axes of
+/// the world, from the first shape of the pair to the second.
+pub const CONTACTS: Argument = Argument::new(&Port::new(
+    "contacts",
+    &[Dim::Given, Dim::Of(crate::constraint::GIVEN)],
+    "1 or 0, distance, point, m, and normal, from the first shape to the second: of each given contact",
+));
+
+const WITH_CONTACTS_TAKES: &[Argument] = &[Argument::Q, Argument::V, ACT, CTRL, CONTACTS, WARM, H];
+
 const TAKES: &[Argument] = &[Argument::Q, Argument::V, Argument::Tau, H];
 const GIVES: &[Port] = &[Q_NEXT, V_NEXT];
 const ACTUATED_TAKES: &[Argument] = &[Argument::Q, Argument::V, ACT, CTRL, H];
@@ -79,6 +89,8 @@ struct Start<'a, S: 'static> {
     accelerate: Accelerate<S>,
     /// With constraints: the last acceleration, with which the next search begins.
     warm: Option<RefCell<Vec<S>>>,
+    /// Contacts that a caller found, or empty.
+    given: &'a [S],
 }
 
 /// Inputs, constant during a step.
@@ -111,7 +123,7 @@ impl<S: Scalar> Start<'_, S> {
         if let Some(warm) = &self.warm {
             let diagonal = (mem::take(&mut ws.diagonal), mem::take(&mut ws.coupled));
             (self.accelerate)(self.model, ws, q, v, &tau, &[], out);
-            let forces = constrained::acceleration(self.model, ws, (q, v), &mut warm.borrow_mut(), out);
+            let forces = constrained::acceleration(self.model, ws, (q, v, self.given), &mut warm.borrow_mut(), out);
             (ws.diagonal, ws.coupled) = diagonal;
             if ws.diagonal.iter().all(Option::is_none) && ws.coupled.is_empty() {
                 return;
@@ -166,7 +178,7 @@ fn run<S: Scalar>(
         tau => (&[][..], Drive::Torques(tau)),
     };
     let mut end = End { q: q_next, v: v_next, act: act_next };
-    let start = Start { model, q, v, act, drive, h: h[0], accelerate, warm };
+    let start = Start { model, q, v, act, drive, h: h[0], accelerate, warm, given: inputs.get(CONTACTS) };
     method(&start, ws, &mut end);
     if let Some(warm) = start.warm {
         warm_next.copy_from_slice(&warm.into_inner());
@@ -191,7 +203,7 @@ macro_rules! steps {
                 group: Group::$group,
                 needs: Needs::MassMatrix,
                 // Passes of models move frames of bodies, and not the shapes in them.
-                regrouped: !matches!(Group::$group, Group::Constraints),
+                regrouped: !matches!(Group::$group, Group::Constraints | Group::GivenContacts),
                 contains: &[$(FunctionId::$contains),*],
                 ways: &[
                     Variant {
@@ -281,6 +293,18 @@ steps! { OF_CONSTRAINTS, Constraints, CONSTRAINED_TAKES, CONSTRAINED_GIVES, [con
         "MuJoCo documentation, Computation: constraint model; Numerical integration";
 }
 
+steps! { OF_CALLERS, GivenContacts, WITH_CONTACTS_TAKES, CONSTRAINED_GIVES, [constrained_acceleration_with_contacts];
+    constrained_step_semi_implicit_euler_with_contacts: euler::semi_implicit, untied, [forward_dynamics_with_wrenches],
+        "constrained_step_semi_implicit_euler with contacts that a caller finds",
+        "MuJoCo documentation, Computation: constraint model";
+    constrained_step_implicit_damping_with_contacts: euler::implicit_damping, untied, [forward_dynamics_with_wrenches],
+        "constrained_step_implicit_damping with contacts that a caller finds",
+        "MuJoCo documentation, Computation: constraint model; Numerical integration";
+    constrained_step_implicit_velocity_with_contacts: implicit_velocity::implicit_velocity, solved_at_once, [forward_dynamics_with_wrenches],
+        "constrained_step_implicit_velocity with contacts that a caller finds",
+        "MuJoCo documentation, Computation: constraint model; Numerical integration";
+}
+
 /// Whether one branch at a time can be solved: no joint follows another, and D has no entries
 /// between degrees of freedom.
 fn solved_at_once<S: Scalar>(model: &Model<S>) -> bool {
@@ -342,6 +366,11 @@ pub fn of_constraints<S: Scalar>() -> &'static [Function<S>] {
     Steps::OF_CONSTRAINTS
 }
 
+/// The same with contacts that a caller finds.
+pub fn of_given_contacts<S: Scalar>() -> &'static [Function<S>] {
+    Steps::OF_CALLERS
+}
+
 /// States in MuJoCo's conventions, and back.
 pub fn exchanges<S: Scalar>() -> &'static [Function<S>] {
     Steps::EXCHANGES
@@ -353,6 +382,7 @@ pub fn of_group<S: Scalar>(group: Group) -> &'static [Function<S>] {
         Group::Steps => steps(),
         Group::Actuators => of_actuators(),
         Group::Constraints => of_constraints(),
+        Group::GivenContacts => of_given_contacts(),
         Group::Mujoco => exchanges(),
         _ => &[],
     }

@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{ACT, CTRL, H, WARM};
+use super::{ACT, CONTACTS, CTRL, H, WARM};
 use crate::Scalar;
 use crate::algorithm::{Argument, Function, FunctionError, Workspace, check_length};
 use crate::model::Model;
@@ -45,7 +45,7 @@ pub fn rollout<'a, S: Scalar>(
     inputs: impl IntoIterator<Item = &'a [S]>,
     mut see: impl FnMut(usize, &State<S>),
 ) -> Result<(), FunctionError> {
-    if !method.takes.contains(&H) {
+    if !method.takes.contains(&H) || method.takes.contains(&CONTACTS) {
         return Err(FunctionError::Arguments { function: method.name, found: 4, expected: method.takes.len() });
     }
     let has_actuators = method.takes.contains(&CTRL);

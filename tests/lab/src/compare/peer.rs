@@ -161,7 +161,7 @@ impl Peer {
             let ours = match dim {
                 Dim::Nq => self.q[index],
                 Dim::Nv => self.v[index],
-                Dim::Frames | Dim::Links | Dim::Controls | Dim::Activations | Dim::Contacts | Dim::Of(_) => index,
+                Dim::Frames | Dim::Links | Dim::Controls | Dim::Activations | Dim::Contacts | Dim::Given | Dim::Of(_) => index,
             };
             (rest, stride, at) = (rest / n, stride * n, at + stride * ours);
         }

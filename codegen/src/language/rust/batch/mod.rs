@@ -96,6 +96,9 @@ impl Variant {
         if functions.iter().any(|f| f.function.is_of_contacts()) {
             more += ", CONTACTS";
         }
+        if functions.iter().any(|f| f.function.is_of_given()) {
+            more += ", GIVEN";
+        }
         if functions.iter().any(|f| f.inputs().iter().any(|a| a.is_parameters)) {
             more += ", PARAMETERS";
         }

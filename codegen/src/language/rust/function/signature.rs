@@ -256,7 +256,7 @@ mod tests {
     use crate::ledger::Entry;
     use crate::program::Program;
 
-    const SHAPE: Shape = Shape { nq: 9, nv: 9, frames: 0, links: 0, controls: 0, activations: 0, contacts: 0 };
+    const SHAPE: Shape = Shape { nq: 9, nv: 9, frames: 0, links: 0, controls: 0, activations: 0, contacts: 0, given: 0 };
 
     fn with<T>(text: &str, shape: Shape, ending: Ending, work: impl FnOnce(&Signature) -> T) -> T {
         let spec = FunctionSpec::parse(text).unwrap();

@@ -87,6 +87,10 @@ fn edits(module: &Module<'_>) -> Vec<String> {
     for (joint, at) in values(&o.robot.lock) {
         lines.push(format!("Locked: joint {joint:?} at {at:?}."));
     }
+    for given in values(&o.robot.given_contacts) {
+        let [first, second] = &given.shapes;
+        lines.push(format!("Given by the caller: contacts of {first:?} and {second:?} in {} places.", given.places));
+    }
     for e in module.effects {
         let (xyz, rpy) = (e.at.xyz, e.at.rotation.rpy());
         let at = if e.at == Origin::default() { String::new() } else { format!(" at xyz {xyz:?} m, rpy {rpy:?} rad") };

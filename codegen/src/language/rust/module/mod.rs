@@ -41,6 +41,9 @@ pub(crate) fn module(module: &Module, rust: &RustOptions) -> String {
     if functions.iter().any(Function::is_of_contacts) {
         of_contacts(&mut text.public, model.constraints());
     }
+    if functions.iter().any(Function::is_of_given) {
+        of_given(&mut text.public, model.constraints());
+    }
     indices(&mut text.public, model, &Names::of(model, request));
     inputs(&mut text.public, parameters);
     let (forbid_unsafe, level) = (rust.forbid_unsafe, request.options.level);
@@ -68,6 +71,9 @@ pub(crate) fn module(module: &Module, rust: &RustOptions) -> String {
     let mut more = if has_actuators { ", NA, NU".to_owned() } else { String::new() };
     if functions.iter().any(Function::is_of_contacts) {
         more += ", CONTACTS";
+    }
+    if functions.iter().any(Function::is_of_given) {
+        more += ", GIVEN";
     }
     if !parameters.is_empty() {
         more += ", PARAMETERS";
@@ -153,11 +159,27 @@ fn of_actuators(out: &mut String, actuators: &Actuators) {
 /// The number of places of contact, and their shapes.
 fn of_contacts(out: &mut String, constraints: &Constraints) {
     let _ = writeln!(out, "/// Number of places where shapes may touch.\npub const CONTACTS: usize = {};", constraints.contacts());
-    let names: Vec<[&str; 2]> = constraints
-        .pair_of_contacts()
-        .map(|pair| constraints.pairs[pair].shapes.map(|shape| constraints.shapes[shape].name.as_str()))
-        .collect();
-    constant(out, "Names of the two shapes of each such place.", &format!("pub const CONTACT_SHAPES: [[&str; 2]; CONTACTS] = {names:?};"));
+    shapes_of(
+        out,
+        constraints,
+        constraints.pair_of_contacts(),
+        "Names of the two shapes of each such place.",
+        "CONTACT_SHAPES: [[&str; 2]; CONTACTS]",
+    );
+}
+
+/// The number of contacts that a caller gives, and their shapes.
+fn of_given(out: &mut String, constraints: &Constraints) {
+    let count = constraints.pair_of_given().count();
+    let _ = writeln!(out, "/// Number of contacts that a caller gives.\npub const GIVEN: usize = {count};");
+    let doc = "Names of the two shapes of each of them.";
+    shapes_of(out, constraints, constraints.pair_of_given(), doc, "GIVEN_SHAPES: [[&str; 2]; GIVEN]");
+}
+
+fn shapes_of(out: &mut String, constraints: &Constraints, pairs: impl Iterator<Item = usize>, doc: &str, name: &str) {
+    let shapes = |pair: usize| constraints.pairs[pair].shapes.map(|shape| constraints.shapes[shape].name.as_str());
+    let names: Vec<[&str; 2]> = pairs.map(shapes).collect();
+    constant(out, doc, &format!("pub const {name} = {names:?};"));
 }
 
 /// A constant, which stays one line however long it is.
