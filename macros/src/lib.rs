@@ -71,7 +71,7 @@ mod tree;
 ///         allow_unphysical_inertia = false, // true: negative principal moments are a warning
 ///         first_of_duplicates = false, // true: the first of contradicting tags counts
 ///         leave_out = [], // [flex, composite, plugin, …]: what is left out of an MJCF
-///         given_contacts = [], // [["floor", "foot", 4], …]: geoms of an MJCF whose contacts you find
+///         given_contacts = [], // [["floor", "foot", 4], …]: geoms whose contacts you find (MJCF)
 ///         allow_unknown_version = false, // true: a URDF of an unknown version is read as 1.0
 ///         snap_angles = 1e-9, // default: none. rad, above 0, at most 0.5: angles this near to a multiple of π/2 become that multiple
 ///         limbs = true, // isomorphic limbs together, one per lane of a vector, where that is cheaper

@@ -2,9 +2,9 @@
 //! differences, `mjd_transitionFD`, in one process and in turns.
 //!
 //! gradients.py compiles this file with the path of generated code in `GENERATED`: `step`, its
-//! Jacobian `slopes` by q, v and ctrl, and its vector-Jacobian product `pull`. Arguments: a compiled
-//! model (mjb), states, the file to write, the number of states, rounds, the length of a step, and
-//! what a state of MuJoCo contains (mjtState).
+//! Jacobian `slopes` by q, v and ctrl, and its vector-Jacobian product `pull`. Arguments: a
+//! compiled model (mjb), states, the file to write, the number of states, rounds, the length of a
+//! step, and what a state of MuJoCo contains (mjtState).
 
 use std::ffi::{CString, c_char, c_int, c_void};
 use std::hint::black_box;
