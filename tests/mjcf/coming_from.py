@@ -36,9 +36,11 @@ ELSEWHERE = {
     "`qfrc_actuator`": "tests/mjcf/oracle.py compares torques of actuators",
     "`qfrc_passive` (springs, dampers, fluid)": "tests/mjcf/simulate.py compares forces of effects",
     "`mjd_inverseFD` (finite differences)": "finite differences, not numbers of the same kind",
-    "`mjd_transitionFD` (of a step)": "finite differences of a step",
+    "`mjd_transitionFD` (of a step)": "tests/mjcf/gradients.py compares steps with contacts",
     "`mjd_quatIntegrate`, `mjd_subQuat`": "derivatives of one quaternion; tests/tests/laws has them by differences",
-    "`mj_step`": "tests/mjcf/steps.py and simulate.py compare motions",
+    "`mj_step`": "tests/mjcf/steps.py, contact.py and simulate.py compare motions",
+    "`mj_contactForce`": "tests/mjcf/contact.py compares points, normals and forces",
+    "`mj_step2` after `data.contact`": "tests/mjcf/given.py gives MuJoCo's contacts",
 }
 STATES = 5
 CLOSE = 1e-11
