@@ -483,6 +483,35 @@ class Robot(_native.Robot):
         weights = {"weights_q": weights_q, "weights_v": weights_v, "weights_act": weights_act}
         return _rollout.gradient(self, q, v, act, ctrl, h, weights, method, threads, _rollout.ACTUATED)
 
+    def contact_forces(self, q, v, ctrl=None, *, act=None):
+        """What touches in states of a robot of an MJCF, with which forces, by MuJoCo's law.
+
+        >>> found = robot.contact_forces(q, v)                   # doctest: +SKIP
+        >>> found.force[found.acts].sum(axis=0)                  # doctest: +SKIP
+        >>> [robot.contact_shapes[k] for k in np.flatnonzero(found.acts)]  # doctest: +SKIP
+
+        Args:
+            q: Coordinates, [..., nq]. v: Rates, [..., nv].
+            ctrl: Controls, [..., nu]; None for zeros.
+            act: Activations of the actuators that have one, [..., na]; None for zeros.
+
+        Returns:
+            ContactForces: for each place of ``contact_shapes`` whether it touches, acts [..., contacts], and point, m, normal,
+            force, N, and moment about the point, N·m, [..., contacts, 3] in axes of the world; zeros where nothing touches.
+            The normal is from the world to the body, or from the first body to the second; force and moment act on this body.
+            relative_error [...]: no less than the error of the acceleration, over that without constraints, both in the norm of
+            the mass matrix. search_steps [...]: steps of Newton's method.
+
+        Raises:
+            RobotError, ValueError: As ``constrained_rollout``.
+        """
+        return _rollout.contact_forces(self, q, v, act, ctrl)
+
+    @property
+    def contact_shapes(self):
+        """Names of the two geoms of each place where geoms of an MJCF may touch, (contacts, 2)."""
+        return [tuple(names) for names in self._contact_shapes()]
+
     def constrained_rollout_gradient(
         self, q, v, ctrl, h, *, act=None, weights_q=None, weights_v=None, weights_act=None, method="implicit_damping", threads=None
     ):

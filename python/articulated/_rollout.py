@@ -14,6 +14,7 @@ RolloutGradient = collections.namedtuple("RolloutGradient", ["q", "v", "tau"])
 ActuatedRollout = collections.namedtuple("ActuatedRollout", ["q", "v", "act"])
 ActuatedRolloutGradient = collections.namedtuple("ActuatedRolloutGradient", ["q", "v", "act", "ctrl"])
 State = collections.namedtuple("State", ["q", "v"])
+ContactForces = collections.namedtuple("ContactForces", ["acts", "point", "normal", "force", "moment", "relative_error", "search_steps"])
 MujocoState = collections.namedtuple("MujocoState", ["qpos", "qvel"])
 # How names of steps begin: with torques, with controls of actuators, and with constraints too.
 STEP, ACTUATED, CONSTRAINED = "step_", "actuated_step_", "constrained_step_"
@@ -75,6 +76,18 @@ class Steps:
             by = "q v act ctrl" if self.actuated else "q v tau"
             known[self.name] = self.robot.derivative(f"vjp({self.name}, {by})")
         return known[self.name]
+
+
+def contact_forces(robot, q, v, act, ctrl):
+    """The contacts of states, without steps."""
+    steps = Steps(robot, "implicit_damping", CONSTRAINED)
+    ctrl = np.zeros(len(robot.actuators)) if ctrl is None else np.asarray(as_numbers("ctrl", ctrl), dtype=np.float64)
+    (q, v, act, held), batch = steps.arrays(q, v, act, ctrl[..., None, :] if ctrl.ndim else ctrl)
+    places, certificates = robot._contacts(q, v, act, np.ascontiguousarray(held[:, 0]))
+    places = places.reshape((*batch, *places.shape[1:]))
+    vectors = [places[..., k : k + 3] for k in (1, 4, 7, 10)]
+    error, count = (certificates[:, k].reshape(batch)[()] for k in (0, 1))
+    return ContactForces(places[..., 0] == 1.0, *vectors, error, count.astype(int))
 
 
 def exchanged(robot, name, given):

@@ -7,6 +7,7 @@
 mod arrays;
 mod batch;
 mod compiled;
+mod contacts;
 mod derived;
 mod errors;
 mod exchange;

@@ -22,6 +22,7 @@ use pyo3::types::{PyList, PyTuple};
 
 use crate::arrays::{self, Argument, Real as _};
 use crate::batch::{self, Call, Compute, Generic, Kernel, Workspaces};
+use crate::contacts;
 use crate::derived::Derived;
 use crate::errors;
 use crate::exchange;
@@ -388,6 +389,25 @@ impl Robot {
         rates: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<[Bound<'py, PyArray2<f64>>; 2]> {
         exchange::run(py, &self.model, name, &positions, &rates)
+    }
+
+    /// What touches in states, and how exact their accelerations are: see [`contacts::run`].
+    fn _contacts<'py>(
+        &self,
+        py: Python<'py>,
+        q: PyReadonlyArray2<'py, f64>,
+        v: PyReadonlyArray2<'py, f64>,
+        act: PyReadonlyArray2<'py, f64>,
+        ctrl: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<contacts::Found<'py>> {
+        contacts::run(py, &self.model, [&q, &v, &act, &ctrl])
+    }
+
+    /// Names of the two shapes of each place where shapes may touch.
+    fn _contact_shapes(&self) -> Vec<[String; 2]> {
+        let constraints = self.model.constraints();
+        let names = |pair: usize| constraints.pairs[pair].shapes.map(|shape| constraints.shapes[shape].name.clone());
+        constraints.pair_of_contacts().map(names).collect()
     }
 
     /// A warning of smooth forces of the file that do not act beside its actuators, if there are

@@ -88,7 +88,7 @@ pub(crate) fn run<'py>(
     Ok([q?, v?, act?])
 }
 
-fn array<'py>(py: Python<'py>, shape: [usize; 3], numbers: &[f64]) -> PyResult<Bound<'py, PyArray3<f64>>> {
+pub(crate) fn array<'py>(py: Python<'py>, shape: [usize; 3], numbers: &[f64]) -> PyResult<Bound<'py, PyArray3<f64>>> {
     let array = PyArray3::<f64>::zeros(py, shape, false);
     // The array is new: no other reference to it exists.
     array.readwrite().as_slice_mut()?.copy_from_slice(numbers);

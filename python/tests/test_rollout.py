@@ -240,6 +240,19 @@ def test_gradients_through_contacts_are_those_of_differences():
 def test_bundled_robots_stand():
     robot = articulated.bundled("landing_quadruped")
     assert robot.nv == 18 and len(robot.actuators) == 12
+    # It rests on its feet: their forces carry it.
+    q = np.concatenate([[0, 0, 0.2917], [0, 0, 0, 1], [0, 0.8, -1.6] * 4])
+    stance = np.array([0, 0.8, -1.6] * 4)
+    with pytest.warns(articulated.RobotWarning, match="effects"):
+        ends = robot.constrained_rollout(q, np.zeros(18), np.tile(stance, (1500, 1)), 0.002, every=1500)
+    found = robot.contact_forces(ends.q[-1], ends.v[-1], stance)
+    assert found.acts.sum() == 4 and found.force.shape == (len(robot.contact_shapes), 3) and found.relative_error < 1e-12
+    assert abs(found.force.sum(axis=0)[2] / (15.2 * 9.81) - 1) < 1e-2 and (found.force[~found.acts] == 0).all()
+    assert all("floor" in robot.contact_shapes[k] for k in np.flatnonzero(found.acts))
+    many = robot.contact_forces(np.tile(ends.q[-1], (2, 3, 1)), np.zeros(18), stance)
+    assert many.acts.shape == (2, 3, len(robot.contact_shapes)) and many.search_steps.shape == (2, 3)
+    with pytest.raises(ValueError, match="q: found shape"):
+        robot.contact_forces(q[:-1], np.zeros(18))
     scene = articulated.Scene("quadruped_lands")
     summary = scene.run(end=1.0).summary
     assert summary["constraints"]["most_contacts"] == 4 and summary["constraints"]["largest_relative_error"] < 1e-10

@@ -19,7 +19,7 @@ fn one(text: &str) -> String {
 #[test]
 fn an_unknown_key_is_told_with_the_nearest() {
     let expected = "s.toml:1: gravty: found a key that is not known, expected one of summary, robot, urdf, file, base, gravity, functions, parameters, \
-                    frames, wrenches_in, coupling, lock, payload, append, rename, args, packages, allow_unphysical_inertia, first_of_duplicates, leave_out, allow_unknown_version, snap_angles, limbs, batch, level, \
+                    frames, wrenches_in, coupling, lock, payload, append, rename, args, packages, allow_unphysical_inertia, first_of_duplicates, leave_out, given_contacts, allow_unknown_version, snap_angles, limbs, batch, level, \
                     forbid_unsafe, max_code_size, effects, simulation, initial, control, impact; did you mean \"gravity\"?";
     assert_eq!(one("gravty = [0, 0, -9.81]"), expected);
     let expected = "s.toml:2: effects.dampign: found a key that is not known, expected one of armature, damping, friction, spring, limit, motor, \
