@@ -85,7 +85,9 @@ fn written(path: &Path, reading: &Reading, leave_out: &[LeaveOut], has_law: bool
     }
     let _ = writeln!(out, "\n[simulation]\nend = {END:?}");
     if has_law {
-        out += "law = \"mujoco\"\nstep = \"file\"\n";
+        out += "law = \"mujoco\"\n";
+        // Without one, the step is that of MuJoCo.
+        out += if world.step.is_some() { "step = \"file\"\n" } else { "" };
     } else if let Some(step) = world.step {
         let _ = writeln!(out, "# integrator = \"semi_implicit_euler\"\n# step = \"file\"  # {step:?} s");
     }
