@@ -350,6 +350,11 @@ class Robot(_Functions):
         method: str = "implicit_velocity",
         threads: Optional[int] = None,
     ) -> ActuatedRolloutGradient: ...
+    def contact_forces(
+        self, q: ArrayLike, v: ArrayLike, ctrl: Optional[ArrayLike] = None, *, act: Optional[ArrayLike] = None
+    ) -> ContactForces: ...
+    @property
+    def contact_shapes(self) -> list[tuple[str, str]]: ...
     def constrained_rollout_gradient(
         self,
         q: ArrayLike,
@@ -420,6 +425,15 @@ class ActuatedRolloutGradient(NamedTuple):
     v: NDArray[np.float64]
     act: NDArray[np.float64]
     ctrl: NDArray[np.float64]
+
+class ContactForces(NamedTuple):
+    acts: NDArray[np.bool_]
+    point: NDArray[np.float64]
+    normal: NDArray[np.float64]
+    force: NDArray[np.float64]
+    moment: NDArray[np.float64]
+    relative_error: NDArray[np.float64]
+    search_steps: NDArray[np.int64]
 
 class CompiledRobot(_Functions):
     robot: Robot
