@@ -32,6 +32,7 @@ step mjcf-generated python3 tests/mjcf/oracle.py --generated
 step mjcf-motion python3 tests/mjcf/simulate.py
 step mjcf-steps python3 tests/mjcf/steps.py
 step mjcf-contact python3 tests/mjcf/contact.py
+step parry cargo run --release --manifest-path examples/parry/Cargo.toml
 step mjcf-gradients python3 tests/mjcf/gradients.py
 step sdf python3 tests/sdf/oracle.py
 step xacro python3 tests/xacro/oracle.py

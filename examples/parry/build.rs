@@ -4,6 +4,7 @@ use articulated_codegen::Build;
 
 fn main() {
     Build::new("gems.xml")
+        .standalone()
         .file_effects()
         .given_contact("floor", "lower", 4)
         .given_contact("floor", "upper", 4)
