@@ -13,7 +13,10 @@ impl Printer<'_> {
     /// A region. `define`: as for other statements.
     pub(super) fn region(&self, out: &mut String, region: &Region, define: &str) {
         for Carried { temp, start, .. } in &region.carried {
-            let _ = writeln!(out, "    let mut {} = {};", name(*temp), bare(&self.operand(start)));
+            // A number of two parts keeps its brackets.
+            let start = self.operand(start);
+            let start = if start.contains(',') { &start } else { bare(&start) };
+            let _ = writeln!(out, "    let mut {} = {start};", name(*temp));
         }
         for (column, values) in &region.columns {
             let list: Vec<String> = values.iter().map(|value| self.operand(value)).collect();
