@@ -283,7 +283,12 @@ pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], f
         let expected = "a file with actuators or tendons (MJCF), or functions with torques as an argument";
         return lacks(Code::NoActuators, "no actuator".into(), expected);
     }
-    if function.group == Group::GivenContacts && model.constraints().pair_of_given().next().is_none() {
+    let given = model.constraints().pair_of_given().count();
+    if function.group == Group::Constraints && given > 0 {
+        let expected = "functions of the group `given_contacts`, which take them, or no `given_contacts`";
+        return lacks(Code::Unsupported, format!("{given} contacts that a caller gives"), expected);
+    }
+    if function.group == Group::GivenContacts && given == 0 {
         let expected = "the key `given_contacts` (`--given-contact`, method `Build::given_contact`) with pairs of geoms, or functions without contacts as argument";
         return lacks(Code::NoConstraints, "no contact that a caller gives".into(), expected);
     }

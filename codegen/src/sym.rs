@@ -431,7 +431,8 @@ mod tests {
         assert_eq!(&out[1..], [2.0, 0.5, f64::atan2(-2.0, -0.5), std::f64::consts::FRAC_PI_2]);
     }
 
-    /// One that is the same in all rows, and one that nobody reads.
+    /// A table drops the column that is the same in all rows, and the column that the body does not
+    /// read.
     #[test]
     fn a_table_has_the_columns_that_vary_and_are_read() {
         let graph = trace(|| {

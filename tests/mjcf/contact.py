@@ -34,7 +34,8 @@ from speed import METHODS, Program, apart, in_package
 from steps import LONGEST, MANY, MANY_OF_FREE, ROUNDING, mjcf_files, of_mujoco, reported, rolled, smooth
 
 ONE_STEP = 1e-10
-# An upright cylinder on a plane touches at places around it from the direction of its tilt on: a rounding over the tilt.
+# The tilt of an upright cylinder says where it touches a plane: errors of these places are
+# roundings over the tilt.
 FORCES = 1e-8
 STATES, STEPS = 60, 1000
 SPEED_STATES, SPEED_STEPS, ROUNDS = 64, 10, 11

@@ -240,6 +240,11 @@ fn given_contacts_are_those_that_are_computed() {
             }
         }
     }
+    // Functions that would leave given contacts out are errors.
+    let mut request = Request::new("ball.xml", text.clone());
+    request.options = Options { functions: vec!["contact_forces".into()], ..Options::default() };
+    request.options.robot.given_contacts = vec![GivenContact { shapes: ["floor", "ball"].map(str::to_owned), places: 2 }.into()];
+    assert!(generate(&request).unwrap_err().to_string().contains("2 contacts that a caller gives"));
     // Without such pairs there is no function; unknown names are errors.
     let mut request = Request::new("ball.xml", text);
     request.options = Options { functions: vec![names[0].into()], ..Options::default() };

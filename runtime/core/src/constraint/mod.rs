@@ -131,7 +131,8 @@ pub struct DryFriction<S = f64> {
 pub struct Pair<S = f64> {
     /// The places of both in [`Constraints::shapes`].
     pub shapes: [usize; 2],
-    /// In how many places a caller says where they touch. 0: they are computed here.
+    /// In how many places a caller says where they touch: functions without contacts as an argument
+    /// leave the pair out. 0: the places are computed here.
     pub given: usize,
     /// The number of directions in which the contact has forces: 1, 3 (with friction), 4 (with
     /// torsion) or 6 (with rolling).

@@ -38,6 +38,26 @@ pub(super) fn acceleration<S: Scalar>(
     forces
 }
 
+/// The ways of a function by those of forward dynamics: `$run` takes one of them.
+macro_rules! ways {
+    ($run:ident) => {
+        &[
+            Variant {
+                name: "ABA",
+                applies: untied,
+                least: nothing,
+                run: &|model, ws, inputs, out| $run(model, ws, inputs, articulated_body_with_wrenches, out),
+            },
+            Variant {
+                name: "LTDL",
+                applies: always,
+                least: factorization,
+                run: &|model, ws, inputs, out| $run(model, ws, inputs, forward_dynamics_with_wrenches, out),
+            },
+        ]
+    };
+}
+
 #[allow(non_upper_case_globals)]
 impl<S: Scalar> Steps<S> {
     pub(super) const constrained_acceleration: Function<S> = Function {
@@ -54,20 +74,7 @@ impl<S: Scalar> Steps<S> {
         needs: Needs::MassMatrix,
         regrouped: false,
         contains: &[FunctionId::forward_dynamics_with_wrenches],
-        ways: &[
-            Variant {
-                name: "ABA",
-                applies: untied,
-                least: nothing,
-                run: &|model, ws, inputs, out| run(model, ws, inputs, articulated_body_with_wrenches, out),
-            },
-            Variant {
-                name: "LTDL",
-                applies: always,
-                least: factorization,
-                run: &|model, ws, inputs, out| run(model, ws, inputs, forward_dynamics_with_wrenches, out),
-            },
-        ],
+        ways: ways!(run),
         unsolved: None,
     };
 
@@ -91,20 +98,7 @@ impl<S: Scalar> Steps<S> {
             Port::new("steps", &[], "1, steps of Newton's method"),
         ],
         unit: "",
-        ways: &[
-            Variant {
-                name: "ABA",
-                applies: untied,
-                least: nothing,
-                run: &|model, ws, inputs, out| search(model, ws, inputs, articulated_body_with_wrenches, out),
-            },
-            Variant {
-                name: "LTDL",
-                applies: always,
-                least: factorization,
-                run: &|model, ws, inputs, out| search(model, ws, inputs, forward_dynamics_with_wrenches, out),
-            },
-        ],
+        ways: ways!(search),
         ..Self::constrained_acceleration
     };
 
@@ -116,20 +110,7 @@ impl<S: Scalar> Steps<S> {
         gives: &[],
         outputs: &[ERROR, SIZE],
         unit: "",
-        ways: &[
-            Variant {
-                name: "ABA",
-                applies: untied,
-                least: nothing,
-                run: &|model, ws, inputs, out| certify(model, ws, inputs, articulated_body_with_wrenches, out),
-            },
-            Variant {
-                name: "LTDL",
-                applies: always,
-                least: factorization,
-                run: &|model, ws, inputs, out| certify(model, ws, inputs, forward_dynamics_with_wrenches, out),
-            },
-        ],
+        ways: ways!(certify),
         ..Self::constrained_acceleration
     };
 
