@@ -95,7 +95,7 @@ pub(crate) fn units(part: &FunctionTerm, strategy: &Strategy, model: &Model<f64>
 /// an actuator depends on their poses.
 fn indifferent(part: &FunctionTerm, model: &Model<f64>) -> bool {
     let free = part.function.regrouped && !part.function.asks_for_frames() && part.function.takes.contains(&Argument::Q);
-    let pushes = part.function.takes.contains(&CTRL) && model.actuators().has_sites();
+    let pushes = part.function.takes.contains(&CTRL) && model.actuators().has_frames();
     free && !pushes && model.bodies().iter().all(|b| b.effects.body.is_empty())
 }
 

@@ -16,7 +16,7 @@ use articulated_core::actuator::Filter;
 use articulated_core::algorithm::{Workspace, inverse_dynamics, torque_regressor};
 use articulated_core::description::{Base, Description, Origin};
 use articulated_core::model::Model;
-use articulated_formats::world::{Actuator, Keyframe, World};
+use articulated_formats::world::{Actuator, Keyframe, OnFrames, World};
 use articulated_formats::{Disk, LeaveOut, MOST_BYTES, Options, Reading, read_file, read_with};
 
 fn main() -> ExitCode {
@@ -131,13 +131,20 @@ fn world(world: &World) -> String {
                 let (range, early) = (range(own.range), own.is_early);
                 format!("{{\"kind\": {kind:?}, \"time\": {time:?}, \"range\": {range}, \"early\": {early}}}")
             });
-            let site = own.site.as_ref().map_or("null".to_owned(), |own| {
-                let frame = |(link, at): &(String, Origin)| format!("[{link:?}, {:?}, {:?}]", at.xyz, turn(at));
-                let reference = own.reference.as_ref().map_or("null".to_owned(), frame);
-                format!("{{\"at\": {}, \"reference\": {reference}, \"gear\": {:?}}}", frame(&own.at), own.gear)
-            });
+            let frame = |(link, at): &(String, Origin)| format!("[{link:?}, {:?}, {:?}]", at.xyz, turn(at));
+            let (mut site, mut path) = ("null".to_owned(), "null".to_owned());
+            match &own.frames {
+                Some(OnFrames::Site(own)) => {
+                    let reference = own.reference.as_ref().map_or("null".to_owned(), frame);
+                    site = format!("{{\"at\": {}, \"reference\": {reference}, \"gear\": {:?}}}", frame(&own.at), own.gear);
+                }
+                Some(OnFrames::Path(strands)) => {
+                    path = list(strands, |own| format!("{{\"points\": {}, \"factor\": {:?}}}", list(&own.points, frame), own.factor));
+                }
+                None => {}
+            }
             format!(
-                "{{\"name\": {name:?}, \"site\": {site}, \"activation\": {activation}, \"drives\": {drives}, \"gain\": {gain:?}, \"bias\": {bias:?}, \"control_range\": {control}, \"force_range\": {force}}}"
+                "{{\"name\": {name:?}, \"site\": {site}, \"path\": {path}, \"activation\": {activation}, \"drives\": {drives}, \"gain\": {gain:?}, \"bias\": {bias:?}, \"control_range\": {control}, \"force_range\": {force}}}"
             )
         })
     };

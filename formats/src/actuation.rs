@@ -1,11 +1,11 @@
 //! The actuators of a file on a model of its robot.
 
-use articulated_core::actuator::{ActuatorLaw, Actuators, Follower, SiteDrive, SiteFrame, Transmission};
+use articulated_core::actuator::{ActuatorLaw, Actuators, Follower, FrameDrive, SiteDrive, SiteFrame, Strand, Transmission};
 use articulated_core::description::Origin;
 use articulated_core::model::Model;
 use articulated_core::spatial::{Vector3, Wrench};
 
-use crate::world::{Actuator, Site, World};
+use crate::world::{self, Actuator, OnFrames, World};
 
 /// An actuator, or a spring or damper of a tendon, on a joint that the model does not have: one
 /// that is locked. It acts on its other joints alone.
@@ -77,7 +77,7 @@ fn law(
     ActuatorLaw {
         name: actuator.name.clone(),
         drives,
-        site: actuator.site.as_ref().and_then(|site| drive(model, site)),
+        frames: actuator.frames.as_ref().and_then(|frames| drive(model, frames)),
         gain: from(actuator.gain),
         bias: from(actuator.bias),
         control_range: actuator.control_range,
@@ -86,17 +86,31 @@ fn law(
     }
 }
 
-/// A frame of the file on its body. `None`: a model without the link.
-fn drive(model: &Model<f64>, site: &Site) -> Option<SiteDrive> {
-    let frame = |(link, at): &(String, Origin)| {
-        let own = model.frames().iter().find(|frame| frame.name == *link)?;
-        Some(SiteFrame { body: own.body, placement: own.placement.compose(&at.placement()) })
+/// Frames of the file on their bodies. `None`: a model without a link.
+fn drive(model: &Model<f64>, frames: &OnFrames) -> Option<FrameDrive> {
+    let site = match frames {
+        OnFrames::Path(strands) => return strands_of(model, strands).map(FrameDrive::Path),
+        OnFrames::Site(site) => site,
     };
     let reference = match &site.reference {
-        Some(reference) => Some(frame(reference)?),
+        Some(reference) => Some(frame(model, reference)?),
         None => None,
     };
     let [x, y, z, a, b, c] = site.gear;
     let gear = Wrench { moment: Vector3::new(a, b, c), force: Vector3::new(x, y, z) };
-    Some(SiteDrive { site: frame(&site.at)?, reference, gear })
+    Some(FrameDrive::Site(SiteDrive { site: frame(model, &site.at)?, reference, gear }))
+}
+
+fn frame(model: &Model<f64>, (link, at): &(String, Origin)) -> Option<SiteFrame> {
+    let own = model.frames().iter().find(|frame| frame.name == *link)?;
+    Some(SiteFrame { body: own.body, placement: own.placement.compose(&at.placement()) })
+}
+
+/// A path of the file on its bodies. `None`: a model without a link.
+pub(crate) fn strands_of(model: &Model<f64>, strands: &[world::Strand]) -> Option<Vec<Strand>> {
+    let of = |own: &world::Strand| {
+        let points = own.points.iter().map(|point| frame(model, point)).collect::<Option<Vec<SiteFrame>>>()?;
+        Some(Strand { points, factor: own.factor })
+    };
+    strands.iter().map(of).collect()
 }

@@ -1,7 +1,10 @@
 //! The constraints of a file on a model of its robot.
 
+use articulated_core::actuator::path_at;
 use articulated_core::collision::{Form, Shape};
-use articulated_core::constraint::{Anchor, Bound, Cone, Constraints, DryFriction, Limit, Pair, Soft, Sum, SumLaw, Term, poses, weights};
+use articulated_core::constraint::{
+    Anchor, Bound, Cone, Constraints, DryFriction, Length, Limit, Pair, Soft, Sum, SumLaw, Term, poses, weights,
+};
 use articulated_core::description::{Description, Joint, Origin};
 use articulated_core::diagnostic::At;
 use articulated_core::effect::{Applied, EffectId, Effects};
@@ -10,7 +13,8 @@ use articulated_core::model::Model;
 use articulated_core::spatial::{Placement, Vector3};
 
 use crate::LeaveOut;
-use crate::world::{Touching, TouchingAnchor, TouchingLaw, TouchingPair, TouchingSum, Unread, World};
+use crate::actuation::strands_of;
+use crate::world::{Touching, TouchingAnchor, TouchingLaw, TouchingLength, TouchingPair, TouchingSum, Unread, World};
 
 /// Robots with more have no constraints here: their strengths need the inverse of M.
 const MOST_FREEDOMS: usize = 500;
@@ -70,12 +74,8 @@ impl World {
     }
 }
 
-fn other(law: &SumLaw) -> &[Term] {
-    if let SumLaw::Equation { other, .. } = law { other } else { &[] }
-}
-
-fn lengths(terms: &[Term]) -> Vec<(usize, f64)> {
-    terms.iter().map(|term| (term.v, term.factor)).collect()
+fn other(law: &SumLaw) -> Option<&Length> {
+    if let SumLaw::Equation { other, .. } = law { other.as_ref() } else { None }
 }
 
 struct Made<'a> {
@@ -97,9 +97,14 @@ impl Made<'_> {
             (body, (placement.rotation * Vector3::from(*center) + placement.position).into())
         });
         let centers: Vec<(BodyId, [f64; 3])> = centers.collect();
-        let sums: Vec<(&TouchingSum, Vec<Term>, SumLaw)> =
-            touching.sums.iter().filter_map(|sum| self.sum(sum).map(|(terms, law)| (sum, terms, law))).collect();
-        let of_lengths: Vec<Vec<(usize, f64)>> = sums.iter().flat_map(|(_, terms, law)| [lengths(terms), lengths(other(law))]).collect();
+        let sums: Vec<(&TouchingSum, Length, SumLaw)> =
+            touching.sums.iter().filter_map(|sum| self.sum(sum).map(|(length, law)| (sum, length, law))).collect();
+        let row = |length: &Length| match length {
+            Length::Sum(terms) => terms.iter().map(|term| (term.v, term.factor)).collect(),
+            Length::Path(strands) => path_at(model, &self.reference, strands).1,
+        };
+        let of_lengths: Vec<Vec<(usize, f64)>> =
+            sums.iter().flat_map(|(_, length, law)| [row(length), other(law).map_or(Vec::new(), row)]).collect();
         let mut weights = weights(self.heavy, &self.reference, &centers, &of_lengths);
         // Bodies that slide alone have the inverse of their mass.
         for (k, (_, _, slides)) in touching.bodies.iter().enumerate() {
@@ -136,14 +141,14 @@ impl Made<'_> {
                 DryFriction { v, along, loss: own.loss, soft: soft.clone(), weight: weights.freedoms[v] }
             }));
         }
-        for ((own, terms, law), of_tendons) in sums.into_iter().zip(weights.sums.chunks(2)) {
+        for (k, (own, length, law)) in sums.into_iter().enumerate() {
             let Some(soft) = self.soft(own.reference, own.impedance, &own.what) else { continue };
             // Of joints, that of each degree of freedom, whatever is between them
             let weight = match own.is_of_tendons {
-                true => of_tendons.iter().sum(),
-                false => terms.iter().chain(other(&law)).map(|term| weights.freedoms[term.v]).sum(),
+                true => weights.sums[2 * k..][..2].iter().sum(),
+                false => of_lengths[2 * k..][..2].iter().flatten().map(|(v, _)| weights.freedoms[*v]).sum(),
             };
-            all.sums.push(Sum { terms, law, soft, weight });
+            all.sums.push(Sum { length, law, soft, weight });
         }
         for own in &touching.anchors {
             all.anchors.extend(self.anchor(own, placed, of_link));
@@ -193,9 +198,9 @@ impl Made<'_> {
         all
     }
 
-    /// The terms and the law of a sum on the model. `None`: it is applied to the model, or not
-    /// computed.
-    fn sum(&mut self, own: &TouchingSum) -> Option<(Vec<Term>, SumLaw)> {
+    /// The length and the law of a constraint on the model. `None`: it is applied to the model, or
+    /// not computed.
+    fn sum(&mut self, own: &TouchingSum) -> Option<(Length, SumLaw)> {
         let is_follower = |joint: &String| self.model.bodies().iter().any(|body| body.name == *joint && body.coordinates.mimic.is_some());
         if own.coupling.as_ref().is_some_and(is_follower) {
             return None;
@@ -204,16 +209,23 @@ impl Made<'_> {
             let joint = self.model.joints().iter().find(|own| own.name == *joint)?;
             Some(Term { q: joint.q.0, v: joint.v.0, factor: *factor })
         };
-        let all = |terms: &[(String, f64)]| terms.iter().map(of).collect::<Option<Vec<Term>>>();
-        let terms = all(&own.terms);
+        let all = |length: &TouchingLength| match length {
+            TouchingLength::Sum(terms) => terms.iter().map(of).collect::<Option<_>>().map(Length::Sum),
+            TouchingLength::Path(strands) => strands_of(self.model, strands).map(Length::Path),
+        };
+        let length = all(&own.length);
         let law = match &own.law {
             TouchingLaw::Between { range, margin } => Some(SumLaw::Between { range: *range, margin: *margin }),
             TouchingLaw::DryFriction(loss) => Some(SumLaw::DryFriction(*loss)),
             TouchingLaw::Equation { other, references, coefficients } => {
-                all(other).map(|other| SumLaw::Equation { other, references: *references, coefficients: *coefficients })
+                let (references, coefficients) = (*references, *coefficients);
+                match other {
+                    Some(other) => all(other).map(|other| SumLaw::Equation { other: Some(other), references, coefficients }),
+                    None => Some(SumLaw::Equation { other: None, references, coefficients }),
+                }
             }
         };
-        let found = terms.zip(law);
+        let found = length.zip(law);
         if found.is_none() {
             self.lost(LeaveOut::Constraint, format!("{}, with a joint that is locked or follows others", own.what), At::Nowhere);
         }

@@ -16,8 +16,8 @@ pub enum LeaveOut {
     Composite,
     /// Plugins for forces (elastic ones) or shapes (signed distance fields).
     Plugin,
-    /// Constraints of the law of contact that are not computed: connect, weld, spatial tendons,
-    /// solvers. Only functions with constraints report them.
+    /// Constraints of the law of contact that are not computed: tendons around geoms, solvers. Only
+    /// functions with constraints report them.
     Constraint,
     /// Pairs of shapes whose contact is not computed. Only functions with constraints report them.
     Contact,

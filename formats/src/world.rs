@@ -84,7 +84,7 @@ pub struct Touching {
     pub limits: Vec<TouchingLimit>,
     /// Dry friction of joints.
     pub friction: Vec<TouchingFriction>,
-    /// Constraints of fixed tendons, and equations of joints and tendons.
+    /// Constraints of tendons, and equations of joints and tendons.
     pub sums: Vec<TouchingSum>,
     /// Frames of two links that are held together.
     pub anchors: Vec<TouchingAnchor>,
@@ -209,14 +209,23 @@ pub struct TouchingFriction {
     pub impedance: [f64; 5],
 }
 
-/// A constraint of a sum of coordinates.
+/// A length that changes with the coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TouchingLength {
+    /// A sum of coordinates: joints with their factors.
+    Sum(Vec<(String, f64)>),
+    /// That of a path.
+    Path(Vec<Strand>),
+}
+
+/// A constraint of a length.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TouchingSum {
     /// What it is, for messages.
     pub what: String,
-    /// Joints with their factors.
-    pub terms: Vec<(String, f64)>,
-    /// What holds for the sum.
+    /// The length.
+    pub length: TouchingLength,
+    /// What holds for it.
     pub law: TouchingLaw,
     /// Whether it is one of tendons, whose strength is that of their lengths.
     pub is_of_tendons: bool,
@@ -246,7 +255,7 @@ pub struct TouchingAnchor {
     pub impedance: [f64; 5],
 }
 
-/// What holds for a sum of coordinates.
+/// What holds for a length.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TouchingLaw {
     /// It is between two numbers; the bounds act from a margin before them on.
@@ -260,9 +269,9 @@ pub enum TouchingLaw {
     DryFriction(f64),
     /// It is a polynomial of another sum.
     Equation {
-        /// The other sum; may be empty.
-        other: Vec<(String, f64)>,
-        /// Both sums in the reference pose.
+        /// The other length, if there is one.
+        other: Option<TouchingLength>,
+        /// Both lengths in the reference pose.
         references: [f64; 2],
         /// The coefficients, of degree 0 to 4.
         coefficients: [f64; 5],
@@ -341,8 +350,8 @@ pub struct Actuator {
     pub name: String,
     /// The joints that it drives: the name, and a number for each degree of freedom.
     pub drives: Vec<(String, Vec<f64>)>,
-    /// The frame on which it acts, in place of joints.
-    pub site: Option<Site>,
+    /// The frames on which it acts, in place of joints.
+    pub frames: Option<OnFrames>,
     /// g₀, g₁, g₂: force for each unit of control, of length, and of rate of length.
     pub gain: [f64; 3],
     /// b₀, b₁, b₂: force without control.
@@ -355,6 +364,38 @@ pub struct Actuator {
     pub activation: Option<Activation>,
     /// Place in the file.
     pub place: At,
+}
+
+/// Frames on which a force acts.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OnFrames {
+    /// It pushes at a frame.
+    Site(Box<Site>),
+    /// It pulls along a path.
+    Path(Vec<Strand>),
+}
+
+impl OnFrames {
+    /// The same with the names of links changed.
+    pub fn renamed(self, name: impl Fn(&str) -> String + Copy) -> Self {
+        let on = |(link, at): (String, Origin)| (name(&link), at);
+        match self {
+            Self::Site(own) => Self::Site(Box::new(Site { at: on(own.at), reference: own.reference.map(on), ..*own })),
+            Self::Path(strands) => {
+                let strand = |own: Strand| Strand { points: own.points.into_iter().map(on).collect(), ..own };
+                Self::Path(strands.into_iter().map(strand).collect())
+            }
+        }
+    }
+}
+
+/// The part of a path between two pulleys: straight lines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strand {
+    /// Its points: the link, and the point in the link's frame.
+    pub points: Vec<(String, Origin)>,
+    /// Length of the path for a unit of this strand: one over the divisor of its pulley.
+    pub factor: f64,
 }
 
 /// The frame on which an actuator acts, and its reference frame, if it has one.

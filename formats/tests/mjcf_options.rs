@@ -257,16 +257,28 @@ fn armature_of_a_tendon_couples_joints_of_one_branch_alone() {
     assert!((kv - 5.20529187160878).abs() < 1e-12, "{kv}");
 }
 
+/// The mass that a servo of a spatial tendon feels: with the numbers of MuJoCo 4.0.0.
+#[test]
+fn a_servo_of_a_spatial_tendon_is_damped_by_its_ratio() {
+    let rope = "<position name=\"rope\" tendon=\"line\" gear=\"2\" kp=\"5\" dampratio=\"0.8\"/></actuator>";
+    let line = "<spatial name=\"line\" armature=\"0.1\"><site site=\"a\"/><site site=\"b\"/></spatial></tendon>";
+    let text = ARMS.replace("</actuator>", rope).replace("</tendon>", line).replace("<site name=", "<site pos=\"0.1 0 0.2\" name=");
+    let kv: Vec<f64> = accepted(&text).world.actuators.iter().map(|own| -own.bias[2]).collect();
+    for (kv, expected) in kv.iter().zip([5.220864905589416, 3.3916683920975643]) {
+        assert!((kv - expected).abs() < 1e-12, "{kv} and {expected}");
+    }
+}
+
 #[test]
 fn a_mass_that_is_not_known_has_its_reason() {
-    let spatial = |rest: &str| {
-        let tendon = "<spatial name=\"line\" armature=\"0.1\"><site site=\"a\"/><site site=\"b\"/></spatial></tendon>";
-        ARMS.replace("</tendon>", tendon).replace("<joint name=\"two\"", &format!("<joint name=\"two\" {rest}"))
+    let around = |rest: &str| {
+        let tendon =
+            "<spatial name=\"line\" armature=\"0.1\"><site site=\"a\"/><geom geom=\"round\"/><site site=\"b\"/></spatial></tendon>";
+        let named = ARMS.replacen("<geom type", "<geom name=\"round\" type", 1);
+        named.replace("</tendon>", tendon).replace("<joint name=\"two\"", &format!("<joint name=\"two\" {rest}"))
     };
-    let found = warnings(&accepted(&spatial("springdamper=\"0.1 1\"")));
-    for part in
-        ["a springdamper beside a spatial tendon with armature", "an actuator with a dampratio beside a spatial tendon with armature"]
-    {
+    let found = warnings(&accepted(&around("springdamper=\"0.1 1\"")));
+    for part in ["a springdamper beside a tendon around a geom with armature", "a dampratio beside a tendon around a geom with armature"] {
         assert!(found.iter().any(|warning| warning.contains(part)), "{found:?}");
     }
     assert!(found.iter().all(|warning| !warning.contains("singular")), "{found:?}");
@@ -279,11 +291,16 @@ fn a_mass_that_is_not_known_has_its_reason() {
 #[test]
 fn a_warning_names_what_is_not_read() {
     let rest = "<equality><connect name=\"knee\" body1=\"arm\" body2=\"hub\" anchor=\"0 0 0\"/></equality>
-        <tendon><spatial name=\"line\" stiffness=\"1\"><site site=\"a\"/><site site=\"b\"/></spatial></tendon>
+        <tendon><spatial name=\"line\" stiffness=\"1\"><site site=\"a\"/><geom geom=\"round\"/><site site=\"b\"/></spatial></tendon>
         <actuator><muscle name=\"biceps\" joint=\"one\"/><motor name=\"push\" cranksite=\"a\" slidersite=\"b\" cranklength=\"1\"/></actuator></mujoco>";
-    let text = ARMS.replace("</mujoco>", rest).replace("<body>", "<body name=\"hub\">").replacen("<body pos", "<body name=\"arm\" pos", 1);
+    let text = ARMS
+        .replacen("<geom type", "<geom name=\"round\" type", 1)
+        .replace("</mujoco>", rest)
+        .replace("<body>", "<body name=\"hub\">")
+        .replacen("<body pos", "<body name=\"arm\" pos", 1);
     let found = warnings(&accepted(&text));
-    let parts = ["a tendon \"both\"", "tendon with forces \"line\"", "at a point \"knee\"", "<muscle> \"biceps\"", "of a crank \"push\""];
+    let parts =
+        ["a tendon \"both\"", "around a geom with forces \"line\"", "at a point \"knee\"", "<muscle> \"biceps\"", "of a crank \"push\""];
     for part in parts {
         assert_eq!(found.iter().filter(|warning| warning.contains(part)).count(), 1, "{part}: {found:#?}");
     }

@@ -7,7 +7,7 @@ use std::io::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
 
 use articulated_core::diagnostic::{At, Code};
-use articulated_formats::world::{Actuator, TouchingLaw, World};
+use articulated_formats::world::{Actuator, OnFrames, TouchingLaw, TouchingLength, World};
 use articulated_formats::{Options, Reading, Sources, read, read_with};
 
 fn options() -> Options {
@@ -140,14 +140,14 @@ fn an_actuator_may_push_a_site() {
     let reading = accepted(&text);
     let all = &reading.world.actuators;
     assert!(reading.warnings.is_empty() && all.len() == 2 && all.iter().all(|own| own.drives.is_empty()), "{:?}", reading.warnings);
-    let site = all[0].site.as_ref().expect("a site");
+    let [Some(OnFrames::Site(site)), Some(OnFrames::Site(moved))] = [0, 1].map(|k| &all[k].frames) else { panic!("{all:?}") };
     assert_eq!(
         (site.at.0.as_str(), site.at.1.xyz, site.gear, &site.reference),
         ("world", [1.0, 2.0, 3.0], [1.0, 2.0, 3.0, 4.0, 5.0, 6.0], &None)
     );
-    let (link, at) = all[1].site.as_ref().and_then(|own| own.reference.as_ref()).expect("a reference");
+    let (link, at) = moved.reference.as_ref().expect("a reference");
     assert_eq!((reading.description.links.iter().any(|own| own.name == *link), at.xyz), (true, [0.0, 0.0, 1.0]));
-    assert_eq!(all[1].site.as_ref().map(|own| own.gear), Some([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]));
+    assert_eq!(moved.gear, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
 }
 
 #[test]
@@ -381,7 +381,7 @@ fn what_gives_no_force_is_a_warning_with_its_line() {
             "<tendon>\n<{tag} name=\"t\" {attributes}>{}</{tag}></tendon>",
             match tag {
                 "fixed" => "<joint joint=\"x\" coef=\"1\"/>",
-                _ => "<site site=\"s\"/><site site=\"s2\"/>",
+                _ => "<site site=\"s\"/><geom geom=\"round\"/><site site=\"s2\"/>",
             }
         )
     };
@@ -396,7 +396,8 @@ fn what_gives_no_force_is_a_warning_with_its_line() {
         "<actuator>\n<position joint=\"b\"/></actuator>".to_owned(),
     ];
     for tag in tendons {
-        let text = with("", &tag).replace("</worldbody>", "<site name=\"s\"/><site name=\"s2\"/></worldbody>");
+        let text =
+            with("", &tag).replace("</worldbody>", "<site name=\"s\"/><geom name=\"round\" size=\"0.1\"/><site name=\"s2\"/></worldbody>");
         let found: Vec<_> = accepted(&text).warnings.iter().map(|warning| (warning.code, warning.line())).collect();
         assert_eq!(found, [(Code::LostDynamics, Some(7))], "{tag}");
     }
@@ -406,7 +407,10 @@ fn what_gives_no_force_is_a_warning_with_its_line() {
 #[test]
 fn mistakes_are_errors_with_their_lines() {
     let actuator = |tag: &str| with("", &format!("<actuator>\n{tag}\n</actuator>"));
-    let tendon = |inside: &str| with("", &format!("<tendon>\n{inside}\n</tendon>"));
+    let tendon = |inside: &str| {
+        let sites = "<site name=\"s\"/><site name=\"r\"/><geom name=\"g\" size=\"1\"/></worldbody>";
+        with("", &format!("<tendon>\n{inside}\n</tendon>")).replace("</worldbody>", sites)
+    };
     let key = |attributes: &str| with("", &format!("<keyframe>\n<key {attributes}/>\n</keyframe>"));
     let mistakes = [
         (actuator("<motor joint=\"y\"/>"), Code::UnknownName, "the name of a joint"),
@@ -429,6 +433,14 @@ fn mistakes_are_errors_with_their_lines() {
         (tendon("<fixed/>"), Code::MissingAttribute, "the joints of the tendon"),
         (tendon("<fixed><joint joint=\"b\" coef=\"1\"/></fixed>"), Code::Unsupported, "several coordinates"),
         (tendon("<fixed><joint joint=\"x\" coef=\"1\"/><joint joint=\"x\" coef=\"1\"/></fixed>"), Code::DuplicateName, "each joint once"),
+        (tendon("<spatial/>"), Code::Misplaced, "less than two points"),
+        (tendon("<spatial><site site=\"s\"/><site site=\"s\"/></spatial>"), Code::Misplaced, "the same site again"),
+        (tendon("<spatial><site site=\"s\"/><site site=\"z\"/></spatial>"), Code::UnknownName, "the name of a site"),
+        (tendon("<spatial><site site=\"s\"/><geom geom=\"g\"/></spatial>"), Code::Misplaced, "not between two sites"),
+        (tendon("<spatial><pulley divisor=\"0\"/><site site=\"s\"/><site site=\"r\"/></spatial>"), Code::Number, "above zero"),
+        (tendon("<spatial><pulley/><site site=\"s\"/><site site=\"r\"/></spatial>"), Code::MissingAttribute, "divisor"),
+        (tendon("<spatial><site site=\"s\"/><site site=\"r\"/><pulley divisor=\"1\"/></spatial>"), Code::Misplaced, "pulley at the end"),
+        (tendon("<spatial><site site=\"s\"/><joint joint=\"x\"/><site site=\"r\"/></spatial>"), Code::Unknown, "<joint>"),
         (tendon("<fixed springlength=\"2 1\"><joint joint=\"x\" coef=\"1\"/></fixed>"), Code::LimitOrder, "the shorter length first"),
         (with("", "<equality>\n<joint joint2=\"x\"/>\n</equality>"), Code::MissingAttribute, "joint1"),
         (with("", "<equality>\n<joint joint1=\"x\" joint2=\"y\"/>\n</equality>"), Code::UnknownName, "the name of a joint"),
@@ -539,14 +551,14 @@ fn attached_models_and_copies_bring_their_actuators() {
     assert_eq!(q, [("r-0", 0.0), ("r-1", 0.0), ("l_a", 5.0), ("l_b", 6.0), ("p_b", 0.0)]);
 }
 
-/// A pair has MuJoCo's defaults, not the numbers of its geoms; spatial tendons with limits are
+/// A pair has MuJoCo's defaults, not the numbers of its geoms; tendons around geoms with limits are
 /// listed.
 #[test]
 fn pairs_have_defaults_of_their_own() {
     let text = "<mujoco><worldbody><geom name='a' size='0.1' condim='1' solref='0.03 1' margin='0.01'/>\
         <body><joint name='j'/><geom name='b' size='0.1' friction='0.4'/></body></worldbody>\
         <contact><pair geom1='b' geom2='a' friction='0.7'/></contact>\
-        <tendon><spatial name='t' limited='true' range='0 1'><site site='p'/><site site='o'/></spatial></tendon></mujoco>";
+        <tendon><spatial name='t' limited='true' range='0 1'><site site='p'/><geom geom='b'/><site site='o'/></spatial></tendon></mujoco>";
     let text = text.replace("<body>", "<site name='p'/><body><site name='o'/>");
     let touching = accepted(&text).world.touching.unwrap();
     let [pair] = &touching.pairs[..] else { panic!("{:?}", touching.pairs) };
@@ -568,18 +580,46 @@ fn tendons_and_equations_are_constraints_of_sums() {
     let read = accepted(text);
     let touching = read.world.touching.unwrap();
     let [limit, friction, quadratic, held] = &touching.sums[..] else { panic!("{:?}", touching.sums) };
-    let terms = |own: &[(&str, f64)]| own.iter().map(|(joint, factor)| ((*joint).to_owned(), *factor)).collect::<Vec<_>>();
+    let terms = |own: &[(&str, f64)]| TouchingLength::Sum(own.iter().map(|(joint, factor)| ((*joint).to_owned(), *factor)).collect());
     let t = terms(&[("a", 2.0), ("b", -1.0)]);
-    assert_eq!((&limit.terms, limit.reference), (&t, [0.05, 1.0]));
+    assert_eq!((&limit.length, limit.reference), (&t, [0.05, 1.0]));
     assert_eq!(limit.law, TouchingLaw::Between { range: [-1.0, 2.0], margin: 0.1 });
-    assert_eq!((&friction.terms, &friction.law), (&t, &TouchingLaw::DryFriction(3.0)));
-    assert_eq!((&quadratic.terms, quadratic.reference, &quadratic.coupling), (&terms(&[("b", 1.0)]), [0.03, 1.0], &None));
+    assert_eq!((&friction.length, &friction.law), (&t, &TouchingLaw::DryFriction(3.0)));
+    assert_eq!((&quadratic.length, quadratic.reference, &quadratic.coupling), (&terms(&[("b", 1.0)]), [0.03, 1.0], &None));
     let coefficients = [0.1, 1.0, 2.0, 0.0, 0.0];
-    assert_eq!(quadratic.law, TouchingLaw::Equation { other: terms(&[("a", 1.0)]), references: [0.0, 0.2], coefficients });
+    assert_eq!(quadratic.law, TouchingLaw::Equation { other: Some(terms(&[("a", 1.0)])), references: [0.0, 0.2], coefficients });
     let TouchingLaw::Equation { other, references, .. } = &held.law else { panic!("{held:?}") };
-    assert_eq!((&held.terms, other.len(), *references), (&t, 0, [0.4, 0.0]));
+    assert_eq!((&held.length, other, *references), (&t, &None, [0.4, 0.0]));
     assert_eq!(held.coupling.as_deref(), Some("a"));
     assert!(read.world.loops.iter().all(|own| own.is_computed) && touching.unread.is_empty());
+}
+
+/// Spatial tendons: points over pulleys, a spring at rest where springs of joints are, limits and
+/// equations. Lengths by hand.
+#[test]
+fn a_spatial_tendon_is_a_path() {
+    let text = "<mujoco><compiler angle='radian'/><worldbody><site name='o' pos='0 0 2'/><body name='b'><joint name='a' type='slide'
+        axis='0 0 1' ref='0.25' springref='0.75'/><geom size='0.1'/><site name='p' pos='0 0 0.5'/><site name='r' pos='3 0 0.5'/></body>
+        </worldbody><tendon><spatial name='t' stiffness='2' limited='true' range='0 5' frictionloss='1'><site site='o'/><site site='p'/>
+        <pulley divisor='2'/><site site='p'/><site site='r'/></spatial></tendon><equality><tendon tendon1='t'/></equality>
+        <actuator><motor tendon='t' gear='3'/></actuator></mujoco>";
+    let read = accepted(text);
+    let touching = read.world.touching.unwrap();
+    let [limit, friction, held] = &touching.sums[..] else { panic!("{:?}", touching.sums) };
+    let TouchingLength::Path(strands) = &limit.length else { panic!("{limit:?}") };
+    let all: Vec<(f64, Vec<(&str, [f64; 3])>)> =
+        strands.iter().map(|own| (own.factor, own.points.iter().map(|(link, at)| (link.as_str(), at.xyz)).collect())).collect();
+    let p = ("b", [0.0, 0.0, 0.5]);
+    assert_eq!(all, [(1.0, vec![("world", [0.0, 0.0, 2.0]), p]), (0.5, vec![p, ("b", [3.0, 0.0, 0.5])])]);
+    assert_eq!((&friction.length, &held.length), (&limit.length, &limit.length));
+    let TouchingLaw::Equation { references, .. } = held.law else { panic!("{held:?}") };
+    // In the reference pose the site is at 0.5: 1.5 and 3/2; springs are at rest half a metre above.
+    assert_eq!(references, [3.0, 0.0]);
+    let [spring] = &read.world.passive[..] else { panic!("{:?}", read.world.passive) };
+    assert_eq!(spring.bias, [2.0 * 2.5, -2.0, 0.0]);
+    let Some(OnFrames::Path(pulled)) = &read.world.actuators[0].frames else { panic!("{:?}", read.world.actuators) };
+    assert_eq!(pulled.iter().map(|own| own.factor).collect::<Vec<_>>(), [3.0, 1.5]);
+    assert!(touching.unread.is_empty() && read.warnings.len() == 3, "{:?}", read.warnings);
 }
 
 /// A pair that is twice in a file makes contact twice, as in MuJoCo.

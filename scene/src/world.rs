@@ -145,8 +145,9 @@ impl<'a> RobotInWorld<'a> {
             log.error(place, Code::Robot, found, expected);
         }
         // A motion has no activations, and torques of joints alone: see `warnings`.
-        for law in actuators.laws.iter_mut().filter(|law| law.activation.is_some() || law.site.is_some()) {
-            (law.gain, law.bias, law.activation, law.site) = ([0.0; 3], [0.0; 3], None, None);
+        actuators.passive.retain(|law| law.frames.is_none());
+        for law in actuators.laws.iter_mut().filter(|law| law.activation.is_some() || law.frames.is_some()) {
+            (law.gain, law.bias, law.activation, law.frames) = ([0.0; 3], [0.0; 3], None, None);
         }
         actuators
     }

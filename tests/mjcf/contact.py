@@ -10,7 +10,7 @@
     python3 tests/mjcf/contact.py --speed [F.xml]   time of a step beside mj_step, alone and in vectors, in the states of a motion
 
 MuJoCo's solver is Newton's method without a tolerance, on dense matrices. It rolls each model with random controls, and each state on
-the way is a start. What is not computed here is off in MuJoCo too: pairs of shapes, limits and friction of spatial tendons.
+the way is a start. What is not computed here is off in MuJoCo too: pairs of shapes, limits and friction of tendons around geoms.
 
 * "contacts", "rows": the largest numbers of both in a state.
 * "one step": the largest difference of rates after one step, over 1 and the largest rate. The median and the worst of all states.
@@ -47,7 +47,7 @@ MODELS = [
     ("gymnasium", "humanoid.xml"),
     ("gymnasium", "inverted_double_pendulum.xml"),
 ]
-CHECKED = [HERE / "models" / f"{name}.xml" for name in ("touching", "pyramids", "boxes", "equations", "loops")]
+CHECKED = [HERE / "models" / f"{name}.xml" for name in ("touching", "pyramids", "boxes", "equations", "loops", "spatial")]
 GENERATED = HERE / "models" / "standing.xml"
 CHECKED_STATES = 12
 ALL_STATES = 4
@@ -186,14 +186,14 @@ def leave_out(model):
     """Turns off in MuJoCo what is not computed here; returns what that is."""
     import mujoco
     import numpy as np
+    import world
 
     lost = set()
     for tendon in range(model.ntendon):
-        is_spatial = model.wrap_type[model.tendon_adr[tendon]] != mujoco.mjtWrap.mjWRAP_JOINT
-        if is_spatial and (model.tendon_limited[tendon] or model.tendon_frictionloss[tendon]):
+        if world.goes_around(model, tendon) and (model.tendon_limited[tendon] or model.tendon_frictionloss[tendon]):
             model.tendon_limited[tendon], model.tendon_frictionloss[tendon] = 0, 0
             model.tendon_stiffness[tendon], model.tendon_damping[tendon] = 0, 0
-            lost.add("spatial tendons")
+            lost.add("tendons around geoms")
     kinds = [FORMS[kind] for kind in model.geom_type]
 
     def is_computed(first, second):

@@ -43,7 +43,7 @@ MODELS = [
 ]
 METHODS = {"Euler": "implicit_damping", "implicitfast": "implicit_velocity", "RK4": "rk4_mujoco"}
 # Of --check: models with limbs, parallel joints, free joints, and every kind of actuator.
-CHECKED = [HERE / "models" / "actuated.xml", HERE / "models" / "drone.xml", ("gymnasium", "half_cheetah.xml"), ("gymnasium", "ant.xml")]
+CHECKED = [HERE / "models" / "actuated.xml", HERE / "models" / "drone.xml", HERE / "models" / "spatial.xml", ("gymnasium", "half_cheetah.xml"), ("gymnasium", "ant.xml")]
 STATES, STEPS, ROUNDS = 64, 20, 31
 F64, F32 = 1e-11, 1e-4
 # Of --accuracy: the motion, s, and the steps in it.

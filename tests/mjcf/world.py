@@ -214,8 +214,8 @@ def obstacle(model, one):
     if kind not in ACTING:
         return "acts on " + mujoco.mjtTrn(kind).name[6:].lower()
     if kind == mujoco.mjtTrn.mjTRN_TENDON:
-        if is_spatial(model, target):
-            return "spatial tendon"
+        if goes_around(model, target):
+            return "tendon around a geom"
     elif model.jnt_type[target] == 0 or (model.jnt_type[target] == BALL and kind == mujoco.mjtTrn.mjTRN_JOINTINPARENT):
         return "free or ball joint"
     if model.actuator_delay[one]:
@@ -257,12 +257,22 @@ def name_of(model, kind, index):
     return mujoco.mj_id2name(model, getattr(mujoco.mjtObj, f"mjOBJ_{kind}"), index)
 
 
+def wraps(model, tendon):
+    first = model.tendon_adr[tendon]
+    return model.wrap_type[first : first + model.tendon_num[tendon]]
+
+
 def is_spatial(model, tendon):
-    return model.wrap_type[model.tendon_adr[tendon]] != mujoco.mjtWrap.mjWRAP_JOINT
+    return wraps(model, tendon)[0] != mujoco.mjtWrap.mjWRAP_JOINT
 
 
-# A spatial tendon has one warning for all of its forces.
-SPATIAL = "a spatial tendon with forces"
+def goes_around(model, tendon):
+    """Whether it is not read: it goes around a geom."""
+    return bool(np.isin(wraps(model, tendon), [mujoco.mjtWrap.mjWRAP_SPHERE, mujoco.mjtWrap.mjWRAP_CYLINDER]).any())
+
+
+# It has one warning for all of its forces.
+AROUND = "a tendon around a geom with forces"
 
 
 def of_one_joint(model, one):
@@ -282,7 +292,7 @@ def reduce_armature(model, warned):
         first = model.jnt_dofadr[joint]
     for tendon in range(model.ntendon):
         if model.tendon_armature[tendon]:
-            phrase = SPATIAL if is_spatial(model, tendon) else "armature of a tendon"
+            phrase = AROUND if goes_around(model, tendon) else "armature of a tendon"
             warned.demand("armature of the tendon", name_of(model, "TENDON", tendon), phrase)
     for one in np.flatnonzero(getattr(model, "actuator_armature", np.zeros(0))):
         if of_one_joint(model, one) is None:
@@ -341,17 +351,17 @@ def reduce(model, read, warned):
             model.dof_damping[dofs] = 0
     model.dof_dampingpoly[:] = model.jnt_stiffnesspoly[:] = 0
     for tendon in range(model.ntendon):
-        name, spatial = name_of(model, "TENDON", tendon), is_spatial(model, tendon)
-        phrase = SPATIAL if spatial else "stiffness or damping of higher degree"
+        name, is_lost = name_of(model, "TENDON", tendon), goes_around(model, tendon)
+        phrase = AROUND if is_lost else "stiffness or damping of higher degree"
         linear = (model.tendon_stiffness[tendon] if not no_spring else 0, model.tendon_damping[tendon] if not no_damper else 0)
         higher = (model.tendon_stiffnesspoly[tendon].any() and not no_spring) or (model.tendon_dampingpoly[tendon].any() and not no_damper)
-        if higher or (spatial and any(linear)):
+        if higher or (is_lost and any(linear)):
             warned.demand("forces of the tendon", name, phrase)
         if model.tendon_springyield[tendon] > 0 and linear[0]:
-            warned.demand("the spring that yields of the tendon", name, SPATIAL if spatial else "a spring that yields")
-        if model.tendon_actfrclimited[tendon] and not spatial:
+            warned.demand("the spring that yields of the tendon", name, AROUND if is_lost else "a spring that yields")
+        if model.tendon_actfrclimited[tendon] and not is_lost:
             warned.demand("bounds of the forces on the tendon", name, "limits of the forces on a tendon")
-        if spatial:
+        if is_lost:
             model.tendon_stiffness[tendon] = model.tendon_damping[tendon] = 0
     if model.ntendon:
         model.tendon_stiffnesspoly[:] = model.tendon_dampingpoly[:] = 0
@@ -359,7 +369,7 @@ def reduce(model, read, warned):
     for one in range(model.nactuator):
         name, target, kind = name_of(model, "ACTUATOR", one), model.actuator_trnid[one, 0], model.actuator_trntype[one]
         has_law = kind in (0, 1) and model.jnt_type[target] in (SLIDE, HINGE)
-        has_law |= kind == mujoco.mjtTrn.mjTRN_TENDON and not is_spatial(model, target)
+        has_law |= kind == mujoco.mjtTrn.mjTRN_TENDON and not goes_around(model, target)
         if not has_law and model.actuator_damping[one]:
             if not no_damper:
                 warned.demand("damping of the actuator", name, "damping of an actuator", "an actuator")
@@ -378,11 +388,11 @@ def constraints(model, warned):
         if model.jnt_type[joint] == 0 and model.dof_frictionloss[first : first + 6].any() and not disabled(model, "FRICTIONLOSS", "CONSTRAINT"):
             warned.demand("dry friction of the free joint", name_of(model, "JOINT", joint), "frictionloss of a free joint")
     for tendon in range(model.ntendon):
-        name, spatial = name_of(model, "TENDON", tendon), is_spatial(model, tendon)
+        name, is_lost = name_of(model, "TENDON", tendon), goes_around(model, tendon)
         if model.tendon_limited[tendon] and not disabled(model, "LIMIT", "CONSTRAINT"):
-            warned.demand("limits of the tendon", name, SPATIAL if spatial else "limits of a tendon")
+            warned.demand("limits of the tendon", name, AROUND if is_lost else "limits of a tendon")
         if model.tendon_frictionloss[tendon] and not disabled(model, "FRICTIONLOSS", "CONSTRAINT"):
-            warned.demand("dry friction of the tendon", name, SPATIAL if spatial else "friction of a tendon")
+            warned.demand("dry friction of the tendon", name, AROUND if is_lost else "friction of a tendon")
     off = disabled(model, "EQUALITY", "CONSTRAINT")
     for one in range(model.neq):
         if model.eq_active0[one] and not off:
@@ -411,6 +421,21 @@ def place(model, data, frame):
     body = max(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, link), 0) if not link.startswith("body_") else int(link[5:])
     axes = data.xmat[body].reshape(3, 3)
     return body, data.xpos[body] + axes @ xyz, axes @ np.reshape(turn, (3, 3))
+
+
+def length_of_path(strands, model, data):
+    """Length, rate and the row of the Jacobian."""
+    total, row = 0.0, np.zeros(model.nv)
+    for strand in strands:
+        points = [place(model, data, point)[:2] for point in strand["points"]]
+        for (first, start), (second, end) in zip(points, points[1:]):
+            distance = np.linalg.norm(end - start)
+            total += strand["factor"] * distance
+            for body, point, sign in [(first, start, -1), (second, end, 1)]:
+                along = np.zeros((3, model.nv))
+                mujoco.mj_jac(model, data, along, None, point, body)
+                row += sign * strand["factor"] * ((end - start) / distance) @ along
+    return total, row @ data.qvel, row
 
 
 def length_of_site(site, model, data):
@@ -450,7 +475,12 @@ def on_the_way(model, body):
 
 def law(one, u, model, data, by_name):
     """Force and torques, and how large the terms of the force are."""
-    at, rate, row = length_of_site(one["site"], model, data) if one["site"] else length(one["drives"], by_name, data)
+    if one["site"]:
+        at, rate, row = length_of_site(one["site"], model, data)
+    elif one["path"]:
+        at, rate, row = length_of_path(one["path"], model, data)
+    else:
+        at, rate, row = length(one["drives"], by_name, data)
     if one["control_range"] and not one["activation"]:
         u = np.clip(u, *one["control_range"])
     parts = np.array([1, at, rate])

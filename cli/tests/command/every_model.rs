@@ -23,7 +23,7 @@ const FOLDERS: [(&str, usize); 8] = [
 ];
 
 /// Functions of more code than this, MB, are not defined: large robots would take minutes.
-const MAX_CODE_SIZE: &str = "1";
+const MAX_CODE_SIZE: &str = "0.2";
 
 fn files() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the repository");

@@ -163,7 +163,7 @@ impl Shape {
 
 /// Whether an actuator drives the joint with this first degree of freedom, and nothing else.
 fn drives_only(law: &ActuatorLaw<f64>, v: usize) -> bool {
-    law.site.is_none() && matches!(&law.drives[..], [Transmission { v: own, .. }] if *own == v)
+    law.frames.is_none() && matches!(&law.drives[..], [Transmission { v: own, .. }] if *own == v)
 }
 
 /// The places of the items of which `is` holds.

@@ -1,4 +1,4 @@
-//! The section `<actuator>`: forces with an affine law on joints and fixed tendons.
+//! The section `<actuator>`: forces with an affine law on joints, tendons and sites.
 //!
 //! All kinds share one default, as in MuJoCo: gear and bounds apply to any kind. The numbers of the
 //! law (`kp`, `kv`) come from a default of the same kind or of `<general>`, of the nearest class
@@ -13,13 +13,13 @@ use articulated_core::diagnostic::{Code, Diagnostics, Subject};
 
 use super::bodies::Kind;
 use super::element::Element;
-use super::reflected::{Drives, Inertia, Unknown};
+use super::reflected::{Drives, Inertia, Rotor, Unknown};
 use super::scope::{References, Scope, Sort};
 use super::settings::Settings;
 use super::simulation::Simulation;
-use super::tendons::Tendon;
+use super::tendons::{Course, Tendon};
 use super::values::Values;
-use crate::world::{Actuator, Site, World};
+use crate::world::{Actuator, OnFrames, Site, Strand, World};
 
 const KINDS: [&str; 13] = [
     "general",
@@ -467,13 +467,28 @@ struct Target {
     drives: Drives,
     /// The indices of the site and of its reference in the scope.
     site: Option<(usize, Option<usize>)>,
+    /// The path that it pulls, and the length for a unit of each rate in the reference pose.
+    path: Option<(Vec<Strand>, Drives)>,
     /// Of the coordinate or length, if it has one.
     range: Option<[f64; 2]>,
     is_ball: bool,
 }
 
-/// Reads all actuators; returns the controls of the whole file, and the armatures of actuators and
-/// tendons with the lengths that they act on.
+impl Target {
+    /// Length for a unit of each rate in the reference pose; empty of a site.
+    fn row(&self) -> &Drives {
+        self.path.as_ref().map_or(&self.drives, |(_, row)| row)
+    }
+
+    /// The frames on which it acts, in place of joints.
+    fn frames(&self, general: &General, links: &[String], scope: &Scope<'_>) -> Option<OnFrames> {
+        let path = self.path.as_ref().map(|(strands, _)| OnFrames::Path(strands.clone()));
+        path.or_else(|| self.site.map(|site| OnFrames::Site(Box::new(pushed(site, general, links, scope)))))
+    }
+}
+
+/// Reads all actuators; returns the controls of the whole file, and the inertias of tendons and
+/// actuators.
 pub(crate) fn actuators(
     scope: &mut Scope<'_>,
     tendons: &[Tendon],
@@ -481,13 +496,13 @@ pub(crate) fn actuators(
     (description, links): (&Description, &[String]),
     world: &mut World,
     log: &mut Diagnostics,
-) -> (Vec<Control>, Vec<(f64, Drives)>) {
+) -> (Vec<Control>, Vec<Rotor>) {
     let mut controls = Vec::new();
-    let of_tendon = |tendon: &Tendon| (tendon.armature, tendon.terms.iter().map(|(joint, factor)| (*joint, vec![*factor])).collect());
-    let mut armatures: Vec<(f64, Drives)> = tendons.iter().map(of_tendon).collect();
+    let of_tendon = |tendon: &Tendon| Rotor { armature: tendon.armature, row: tendon.row(), of_joints: false };
+    let mut rotors: Vec<Rotor> = tendons.iter().map(of_tendon).collect();
     // Actuators with a ratio of damping instead of a coefficient
     let mut ratios: Vec<(usize, &Element)> = Vec::new();
-    let mut drives_of: Vec<Drives> = Vec::new();
+    let mut rows: Vec<Drives> = Vec::new();
     // Of each class of each document
     let mut defaults: BTreeMap<(*const Settings<'_>, usize), Vec<General>> = BTreeMap::new();
     let mut number = 0;
@@ -517,8 +532,8 @@ pub(crate) fn actuators(
                 if simulation.flags().no_damper {
                     general.damping = [0.0; 3];
                 }
-                passive(&name, element, &general, target, scope, world, log);
-                armatures.push((general.armature, target.drives.clone()));
+                passive(&name, element, &general, (target, links), scope, world, log);
+                rotors.push(Rotor { armature: general.armature, row: Some(target.row().clone()), of_joints: target.path.is_none() });
             }
             let read = match (obstacle, target) {
                 (None, Ok(target)) => {
@@ -536,7 +551,7 @@ pub(crate) fn actuators(
                     world.actuators.push(Actuator {
                         name,
                         drives: names.collect(),
-                        site: target.site.map(|site| pushed(site, &general, links, scope)),
+                        frames: target.frames(&general, links, scope),
                         gain,
                         bias,
                         control_range: control_range.filter(|_| !simulation.flags().no_clamp),
@@ -544,7 +559,7 @@ pub(crate) fn actuators(
                         activation: general.activation(activation_range),
                         place: scope.place(element),
                     });
-                    drives_of.push(target.drives);
+                    rows.push(target.row().clone());
                     Some(world.actuators.len() - 1)
                 }
                 (why, _) => {
@@ -557,9 +572,9 @@ pub(crate) fn actuators(
             controls.extend((0..general.controls()).map(|k| Control { part: index, actuator: read, activations: activations(k) }));
         }
     }
-    let lost = damp(&ratios, (&armatures, &drives_of), scope, description, world, log);
+    let lost = damp(&ratios, (&rotors, &rows), scope, description, world, log);
     forget(&lost, &mut controls, world);
-    (controls, armatures)
+    (controls, rotors)
 }
 
 const LOST: &str = "a force that is affine in control, length and rate: this actuator gives no force";
@@ -595,17 +610,24 @@ fn target(field: &str, index: usize, general: &General, scope: &Scope<'_>, tendo
                 Kind::Free => return Err("an actuator of a free joint"),
             };
             let range = (!is_ball && field == "joint").then_some(joint.range);
-            Ok(Target { drives: vec![(index, gears)], range, is_ball, site: None })
+            Ok(Target { drives: vec![(index, gears)], range, is_ball, site: None, path: None })
         }
         "tendon" => {
             let tendon = &tendons[index];
-            if tendon.terms.is_empty() {
-                return Err("an actuator of a spatial tendon");
+            let scale = |(joint, row): (usize, Vec<f64>)| (joint, row.iter().map(|x| gear * x).collect());
+            let row: Drives = tendon.row().unwrap_or_default().into_iter().map(scale).collect();
+            let (range, is_ball, site) = (Some(tendon.range), false, None);
+            match &tendon.course {
+                Course::Sum(_) => Ok(Target { drives: row, range, is_ball, site, path: None }),
+                Course::Path(path) => {
+                    let strand = |own: &Strand| Strand { factor: gear * own.factor, ..own.clone() };
+                    let path = Some((path.strands.iter().map(strand).collect(), row));
+                    Ok(Target { drives: Vec::new(), range, is_ball, site, path })
+                }
+                Course::Unread => Err("an actuator of a tendon around a geom"),
             }
-            let drives = tendon.terms.iter().map(|(joint, factor)| (*joint, vec![gear * factor])).collect();
-            Ok(Target { drives, range: Some(tendon.range), is_ball: false, site: None })
         }
-        "site" => Ok(Target { drives: Vec::new(), range: None, is_ball: false, site: Some((index, None)) }),
+        "site" => Ok(Target { drives: Vec::new(), range: None, is_ball: false, site: Some((index, None)), path: None }),
         "cranksite" => Err("an actuator of a crank"),
         _ => Err("an actuator of the contacts of a body"),
     }
@@ -632,7 +654,7 @@ fn passive(
     name: &str,
     element: &Element,
     general: &General,
-    target: &Target,
+    (target, links): (&Target, &[String]),
     scope: &mut Scope<'_>,
     world: &mut World,
     log: &mut Diagnostics,
@@ -644,7 +666,7 @@ fn passive(
     }
     let is_of_length = !target.is_ball && target.site.is_none();
     if [second, third] != [0.0; 2] || (damping != 0.0 && !is_of_length) {
-        let expected = "one coefficient, of a hinge, a slide or a fixed tendon: else it is not used";
+        let expected = "one coefficient, of a hinge, a slide or a tendon: else it is not used";
         scope.warn(element, "damping", ("damping of an actuator", expected), log);
     }
     if damping != 0.0 && is_of_length {
@@ -652,6 +674,7 @@ fn passive(
         world.passive.push(Actuator {
             name: name.to_owned(),
             drives: names.collect(),
+            frames: target.frames(general, links, scope),
             bias: [0.0, 0.0, -damping],
             place: scope.place(element),
             ..Actuator::default()
@@ -663,7 +686,7 @@ fn passive(
 /// at the reference state. Returns those without such a mass.
 fn damp(
     ratios: &[(usize, &Element)],
-    (armatures, drives_of): (&[(f64, Drives)], &[Drives]),
+    (rotors, rows): (&[Rotor], &[Drives]),
     scope: &mut Scope<'_>,
     description: &Description,
     world: &mut World,
@@ -673,10 +696,10 @@ fn damp(
     if ratios.is_empty() {
         return lost;
     }
-    let inertia = Inertia::at_reference(ratios.len(), description, scope, armatures, log);
+    let inertia = Inertia::at_reference(ratios.len(), description, scope, rotors, log);
     for (index, element) in ratios {
         let known = inertia.as_ref().map_err(|why| *why);
-        let mass = known.and_then(|inertia| inertia.reflected(&drives_of[*index]).ok_or(Unknown::Singular));
+        let mass = known.and_then(|inertia| inertia.reflected(&rows[*index]).ok_or(Unknown::Singular));
         let actuator = &mut world.actuators[*index];
         match mass {
             Ok(mass) if actuator.gain[0] >= 0.0 => actuator.bias[2] = -2.0 * actuator.bias[2] * (actuator.gain[0] * mass).sqrt(),

@@ -8,9 +8,9 @@ use super::bodies::Kind;
 use super::contact::{IMPEDANCE, REFERENCE};
 use super::element::Element;
 use super::scope::{References, Scope, Sort};
-use super::tendons::Tendon;
+use super::tendons::{Tendon, length_of};
 use super::values::Values;
-use crate::world::{Loop, TouchingAnchor, TouchingLaw, TouchingSum, World};
+use crate::world::{Loop, TouchingAnchor, TouchingLaw, TouchingLength, TouchingSum, World};
 
 const OFF: &str = "the equation is not active";
 const FLAG: &str = "a flag of <option> turns equations off";
@@ -51,9 +51,9 @@ pub(crate) fn equalities(
             if is_anchor && (found.len() == 2 || references.iter().all(|(sort, ..)| *sort == Sort::Body)) && log.is_ok() {
                 all.push(anchors::anchor(element, &found, (&values, links), scope, (what.clone(), soft.0, soft.1), log));
             }
-            let sum = sum(element, &found, polynomial, scope, tendons).map(|(terms, law)| TouchingSum {
+            let sum = sum(element, &found, polynomial, scope, tendons).map(|(length, law)| TouchingSum {
                 what,
-                terms,
+                length,
                 law,
                 is_of_tendons: element.is("tendon"),
                 coupling: None,
@@ -90,36 +90,24 @@ pub(crate) fn equalities(
     (sums, all)
 }
 
-/// The terms and the law of an equation of joints or of fixed tendons.
+/// The length and the law of an equation of joints or of tendons.
 fn sum(
     element: &Element,
     found: &[usize],
     coefficients: [f64; 5],
     scope: &Scope<'_>,
     tendons: &[Tendon],
-) -> Option<(Vec<(String, f64)>, TouchingLaw)> {
-    let of = |index: usize| match element.is("joint") {
-        true => vec![(index, 1.0)],
-        false => tendons[index].terms.clone(),
+) -> Option<(TouchingLength, TouchingLaw)> {
+    let is_number = |joint: usize| matches!(scope.joints[joint].joint.kind, Kind::Hinge | Kind::Slide);
+    let of = |index: &usize| match element.name.as_str() {
+        "joint" => is_number(*index).then(|| length_of(&[(*index, 1.0)], scope)),
+        "tendon" if tendons[*index].terms().iter().all(|(joint, _)| is_number(*joint)) => tendons[*index].length(scope),
+        _ => None,
     };
-    if !element.is("joint") && !element.is("tendon") {
-        return None;
-    }
-    let lengths: Vec<Vec<(usize, f64)>> = found.iter().map(|index| of(*index)).collect();
-    let is_number = |(joint, _): &(usize, f64)| matches!(scope.joints[*joint].joint.kind, Kind::Hinge | Kind::Slide);
-    if lengths.iter().any(Vec::is_empty) || !lengths.iter().flatten().all(is_number) {
-        return None;
-    }
-    let at_reference =
-        |length: &Vec<(usize, f64)>| length.iter().map(|(joint, factor)| factor * scope.joints[*joint].joint.reference).sum();
-    let named = |length: &Vec<(usize, f64)>| length.iter().map(|(joint, factor)| (scope.joints[*joint].name.to_owned(), *factor)).collect();
-    let (first, second) = (lengths.first()?, lengths.get(1));
-    let law = TouchingLaw::Equation {
-        other: second.map(named).unwrap_or_default(),
-        references: [at_reference(first), second.map_or(0.0, at_reference)],
-        coefficients,
-    };
-    Some((named(first), law))
+    let mut lengths = found.iter().map(of).collect::<Option<Vec<(TouchingLength, f64)>>>()?.into_iter();
+    let ((first, at_reference), second) = (lengths.next()?, lengths.next());
+    let references = [at_reference, second.as_ref().map_or(0.0, |(_, length)| *length)];
+    Some((first, TouchingLaw::Equation { other: second.map(|(length, _)| length), references, coefficients }))
 }
 
 fn references<'a>(element: &'a Element, log: &mut Diagnostics) -> References<'a> {
@@ -146,7 +134,7 @@ fn linear(
 ) -> Result<Coupling, &'static str> {
     let of = |index: usize| match element.is("joint") {
         true => vec![(index, 1.0)],
-        false => tendons[index].terms.clone(),
+        false => tendons[index].terms().to_vec(),
     };
     let (first, second) = match (element.name.as_str(), found) {
         ("joint" | "tendon", [first]) => (of(*first), Vec::new()),

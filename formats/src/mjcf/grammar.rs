@@ -255,6 +255,18 @@ const ROWS: &[Row] = &[
     },
     Row { name: "joint", within: "fixed", attributes: "joint coef", unused_attributes: &[], tags: "", unused_tags: &[] },
     Row {
+        name: "spatial",
+        within: "tendon",
+        attributes: "name class limited range actuatorfrclimited actuatorfrcrange frictionloss springlength springyield stiffness damping \
+                     armature",
+        unused_attributes: UNUSED_OF_TENDONS,
+        tags: "site geom pulley",
+        unused_tags: &[],
+    },
+    Row { name: "site", within: "spatial", attributes: "site", unused_attributes: &[], tags: "", unused_tags: &[] },
+    Row { name: "geom", within: "spatial", attributes: "geom sidesite", unused_attributes: &[], tags: "", unused_tags: &[] },
+    Row { name: "pulley", within: "spatial", attributes: "divisor", unused_attributes: &[], tags: "", unused_tags: &[] },
+    Row {
         name: "tendon",
         within: "default",
         attributes: "limited range actuatorfrclimited actuatorfrcrange frictionloss springlength springyield stiffness damping armature",

@@ -41,6 +41,7 @@ mod lower;
 mod mass;
 mod medium;
 mod mesh;
+mod paths;
 mod reflected;
 mod scope;
 mod settings;

@@ -13,6 +13,15 @@ use super::simulation::Flags;
 /// Joints by their indices, with lengths for a unit of each rate.
 pub(crate) type Drives = Vec<(usize, Vec<f64>)>;
 
+/// Inertia of an actuator or a tendon.
+pub(crate) struct Rotor {
+    pub(crate) armature: f64,
+    /// The length for a unit of each rate in the reference pose, if it is known.
+    pub(crate) row: Option<Drives>,
+    /// Whether it is one of an actuator of joints, whose row is constant.
+    pub(crate) of_joints: bool,
+}
+
 /// More degrees of freedom are not factored.
 const MOST: usize = 1000;
 /// More products are not computed.
@@ -35,7 +44,7 @@ impl Unknown {
     /// The message about an element that needs the mass.
     pub(crate) fn found(self, what: &str) -> String {
         match self {
-            Self::Armature => format!("{what} beside a spatial tendon with armature"),
+            Self::Armature => format!("{what} beside a tendon around a geom with armature"),
             Self::Size => format!("{what} in a robot of very many degrees of freedom"),
             Self::Mistakes | Self::Singular => format!("{what} in a robot whose mass matrix is singular"),
         }
@@ -52,18 +61,18 @@ pub(crate) struct Inertia {
 }
 
 impl Inertia {
-    /// For `count` actuators. `armatures`: each with the lengths that it acts on.
+    /// For `count` actuators.
     pub(crate) fn at_reference(
         count: usize,
         description: &Description,
         scope: &Scope<'_>,
-        armatures: &[(f64, Drives)],
+        rotors: &[Rotor],
         log: &Diagnostics,
     ) -> Result<Self, Unknown> {
         if !log.is_ok() {
             return Err(Unknown::Mistakes);
         }
-        if armatures.iter().any(|(armature, drives)| *armature != 0.0 && drives.is_empty()) {
+        if rotors.iter().any(|rotor| rotor.armature != 0.0 && rotor.row.is_none()) {
             return Err(Unknown::Armature);
         }
         let model: Model<f64> = Model::new(description, Base::Fixed).map_err(|_| Unknown::Mistakes)?;
@@ -71,10 +80,10 @@ impl Inertia {
         if n > MOST || n * n * (n + count) > MOST_PRODUCTS {
             return Err(Unknown::Size);
         }
-        Self::of(&model, scope, armatures).ok_or(Unknown::Singular)
+        Self::of(&model, scope, rotors).ok_or(Unknown::Singular)
     }
 
-    fn of(model: &Model<f64>, scope: &Scope<'_>, armatures: &[(f64, Drives)]) -> Option<Self> {
+    fn of(model: &Model<f64>, scope: &Scope<'_>, rotors: &[Rotor]) -> Option<Self> {
         let (n, mut q) = (model.nv(), vec![0.0; model.nq()]);
         let mut starts = Vec::with_capacity(scope.joints.len());
         for known in &scope.joints {
@@ -89,7 +98,8 @@ impl Inertia {
         for (known, start) in scope.joints.iter().zip(&starts) {
             (*start..start + freedoms(known.joint.kind)).for_each(|k| matrix[k * n + k] += known.joint.armature);
         }
-        for (armature, drives) in armatures.iter().filter(|(armature, _)| *armature != 0.0) {
+        let heavy = rotors.iter().filter(|rotor| rotor.armature != 0.0);
+        for (armature, drives) in heavy.filter_map(|rotor| Some((rotor.armature, rotor.row.as_ref()?))) {
             for (one, own) in drives {
                 // MuJoCo's matrix has no entries for joints of different branches.
                 for (other, others) in drives.iter().filter(|(other, _)| is_one_branch(scope, *one, *other)) {
@@ -131,19 +141,13 @@ fn is_one_branch(scope: &Scope<'_>, one: usize, other: usize) -> bool {
 
 /// Sets the stiffness and the damping of joints with `springdamper`: k = m/(T ζ)² and d = 2 m/T,
 /// with the mass m of the joint at the reference state, the time constant T and the ratio ζ.
-pub(crate) fn spring_dampers(
-    scope: &Scope<'_>,
-    flags: Flags,
-    description: &mut Description,
-    armatures: &[(f64, Drives)],
-    log: &mut Diagnostics,
-) {
+pub(crate) fn spring_dampers(scope: &Scope<'_>, flags: Flags, description: &mut Description, rotors: &[Rotor], log: &mut Diagnostics) {
     let has_one = |(_, known): &(usize, &Known<'_>)| known.joint.spring_damper.iter().all(|x| *x > 0.0);
     let all: Vec<usize> = scope.joints.iter().enumerate().filter(has_one).map(|(index, _)| index).collect();
     if all.is_empty() || flags.no_passive_force() {
         return;
     }
-    let inertia = Inertia::at_reference(3 * all.len(), description, scope, armatures, log);
+    let inertia = Inertia::at_reference(3 * all.len(), description, scope, rotors, log);
     for index in all {
         let Known { joint, name, .. } = scope.joints[index];
         let count = freedoms(joint.kind);

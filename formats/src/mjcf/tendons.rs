@@ -1,22 +1,24 @@
-//! The section `<tendon>`: sums of coordinates, with the springs and dampers on them.
+//! The section `<tendon>`: sums of coordinates and paths over sites, with the springs and dampers on
+//! them.
 
+use articulated_core::description::Description;
 use articulated_core::diagnostic::{Code, Diagnostics, Subject};
 
 use super::bodies::Kind;
 use super::contact::SoftJoint;
 use super::element::Element;
+use super::paths::{Path, Places};
+use super::reflected::Drives;
 use super::scope::{References, Scope, Sort};
 use super::settings::Settings;
 use super::simulation::Flags;
 use super::values::Values;
-use crate::world::Actuator;
+use crate::world::{Actuator, OnFrames, TouchingLength};
 
 /// A tendon of one copy of a tag.
 pub(crate) struct Tendon {
     pub(crate) name: String,
-    /// Joints by index, each once, with the lengths for a unit of their coordinates; empty if the
-    /// length is not a sum of coordinates.
-    pub(crate) terms: Vec<(usize, f64)>,
+    pub(crate) course: Course,
     /// Bound or not, m.
     pub(crate) range: [f64; 2],
     pub(crate) armature: f64,
@@ -26,7 +28,41 @@ pub(crate) struct Tendon {
     pub(crate) soft: SoftJoint,
 }
 
+/// What the length of a tendon is.
+pub(crate) enum Course {
+    /// A sum of coordinates: joints by index, each once, with the lengths for a unit of their
+    /// coordinates.
+    Sum(Vec<(usize, f64)>),
+    /// That of a path.
+    Path(Path),
+    /// It is not read: it goes around a geom.
+    Unread,
+}
+
 impl Tendon {
+    /// The joints of a fixed tendon; none of a spatial one.
+    pub(crate) fn terms(&self) -> &[(usize, f64)] {
+        if let Course::Sum(terms) = &self.course { terms } else { &[] }
+    }
+
+    /// Length for a unit of each rate in the reference pose, if it is known.
+    pub(crate) fn row(&self) -> Option<Drives> {
+        match &self.course {
+            Course::Sum(terms) => Some(terms.iter().map(|(joint, factor)| (*joint, vec![*factor])).collect()),
+            Course::Path(path) => Some(path.row.clone()),
+            Course::Unread => None,
+        }
+    }
+
+    /// Its length, and that in the reference pose. `None`: it is not read.
+    pub(crate) fn length(&self, scope: &Scope<'_>) -> Option<(TouchingLength, f64)> {
+        match &self.course {
+            Course::Sum(terms) => Some(length_of(terms, scope)),
+            Course::Path(path) => Some((TouchingLength::Path(path.strands.clone()), path.at_reference)),
+            Course::Unread => None,
+        }
+    }
+
     /// What constrains it.
     pub(crate) fn constraint(&self) -> Option<&'static str> {
         match (self.is_limited, self.soft.loss != 0.0) {
@@ -37,12 +73,24 @@ impl Tendon {
     }
 }
 
+/// The length that is a sum of coordinates, and the one in the reference pose.
+pub(crate) fn length_of(terms: &[(usize, f64)], scope: &Scope<'_>) -> (TouchingLength, f64) {
+    let named = terms.iter().map(|(joint, factor)| (scope.joints[*joint].name.to_owned(), *factor)).collect();
+    (TouchingLength::Sum(named), terms.iter().map(|(joint, factor)| factor * scope.joints[*joint].joint.reference).sum())
+}
+
 const LIMITED: &str = "functions with constraints: its limits do not bound other motions";
 const ONE: &str = "one coefficient: the others are not used";
 
 /// All tendons. Their springs and dampers become `passive`.
-pub(crate) fn tendons(scope: &mut Scope<'_>, flags: Flags, passive: &mut Vec<Actuator>, log: &mut Diagnostics) -> Vec<Tendon> {
-    let mut all = Vec::new();
+pub(crate) fn tendons(
+    scope: &mut Scope<'_>,
+    flags: Flags,
+    (description, links): (&Description, &[String]),
+    passive: &mut Vec<Actuator>,
+    log: &mut Diagnostics,
+) -> Vec<Tendon> {
+    let (mut all, mut places) = (Vec::new(), Places::new(description, links));
     for index in 0..scope.tree.parts.len() {
         if scope.is_full() {
             break;
@@ -59,7 +107,10 @@ pub(crate) fn tendons(scope: &mut Scope<'_>, flags: Flags, passive: &mut Vec<Act
             let name = full.unwrap_or_else(|| format!("tendon_{}", all.len()));
             let tendon = Tendon {
                 name,
-                terms: own.terms(scope, &found, log),
+                course: match element.is("fixed") {
+                    true => Course::Sum(own.terms(scope, &found, log)),
+                    false => places.path(element, &found, scope, log).map_or(Course::Unread, Course::Path),
+                },
                 range: own.range,
                 armature: own.armature,
                 is_limited: own.is_limited,
@@ -169,13 +220,9 @@ impl<'a> Own<'a> {
         self.higher_stiffness != [0.0; 2] || self.higher_damping != [0.0; 2]
     }
 
-    /// The joints of these indices with their factors; empty if the length is not a sum of
-    /// coordinates.
+    /// The joints of these indices with their factors.
     fn terms(&self, scope: &Scope<'_>, found: &[usize], log: &mut Diagnostics) -> Vec<(usize, f64)> {
         let mut terms: Vec<(usize, f64)> = Vec::new();
-        if !self.element.is("fixed") {
-            return terms;
-        }
         let with_names = self.element.all("joint").filter(|inner| inner.attribute("joint").is_some());
         for (inner, joint) in with_names.zip(found) {
             let mut error = |field: &str, code: Code, found: &str, expected: &str| {
@@ -200,9 +247,9 @@ impl<'a> Own<'a> {
     fn force(&self, tendon: &Tendon, scope: &mut Scope<'_>, passive: &mut Vec<Actuator>, log: &mut Diagnostics) {
         let element = self.element;
         let has_force = [self.stiffness, self.damping, self.friction, self.armature] != [0.0; 4] || self.has_higher_terms();
-        if !element.is("fixed") {
-            let lost = ("a spatial tendon with forces", "fixed tendons: the motion is that without it");
-            let why = "the length of a spatial tendon is no sum of coordinates";
+        if matches!(tendon.course, Course::Unread) {
+            let lost = ("a tendon around a geom with forces", "tendons of straight lines: the motion is that without it");
+            let why = "the length of a tendon around a geom is not computed";
             scope.unread(element, why, (has_force || self.is_limited).then_some(lost), log);
             return;
         }
@@ -217,14 +264,18 @@ impl<'a> Own<'a> {
         for (_, field, lost) in losses.iter().filter(|(is_lost, ..)| *is_lost) {
             scope.warn(element, field, *lost, log);
         }
-        let at_rest = tendon.terms.iter().map(|(joint, factor)| factor * scope.joints[*joint].joint.rest).sum();
+        let at_rest = match &tendon.course {
+            Course::Path(path) => path.at_rest,
+            _ => tendon.terms().iter().map(|(joint, factor)| factor * scope.joints[*joint].joint.rest).sum(),
+        };
         let (stiffness, [lower, upper]) = (self.stiffness, self.rest.unwrap_or([at_rest; 2]));
-        let drives: Vec<_> = tendon.terms.iter().map(|(joint, factor)| (scope.joints[*joint].name.to_owned(), vec![*factor])).collect();
+        let drives: Vec<_> = tendon.terms().iter().map(|(joint, factor)| (scope.joints[*joint].name.to_owned(), vec![*factor])).collect();
+        let frames = if let Course::Path(path) = &tendon.course { Some(OnFrames::Path(path.strands.clone())) } else { None };
         let place = scope.place(element);
         let mut push = |bias: [f64; 3], force_range: Option<[f64; 2]>| {
             if bias != [0.0; 3] {
-                let (name, drives) = (tendon.name.clone(), drives.clone());
-                passive.push(Actuator { name, drives, bias, force_range, place, ..Actuator::default() });
+                let (name, drives, frames) = (tendon.name.clone(), drives.clone(), frames.clone());
+                passive.push(Actuator { name, drives, frames, bias, force_range, place, ..Actuator::default() });
             }
         };
         if stiffness == 0.0 || lower == upper {

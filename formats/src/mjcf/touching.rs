@@ -9,7 +9,7 @@ use super::contact::{Both, DIMENSION, FRICTION, IMPEDANCE, REFERENCE, dimension}
 use super::mass::Mass;
 use super::scope::{Scope, Sort};
 use super::simulation::Simulation;
-use super::tendons::Tendon;
+use super::tendons::{Course, Tendon};
 use super::values::Values;
 use crate::LeaveOut;
 use crate::world::{Touching, TouchingFriction, TouchingLaw, TouchingLimit, TouchingPair, TouchingShape, TouchingSum, Unread};
@@ -50,7 +50,7 @@ pub(crate) fn touching(
         unread(format!("the solver {solver}: Newton's method is used"));
     }
     names.into_iter().for_each(|name| unread(format!("adhesion or surfacevel of the geom {name}")));
-    let spatial = tendons.iter().filter(|tendon| tendon.terms.is_empty());
+    let spatial = tendons.iter().filter(|tendon| matches!(tendon.course, Course::Unread));
     for (tendon, what) in spatial.filter_map(|tendon| Some((tendon, tendon.constraint()?))) {
         unread(format!("{what} of the tendon {}", tendon.name));
     }
@@ -60,7 +60,7 @@ pub(crate) fn touching(
     if simulation.noslip > 0 {
         unread("noslip_iterations: there are none".to_owned());
     }
-    all.sums = tendons.iter().filter(|tendon| !tendon.terms.is_empty()).flat_map(|tendon| of_tendon(tendon, scope)).collect();
+    all.sums = tendons.iter().flat_map(|tendon| of_tendon(tendon, scope)).collect();
     if !flags.no_contact {
         contacts(scope, links, flags.parents_touch, &mut all, log);
     }
@@ -88,12 +88,12 @@ fn bodies(scope: &Scope<'_>, inertials: &[Option<Mass>], links: &[&str]) -> Vec<
     inertials.iter().enumerate().map(of).collect()
 }
 
-/// Limits and dry friction of a fixed tendon.
+/// Limits and dry friction of a tendon.
 fn of_tendon(tendon: &Tendon, scope: &Scope<'_>) -> Vec<TouchingSum> {
-    let terms: Vec<(String, f64)> = tendon.terms.iter().map(|(joint, factor)| (scope.joints[*joint].name.to_owned(), *factor)).collect();
+    let Some((length, _)) = tendon.length(scope) else { return Vec::new() };
     let of = |what: &str, law: TouchingLaw, (reference, impedance): ([f64; 2], [f64; 5])| TouchingSum {
         what: format!("{what} of the tendon {}", tendon.name),
-        terms: terms.clone(),
+        length: length.clone(),
         law,
         is_of_tendons: true,
         coupling: None,

@@ -13,7 +13,7 @@ use super::equalities::equalities;
 use super::grammar::subject;
 use super::lower::Lowered;
 use super::mass::Mass;
-use super::reflected::{Drives, spring_dampers};
+use super::reflected::{Rotor, spring_dampers};
 use super::scope::Scope;
 use super::simulation::Simulation;
 use super::states;
@@ -48,13 +48,13 @@ pub(crate) fn world(
     };
     let bounds = scope.joints.iter().filter(|known| matches!(known.joint.kind, Kind::Hinge | Kind::Slide));
     world.joint_forces = bounds.filter_map(|known| Some((known.name.to_owned(), known.joint.force_range?))).collect();
-    let tendons = tendons(&mut scope, flags, &mut world.passive, log);
+    let tendons = tendons(&mut scope, flags, (&lowered.description, &lowered.links), &mut world.passive, log);
     let (controls, armatures) = actuators(&mut scope, &tendons, simulation, (&lowered.description, &lowered.links), &mut world, log);
     let links: Vec<&str> = lowered.links.iter().map(String::as_str).collect();
     world.effects = surroundings::effects(&scope, (tree, inertials), &links, simulation, log);
     world.contact_masks = std::mem::take(&mut lowered.masks);
     spring_dampers(&scope, flags, &mut lowered.description, &armatures, log);
-    add_armatures(&scope, &mut lowered.description, armatures.get(tendons.len()..).unwrap_or_default());
+    add_armatures(&scope, &mut lowered.description, &armatures);
     let (equations, anchors) = equalities(&mut scope, (&tendons, &links), flags.no_equality, &mut world, log);
     let mut touching = touching::touching(&mut scope, inertials, &links, (simulation, &tendons), log);
     touching.sums.extend(equations);
@@ -66,9 +66,9 @@ pub(crate) fn world(
 }
 
 /// Armatures of actuators on one joint of one degree are that of the joint: I gear².
-fn add_armatures(scope: &Scope<'_>, description: &mut Description, armatures: &[(f64, Drives)]) {
-    for (armature, drives) in armatures.iter().filter(|(armature, _)| *armature != 0.0) {
-        let Some((joint, gear)) = on_one_joint(drives, scope) else { continue };
+fn add_armatures(scope: &Scope<'_>, description: &mut Description, rotors: &[Rotor]) {
+    for Rotor { armature, row, .. } in rotors.iter().filter(|rotor| rotor.of_joints && rotor.armature != 0.0) {
+        let Some((joint, gear)) = row.as_ref().and_then(|row| on_one_joint(row, scope)) else { continue };
         let name = scope.joints[joint].name;
         if let Some(own) = description.joints.iter_mut().find(|own| own.name == name) {
             own.dynamics.armature = Some(own.dynamics.armature.unwrap_or(0.0) + armature * gear * gear);

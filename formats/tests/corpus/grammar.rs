@@ -34,6 +34,8 @@ const BESIDE: &[&str] = &[
     "tendon2",
     "body1",
     "site",
+    "geom",
+    "divisor",
     "coef",
     "polycoef",
     "active",
@@ -205,6 +207,7 @@ impl Writer<'_> {
                     "equality" if depth == 0 => self.tags(IN_EQUALITY, BESIDE, depth + 1),
                     "tendon" if depth == 0 => self.tags(&["fixed", "spatial"], BESIDE, depth + 1),
                     "fixed" => self.tags(&["joint"], BESIDE, depth + 1),
+                    "spatial" => self.tags(&["site", "pulley", "geom"], BESIDE, depth + 1),
                     "option" => self.tags(&["flag"], FLAGS, depth + 1),
                     "keyframe" => self.tags(&["key"], BESIDE, depth + 1),
                     _ => {}

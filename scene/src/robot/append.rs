@@ -7,11 +7,11 @@
 
 use std::collections::HashSet;
 
-use articulated_core::description::{Base, Coupling, EditError, Editor, Origin};
+use articulated_core::description::{Base, Coupling, EditError, Editor};
 use articulated_core::diagnostic::{At, Code, Diagnostic, Place, Subject, Unused};
 use articulated_core::diagnostic::{Diagnostics, quote};
 use articulated_core::effect::Applied;
-use articulated_formats::world::{Actuator, Keyframe, Loop, Site, Unread, World};
+use articulated_formats::world::{Actuator, Keyframe, Loop, Unread, World};
 use articulated_formats::{LeaveOut, Options, read_with};
 
 use super::build::{Editing, Entry};
@@ -142,9 +142,8 @@ impl Joining<'_> {
             self.warn(&place, Code::DuplicateName, found, &format!("a name of its own, as a prefix gives it: it is {} here", quote(&free)));
         }
         taken.insert(free.clone());
-        let on = |(link, at): (String, Origin)| (self.named(&link), at);
-        let site = actuator.site.map(|own| Site { at: on(own.at), reference: own.reference.map(on), ..own });
-        Actuator { name: free, site, drives: self.all_named(actuator.drives), place: At::Nowhere, ..actuator }
+        let frames = actuator.frames.map(|frames| frames.renamed(|link| self.named(link)));
+        Actuator { name: free, frames, drives: self.all_named(actuator.drives), place: At::Nowhere, ..actuator }
     }
 
     fn coupling(&self, coupling: Coupling) -> Coupling {

@@ -7,7 +7,7 @@ use articulated_core::description::{Collision, ContactSphere, JointKind, LinkId,
 use articulated_core::diagnostic::{At, Code, Diagnostic, Place, Subject, Unused};
 use articulated_core::effect::{Applied, EffectId, effects};
 use articulated_core::model::Model;
-use articulated_formats::world::Actuator;
+use articulated_formats::world::{Actuator, OnFrames};
 use articulated_formats::{Reading, beyond_any_mass};
 
 use super::build::Editing;
@@ -104,11 +104,16 @@ impl Editing<'_> {
         }
         let Reading { world, warnings, .. } = &mut self.reading;
         let is_left = |name: &str| control.without.iter().any(|(left, _)| left == name);
-        let is_lost = |own: &&Actuator| (own.activation.is_some() || own.site.is_some()) && !is_left(&own.name);
-        for actuator in world.actuators.iter().filter(is_lost) {
-            let place = Place { at: actuator.place, subject: &Subject::Document, field: "actuator" };
-            let what = if actuator.site.is_some() { "a site" } else { "an activation" };
-            let found = format!("{what} of the actuator {:?}, which gives no force in a scene without `law`", actuator.name);
+        let is_lost = |own: &&Actuator| (own.activation.is_some() || own.frames.is_some()) && !is_left(&own.name);
+        let all = world.actuators.iter().map(|own| ("actuator", own)).chain(world.passive.iter().map(|own| ("tendon", own)));
+        for (sort, actuator) in all.filter(|(_, own)| is_lost(own)) {
+            let place = Place { at: actuator.place, subject: &Subject::Document, field: sort };
+            let what = match actuator.frames {
+                Some(OnFrames::Site(_)) => "a site",
+                Some(OnFrames::Path(_)) => "the path",
+                None => "an activation",
+            };
+            let found = format!("{what} of the {sort} {:?}, which gives no force in a scene without `law`", actuator.name);
             let expected = "`articulated simulate FILE --smooth` or `articulated rollout`, which step it, or `without` in [control]";
             warnings.push(warning(self.request.file, &place, Code::LostDynamics, found, expected));
         }

@@ -10,6 +10,8 @@
 //! Source: MuJoCo documentation, Actuation model.
 
 mod activation;
+mod frames;
+mod path;
 mod site;
 mod torques;
 
@@ -17,7 +19,10 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 pub use activation::{Activation, Filter};
-pub(crate) use site::SiteRow;
+pub use frames::FrameDrive;
+pub(crate) use frames::FrameRow;
+pub(crate) use path::row as path_row;
+pub use path::{Strand, path_at};
 pub use site::{SiteDrive, SiteFrame};
 
 use crate::Scalar;
@@ -43,8 +48,8 @@ pub struct ActuatorLaw<S = f64> {
     pub name: String,
     /// The joints that it drives.
     pub drives: Vec<Transmission<S>>,
-    /// The frame that it pushes, instead of joints.
-    pub site: Option<SiteDrive<S>>,
+    /// The frames that it pushes, instead of joints.
+    pub frames: Option<FrameDrive<S>>,
     /// g₀, g₁, g₂: force for each unit of control, of length, and of rate of length.
     pub gain: [S; 3],
     /// b₀, b₁, b₂: force without control.
@@ -94,7 +99,7 @@ impl<S: Scalar> Default for ActuatorLaw<S> {
         Self {
             name: String::new(),
             drives: Vec::new(),
-            site: None,
+            frames: None,
             gain: zero,
             bias: zero,
             control_range: None,
@@ -150,7 +155,7 @@ impl<S: Scalar> ActuatorLaw<S> {
         ActuatorLaw {
             name: self.name.clone(),
             drives: self.drives.iter().map(drive).collect(),
-            site: self.site.as_ref().map(|site| site.map(f)),
+            frames: self.frames.as_ref().map(|frames| frames.map(f)),
             gain: self.gain.map(f),
             bias: self.bias.map(f),
             control_range: self.control_range.map(|range| range.map(f)),

@@ -2,7 +2,7 @@
 
 use alloc::vec;
 
-use super::{ActuatorLaw, Actuators, SiteRow, Transmission};
+use super::{ActuatorLaw, Actuators, FrameRow, Transmission};
 use crate::Scalar;
 use crate::spatial::screw::Quaternion;
 
@@ -92,12 +92,19 @@ impl<S: Scalar> ActuatorLaw<S> {
 }
 
 impl<S: Scalar> Actuators<S> {
-    /// Adds the torques of those of joints to `tau` `[nv]`, N·m or N, which has those of frames
-    /// alone on entry. Missing inputs are 0.
+    /// Adds their torques to `tau` `[nv]`, N·m or N, which is zero on entry, but for those of forces
+    /// on frames. Missing inputs are 0.
     ///
     /// inputs: `[nu]`, of [`Actuators::inputs`]; q: `[nq]`; v: `[nv]`.
     pub fn add_torques(&self, inputs: &[S], q: &[S], v: &[S], tau: &mut [S]) {
+        self.add_all_torques(inputs, &[], (q, v), tau);
+    }
+
+    /// The same with those of forces on frames, whose rows are these. Bounds of joints are for
+    /// actuators together.
+    pub(crate) fn add_all_torques(&self, inputs: &[S], rows: &[FrameRow<S>], (q, v): (&[S], &[S]), tau: &mut [S]) {
         let input = |k: usize| inputs.get(k).copied().unwrap_or(S::zero());
+        self.laws_of(rows, inputs, false).for_each(|(row, law, input)| row.add(law, input, v, tau));
         self.laws.iter().enumerate().for_each(|(k, law)| law.add_torque(input(k), q, v, tau));
         for (k, range) in &self.bounds {
             if let Some(tau) = tau.get_mut(*k) {
@@ -113,6 +120,7 @@ impl<S: Scalar> Actuators<S> {
             }
         }
         self.passive.iter().for_each(|law| law.add_torque(S::zero(), q, v, tau));
+        self.laws_of(rows, inputs, true).for_each(|(row, law, input)| row.add(law, input, v, tau));
     }
 
     /// Visits d g_i g_j of each force whose slope −∂f/∂l̇ = d may not be zero, for the entries
@@ -120,7 +128,7 @@ impl<S: Scalar> Actuators<S> {
     ///
     /// As in MuJoCo 4, d is zero at a bound of the force, and for an actuator of one joint at a
     /// bound of the torque of that joint.
-    pub(crate) fn damping(&self, inputs: &[S], sites: &[SiteRow<S>], (q, v): (&[S], &[S]), mut visit: impl FnMut(usize, usize, S)) {
+    pub(crate) fn damping(&self, inputs: &[S], rows: &[FrameRow<S>], (q, v): (&[S], &[S]), mut visit: impl FnMut(usize, usize, S)) {
         let zero = S::zero();
         let laws = self.laws.iter().enumerate().map(|(k, law)| (law, inputs.get(k).copied().unwrap_or(zero)));
         let bound = |law: &ActuatorLaw<S>| law.only_joint().and_then(|own| self.bounds.iter().find(|(k, _)| *k == own));
@@ -130,7 +138,7 @@ impl<S: Scalar> Actuators<S> {
             let mut slope = law.damping(input, law.length(q, v));
             if let Some((own, range)) = bound {
                 let mut tau = vec![zero; v.len()];
-                self.add_site_torques(inputs, sites, v, &mut tau);
+                self.laws_of(rows, inputs, false).for_each(|(row, law, input)| row.add(law, input, v, &mut tau));
                 laws.clone().for_each(|(law, input)| law.add_torque(input, q, v, &mut tau));
                 slope = within(tau[*own], Some(*range), slope);
             }
@@ -138,9 +146,9 @@ impl<S: Scalar> Actuators<S> {
                 law.row().filter(|(j, _)| *j <= i).for_each(|(j, b)| visit(i, j, slope * a * b));
             }
         }
-        for own in sites {
-            let Some(law) = self.laws.get(own.law).filter(|law| law.has_damping(|x| x == zero)) else { continue };
-            let slope = law.damping(inputs.get(own.law).copied().unwrap_or(zero), (own.length, own.rate(v)));
+        let of_frames = self.laws_of(rows, inputs, false).chain(self.laws_of(rows, inputs, true));
+        for (own, law, input) in of_frames.filter(|(_, law, _)| law.has_damping(|x| x == zero)) {
+            let slope = law.damping(input, (own.length, own.rate(v)));
             for (i, a) in &own.row {
                 own.row.iter().filter(|(j, _)| j <= i).for_each(|(j, b)| visit(*i, *j, slope * *a * *b));
             }
@@ -149,17 +157,16 @@ impl<S: Scalar> Actuators<S> {
 
     /// Whether a force that depends on a rate acts on several degrees of freedom.
     pub fn couple_rates(&self) -> bool {
-        let all = self.laws.iter().chain(&self.passive);
-        all.filter(|law| law.has_damping(|x| x == S::zero())).any(|law| {
+        self.all().filter(|law| law.has_damping(|x| x == S::zero())).any(|law| {
             let first = law.row().next();
-            law.site.is_some() || law.row().any(|(k, _)| first.is_some_and(|(first, _)| first != k))
+            law.frames.is_some() || law.row().any(|(k, _)| first.is_some_and(|(first, _)| first != k))
         })
     }
 
     /// Whether a torque depends on q or v.
     pub fn depend_on_state(&self) -> bool {
         let depends = |[_, of_length, of_rate]: [S; 3]| of_length != S::zero() || of_rate != S::zero();
-        self.laws.iter().chain(&self.passive).any(|law| depends(law.gain) || depends(law.bias))
+        self.all().any(|law| depends(law.gain) || depends(law.bias))
     }
 }
 
@@ -174,7 +181,7 @@ mod tests {
         let servo = ActuatorLaw {
             name: "servo".into(),
             drives: vec![drive(0, 2.0), drive(1, -1.0)],
-            site: None,
+            frames: None,
             gain: [10.0, 1.0, 0.5],
             bias: [1.0, -10.0, -2.0],
             control_range: Some([-1.0, 1.0]),

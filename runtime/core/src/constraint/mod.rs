@@ -35,7 +35,7 @@ pub(crate) use forces::contact_forces;
 pub(crate) use newton::{Certificate, Smooth, certified, constrained, searched};
 pub use pairs::GIVEN;
 pub use soft::{Impedance, Soft};
-pub use sums::{Sum, SumLaw, Term};
+pub use sums::{Length, Sum, SumLaw, Term};
 pub use weights::{Weights, weights};
 
 use crate::Scalar;
@@ -50,7 +50,7 @@ pub struct Constraints<S = f64> {
     pub limits: Vec<Limit<S>>,
     /// Dry friction of joints.
     pub friction: Vec<DryFriction<S>>,
-    /// Constraints of sums of coordinates: of tendons, and equations.
+    /// Constraints of lengths: of tendons, and equations.
     pub sums: Vec<Sum<S>>,
     /// Frames of two bodies that are held together.
     pub anchors: Vec<Anchor<S>>,

@@ -139,7 +139,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
             mass,
             start: smooth.a,
             columns,
-            rows: constraints.joint_rows(smooth.q, smooth.v),
+            rows: constraints.joint_rows(&placed, smooth.q, smooth.v),
             groups: Vec::new(),
         };
         let twists = problem.motion(smooth.v);

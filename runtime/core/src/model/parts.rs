@@ -10,7 +10,7 @@ use super::{Body, Frame, JointInfo, Model, ModelError};
 use crate::Scalar;
 use crate::actuator::Actuators;
 use crate::collision::Form;
-use crate::constraint::{Bound, Constraints};
+use crate::constraint::{Bound, Constraints, Length, Sum};
 use crate::effect::Field;
 use crate::index::{BodyId, ById, FrameId};
 use crate::spatial::Reference;
@@ -103,11 +103,10 @@ impl<S: Scalar> ModelParts<S> {
     }
 
     fn check_actuators(&self, (nq, nv): (usize, usize)) -> Result<(), ModelError> {
+        if let Some(frame) = self.actuators.frames().find(|frame| self.bodies.get(frame.body).is_none()) {
+            return Err(refused("the frame of an actuator".into(), format!("body {}", frame.body), "a body of the model"));
+        }
         for law in self.actuators.laws.iter().chain(&self.actuators.passive) {
-            let frames = law.site.iter().flat_map(|own| core::iter::once(&own.site).chain(&own.reference));
-            if let Some(frame) = frames.into_iter().find(|frame| frame.body.0 >= self.bodies.len()) {
-                return Err(refused(format!("actuator {:?}", law.name), format!("body {}", frame.body), "a body of the model"));
-            }
             let beyond = law.drives.iter().find(|drive| {
                 let (of_q, of_v) = if drive.gear.len() == 3 { (4, 3) } else { (1, drive.gear.len()) };
                 drive.q.saturating_add(of_q) > nq || drive.v.saturating_add(of_v) > nv
@@ -121,7 +120,21 @@ impl<S: Scalar> ModelParts<S> {
     }
 
     fn check_constraints(&self, (nq, nv): (usize, usize)) -> Result<(), ModelError> {
-        let Constraints { limits, friction, shapes, pairs, .. } = &self.constraints;
+        let Constraints { limits, friction, sums, anchors, shapes, pairs, cone: _ } = &self.constraints;
+        for length in sums.iter().flat_map(Sum::lengths) {
+            match length {
+                Length::Sum(terms) if terms.iter().any(|term| term.q >= nq || term.v >= nv) => {
+                    return Err(refused("a sum of coordinates".into(), "others".into(), "those of joints"));
+                }
+                Length::Path(strands) if strands.iter().flat_map(|own| &own.points).any(|own| self.bodies.get(own.body).is_none()) => {
+                    return Err(refused("a path".into(), "points of other bodies".into(), "bodies of the model"));
+                }
+                _ => {}
+            }
+        }
+        if let Some(body) = anchors.iter().flat_map(|anchor| &anchor.bodies).find(|body| self.bodies.get(**body).is_none()) {
+            return Err(refused("frames that are held together".into(), format!("body {body}"), "a body of the model"));
+        }
         for limit in limits {
             let (of_q, of_v) = if let Bound::Angle(_) = limit.bound { (4, 3) } else { (1, 1) };
             if limit.q.saturating_add(of_q) > nq || limit.v.saturating_add(of_v) > nv {

@@ -31,8 +31,8 @@ pub(super) fn implicit_velocity<S: Scalar>(start: &Start<'_, S>, ws: &mut Worksp
         }
     };
     if let Drive::Controls(_) = start.drive {
-        let sites = start.model.actuators.site_rows(start.model, ws, start.q);
-        start.model.actuators.damping(&start.inputs(start.act), &sites, (start.q, start.v), &mut add);
+        let rows = start.model.actuators.frame_rows(start.model, ws, start.q);
+        start.model.actuators.damping(&start.inputs(start.act), &rows, (start.q, start.v), &mut add);
     }
     effects::body_damping(start.model, ws, (start.q, start.v), &mut add);
     (ws.diagonal, ws.coupled) = (diagonal, coupled);

@@ -346,9 +346,8 @@ fn torques<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, inputs: &Inputs<'
 
 /// Adds the torques of all actuators at these inputs.
 fn add_torques<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, inputs: &[S], (q, v): (&[S], &[S]), out: &mut [S]) {
-    let sites = model.actuators.site_rows(model, ws, q);
-    model.actuators.add_site_torques(inputs, &sites, v, out);
-    model.actuators.add_torques(inputs, q, v, out);
+    let rows = model.actuators.frame_rows(model, ws, q);
+    model.actuators.add_all_torques(inputs, &rows, (q, v), out);
 }
 
 /// All steps with torques, as functions beside those of the table.

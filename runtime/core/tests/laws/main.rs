@@ -14,6 +14,7 @@ mod energy;
 mod equivalence;
 mod manifold;
 mod mimic;
+mod paths;
 mod pivots;
 mod reference;
 mod screws;
