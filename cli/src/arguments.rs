@@ -52,7 +52,7 @@ pub(crate) struct RobotArguments {
     #[arg(long)]
     pub(crate) first_of_duplicates: bool,
     /// Leave out elements of an MJCF that change the motion and are not read, with a warning: flex,
-    /// composite, plugin, constraint, contact. Those of another kind are errors
+    /// composite, plugin, constraint, solver, contact. Those of another kind are errors
     #[arg(long, value_name = "KINDS", value_delimiter = ',')]
     pub(crate) leave_out: Vec<LeaveOut>,
     /// The contacts of two geoms of an MJCF are found by the caller of functions of the group

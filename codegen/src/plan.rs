@@ -104,7 +104,7 @@ pub fn unread_constraints(
     let left_out = world.touching.as_ref().map(|touching| touching.left_out.clone()).unwrap_or_default();
     let mut warnings = Vec::new();
     // One finding for each kind: a file may have thousands of pairs.
-    for kind in [LeaveOut::Constraint, LeaveOut::Contact] {
+    for kind in [LeaveOut::Constraint, LeaveOut::Solver, LeaveOut::Contact] {
         let own: Vec<String> = unread.iter().filter(|own| own.kind == kind).map(|own| own.what.clone()).collect();
         let Some(first) = own.first() else { continue };
         let found = if own.len() == 1 { first.clone() } else { format!("{first}, and {} more", own.len() - 1) };

@@ -16,27 +16,31 @@ pub enum LeaveOut {
     Composite,
     /// Plugins for forces (elastic ones) or shapes (signed distance fields).
     Plugin,
-    /// Constraints of the law of contact that are not computed: tendons around geoms, solvers. Only
-    /// functions with constraints report them.
+    /// Constraints of the law of contact that are not computed, such as those of tendons around
+    /// geoms. Only functions with constraints report them.
     Constraint,
+    /// The solvers PGS and CG, and iterations without slip: Newton's method finds the optimum. Only
+    /// functions with constraints report them.
+    Solver,
     /// Pairs of shapes whose contact is not computed. Only functions with constraints report them.
     Contact,
 }
 
 impl LeaveOut {
     /// All kinds.
-    pub const ALL: [Self; 5] = [Self::Flex, Self::Composite, Self::Plugin, Self::Constraint, Self::Contact];
+    pub const ALL: [Self; 6] = [Self::Flex, Self::Composite, Self::Plugin, Self::Constraint, Self::Solver, Self::Contact];
 
     /// The names and the kinds, for lists of words.
-    pub const WORDS: [(&str, Self); 5] = [
+    pub const WORDS: [(&str, Self); 6] = [
         ("flex", Self::Flex),
         ("composite", Self::Composite),
         ("plugin", Self::Plugin),
         ("constraint", Self::Constraint),
+        ("solver", Self::Solver),
         ("contact", Self::Contact),
     ];
 
-    /// The name in options: `flex`, `composite`, `plugin`, `constraint` or `contact`.
+    /// The name in options: `flex`, `composite`, `plugin`, `constraint`, `solver` or `contact`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -44,6 +48,7 @@ impl LeaveOut {
             Self::Composite => "composite",
             Self::Plugin => "plugin",
             Self::Constraint => "constraint",
+            Self::Solver => "solver",
             Self::Contact => "contact",
         }
     }
@@ -67,7 +72,7 @@ pub struct NoKind(String);
 
 impl fmt::Display for NoKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "found {:?}, expected flex, composite, plugin, constraint or contact", self.0)?;
+        write!(f, "found {:?}, expected flex, composite, plugin, constraint, solver or contact", self.0)?;
         match nearest(&self.0, LeaveOut::ALL.iter().map(|kind| kind.name())) {
             Some(near) => write!(f, " (did you mean {near:?}?)"),
             None => Ok(()),
@@ -95,6 +100,6 @@ mod tests {
             assert_eq!((kind, kind.name(), name.parse()), (own, name, Ok(kind)));
         }
         let error = "plugins".parse::<LeaveOut>().unwrap_err().to_string();
-        assert_eq!(error, "found \"plugins\", expected flex, composite, plugin, constraint or contact (did you mean \"plugin\"?)");
+        assert_eq!(error, "found \"plugins\", expected flex, composite, plugin, constraint, solver or contact (did you mean \"plugin\"?)");
     }
 }

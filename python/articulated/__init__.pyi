@@ -94,7 +94,7 @@ def load(
     effects: Optional[Literal["file"]] = None,
     allow_unphysical_inertia: bool = False,
     first_of_duplicates: bool = False,
-    leave_out: Iterable[Literal["flex", "composite", "plugin", "constraint", "contact"]] = ...,
+    leave_out: Iterable[Literal["flex", "composite", "plugin", "constraint", "solver", "contact"]] = ...,
     allow_unknown_version: bool = False,
     snap_angles: Optional[float] = None,
 ) -> Robot: ...
@@ -111,7 +111,7 @@ def loads(
     effects: Optional[Literal["file"]] = None,
     allow_unphysical_inertia: bool = False,
     first_of_duplicates: bool = False,
-    leave_out: Iterable[Literal["flex", "composite", "plugin", "constraint", "contact"]] = ...,
+    leave_out: Iterable[Literal["flex", "composite", "plugin", "constraint", "solver", "contact"]] = ...,
     allow_unknown_version: bool = False,
     snap_angles: Optional[float] = None,
 ) -> Robot: ...

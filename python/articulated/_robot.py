@@ -788,7 +788,7 @@ def load(
         allow_unphysical_inertia: True accepts negative principal moments, with a warning.
         first_of_duplicates: True takes the first of tags of a URDF or SDF that should be there once, with a warning.
         leave_out: Elements of an MJCF that change the motion and are not read, to leave out with a warning: any of
-            "flex", "composite", "plugin", "constraint", "contact". Those of another kind are errors.
+            "flex", "composite", "plugin", "constraint", "solver", "contact". Those of another kind are errors.
         allow_unknown_version: True reads a URDF of a version other than 1.0, 1.1 and 1.2 as 1.0, with a warning.
         snap_angles: Takes angles within so many rad of a multiple of π/2 as that multiple.
 

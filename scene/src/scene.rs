@@ -476,7 +476,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
     Row {
         name: "leave_out",
         required: false,
-        value: "list of `\"flex\"`, `\"composite\"`, `\"plugin\"`, `\"constraint\"`, `\"contact\"`",
+        value: "list of `\"flex\"`, `\"composite\"`, `\"plugin\"`, `\"constraint\"`, `\"solver\"`, `\"contact\"`",
         default: "none",
         what: "leave out elements of an MJCF that change the motion and are not read, with a warning; else they are errors",
         read: |s, spot, log| s.code.leave_out = left_out(spot, log),

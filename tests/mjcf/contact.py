@@ -55,7 +55,7 @@ ALL_STATES = 4
 MOST_FREEDOMS = 60
 FORMS = ["plane", "height field", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "signed distance"]
 COMPUTED = [
-    ("plane", "sphere"), ("plane", "capsule"), ("plane", "cylinder"), ("plane", "box"), ("sphere", "sphere"), ("sphere", "capsule"),
+    ("plane", "sphere"), ("plane", "capsule"), ("plane", "ellipsoid"), ("plane", "cylinder"), ("plane", "box"), ("sphere", "sphere"), ("sphere", "capsule"),
     ("sphere", "cylinder"), ("sphere", "box"), ("capsule", "capsule"), ("capsule", "box"), ("box", "box"),
 ]
 PAGE = HERE.parent.parent / "docs" / "contact-files.md"
@@ -79,7 +79,7 @@ def main():
     parser.add_argument("--states", type=int, default=STATES, help=f"states of each model [default: {STATES}]")
     parser.add_argument("--integrator", choices=["Euler", "implicitfast", "RK4"], help="only this one")
     parser.add_argument("--write", action="store_true", help="writes docs/contact-files.md; with --all")
-    parser.add_argument("--leave-out", nargs="*", default=["constraint", "contact"], help="kinds of constraints that are left out here, of files that have them")
+    parser.add_argument("--leave-out", nargs="*", default=["constraint", "solver", "contact"], help="kinds of constraints that are left out here, of files that have them")
     parser.add_argument("--speed", nargs="*", metavar="FILE", help="time steps of generated code, of these files [default: MODELS]")
     arguments = parser.parse_args()
     enter("dynamics")

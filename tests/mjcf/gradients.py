@@ -60,7 +60,7 @@ def measured(path):
         shared = next(Path(mujoco.__file__).parent.glob("libmujoco.so*"))
         code, program, name = folder / "generated.rs", folder / "gradients", "constrained_step_implicit_damping"
         functions = f"step = {name}, slopes = jacobian({name}, q v ctrl), pull = vjp({name}, q v ctrl), mujoco"
-        run(COMMAND, "generate", path, "--effects", "file", "--leave-out", "constraint", "--functions", functions, "--max-code-size", "400", "-o", code)
+        run(COMMAND, "generate", path, "--effects", "file", "--leave-out", "constraint,solver", "--functions", functions, "--max-code-size", "400", "-o", code)
         run(
             "rustc", "--edition", "2024", "-C", "opt-level=3", "-C", "codegen-units=16", "-C", "target-cpu=native", HERE / "gradients.rs", "-o", program,
             "-C", f"link-arg={shared}", "-C", f"link-arg=-Wl,-rpath,{shared.parent}", env={**os.environ, "GENERATED": str(code)},

@@ -47,7 +47,7 @@ def main():
 
 
 def geom(kind, random):
-    size = {"plane": [1, 1, 1], "sphere": random.uniform(0.05, 0.15, 1), "box": random.uniform(0.05, 0.3, 3)}
+    size = {"plane": [1, 1, 1], "sphere": random.uniform(0.05, 0.15, 1), "box": random.uniform(0.05, 0.3, 3), "ellipsoid": random.uniform(0.05, 0.3, 3)}
     size = size.get(kind, [random.uniform(0.03, 0.15), random.uniform(0.05, 0.4)])
     return f'<geom type="{kind}" size="{" ".join(map(repr, map(float, size)))}"/>'
 

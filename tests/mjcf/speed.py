@@ -140,7 +140,7 @@ class Program:
             raise RuntimeError(f"{path.name}: found no actuators, expected one at least")
         kind, own, cfg = "actuated", [], []
         if constrained:
-            kind, own, cfg = "constrained", ["--leave-out", "constraint"], ["--cfg", "constrained"]
+            kind, own, cfg = "constrained", ["--leave-out", "constraint,solver"], ["--cfg", "constrained"]
         functions = f"step = {kind}_step_{method}, mujoco"
         run(COMMAND, "generate", path, "--effects", "file", "--functions", functions, "--batch", "f64,f32", "-o", code, *own)
         run(

@@ -25,7 +25,8 @@ pub(crate) struct SimulateArguments {
     /// default of an MJCF that has some
     #[arg(long, conflicts_with_all = ["print_scene", "all", "generated", "against", "integrator", "rtol", "atol"])]
     pub(crate) constraints: bool,
-    /// Leave out kinds of constraints that are not computed, with a warning: contact, constraint
+    /// Leave out kinds of constraints that are not computed, with a warning: contact, constraint,
+    /// solver
     #[arg(long, value_name = "KINDS", value_delimiter = ',', conflicts_with = "smooth")]
     pub(crate) leave_out: Vec<LeaveOut>,
     /// Start with this keyframe of the file, and its controls, instead of `home`

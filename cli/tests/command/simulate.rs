@@ -467,14 +467,12 @@ fn a_ball_falls_onto_the_floor_of_its_file() {
     assert!(told(&[file.name(), "--integrator", "dopri5", "--keyframe", "a"]).err.contains("--keyframe a: found no motion of a file"));
     let free = File::new("free.xml", BALL.replace("condim=\"1\" solimp", "contype=\"0\" conaffinity=\"0\" solimp").as_bytes());
     assert!(told(&[free.name(), "--constraints"]).err.contains("no constraint"), "{}", told(&[free.name(), "--constraints"]).err);
-    // An ellipsoid touches by no law here.
-    let egg = File::new(
-        "egg.xml",
-        BALL.replace("</freejoint>", "").replace("type=\"sphere\" size=\"0.1\"", "type=\"ellipsoid\" size=\"0.1 0.1 0.2\"").as_bytes(),
-    );
+    // An ellipsoid and a ball touch by no law here.
+    let round = BALL.replace("type=\"plane\" size=\"1 1 1\"", "type=\"ellipsoid\" size=\"0.1 0.1 0.2\"");
+    let egg = File::new("egg.xml", round.as_bytes());
     let refused = told(&[egg.name(), "--constraints"]);
     assert!(refused.status == 1 && refused.err.contains("`--leave-out contact`"), "{}", refused.err);
-    let two = BALL.replace("<freejoint/>", "<freejoint/><geom type=\"ellipsoid\" size=\"0.1 0.1 0.05\" mass=\"1\"/>");
+    let two = BALL.replace("<body name", "<geom type=\"ellipsoid\" size=\"0.1 0.1 0.05\"/><body name");
     let two = File::new("two.xml", two.as_bytes());
     let without = told(&[two.name(), "--constraints", "--leave-out", "contact", "--end", "0.1"]);
     assert!(without.status == 0 && without.err.contains("`leave_out` has \"contact\""), "{}", without.err);

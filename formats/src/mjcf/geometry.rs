@@ -314,7 +314,7 @@ impl Geom<'_> {
             (Kind::Capsule, _) => Ok(Form::Capsule { radius: a, half: b }),
             (Kind::Cylinder, _) => Ok(Form::Cylinder { radius: a, half: b }),
             (Kind::Box, _) => Ok(Form::Box { half: self.size }),
-            (Kind::Ellipsoid, _) => Err("ellipsoid"),
+            (Kind::Ellipsoid, _) => Ok(Form::Ellipsoid { radii: self.size }),
             (Kind::HeightField, _) => Err("height field"),
             (Kind::Sdf | Kind::Mesh, _) => Err("mesh"),
         };

@@ -45,10 +45,14 @@ pub(crate) fn touching(
             names.push(geom.name.clone().unwrap_or_else(|| "without a name".to_owned()));
         }
     }
-    let mut unread = |what: String| all.unread.push(Unread { kind: LeaveOut::Constraint, what, place: Default::default() });
+    let mut unread = |kind: LeaveOut, what: String| all.unread.push(Unread { kind, what, place: Default::default() });
     if let Some(solver) = simulation.solver.filter(|solver| *solver != "Newton") {
-        unread(format!("the solver {solver}: Newton's method is used"));
+        unread(LeaveOut::Solver, format!("the solver {solver}: Newton's method finds the optimum"));
     }
+    if simulation.noslip > 0 {
+        unread(LeaveOut::Solver, "noslip_iterations: Newton's method finds the optimum, and contacts slip softly".to_owned());
+    }
+    let mut unread = |what: String| unread(LeaveOut::Constraint, what);
     names.into_iter().for_each(|name| unread(format!("adhesion or surfacevel of the geom {name}")));
     let spatial = tendons.iter().filter(|tendon| matches!(tendon.course, Course::Unread));
     for (tendon, what) in spatial.filter_map(|tendon| Some((tendon, tendon.constraint()?))) {
@@ -56,9 +60,6 @@ pub(crate) fn touching(
     }
     for flag in &simulation.constraint_flags {
         unread(format!("the flag {flag}"));
-    }
-    if simulation.noslip > 0 {
-        unread("noslip_iterations: there are none".to_owned());
     }
     all.sums = tendons.iter().flat_map(|tendon| of_tendon(tendon, scope)).collect();
     if !flags.no_contact {

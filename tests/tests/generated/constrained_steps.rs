@@ -212,7 +212,8 @@ fn second_derivatives_are_those_of_differences() {
 /// A contact that a caller finds is the one that is computed.
 #[test]
 fn given_contacts_are_those_that_are_computed() {
-    let names = ["constrained_acceleration_with_contacts", "constrained_step_implicit_damping_with_contacts"];
+    let names =
+        ["constrained_acceleration_with_contacts", "constrained_step_implicit_damping_with_contacts", "contact_forces_with_contacts"];
     let text =
         BALL.replace("<geom type='plane'", "<geom name='floor' type='plane'").replace("<geom size='0.1'", "<geom name='ball' size='0.1'");
     for (shapes, sign) in [(["floor", "ball"], 1.0), (["ball", "floor"], -1.0)] {
@@ -229,7 +230,7 @@ fn given_contacts_are_those_that_are_computed() {
             let low = q[2] - 0.1;
             let contact = [1.0, low, q[0], q[1], 0.5 * low, 0.0, 0.0, sign];
             let contacts = [contact, [0.0, -1.0, 9.0, 9.0, 9.0, 1.0, 0.0, 0.0]].concat();
-            for (k, name) in names.iter().enumerate() {
+            for (k, name) in names[..2].iter().enumerate() {
                 let expected = called(NAMES[k], &plain, &given);
                 let all: [&[f64]; 7] = [q, v, act, ctrl, &contacts, warm, h];
                 assert_close(name, &generated.graphs[k].evaluate(|argument, k| all[argument][k]), &expected, 1e-12);
@@ -238,6 +239,12 @@ fn given_contacts_are_those_that_are_computed() {
                 row.call(&generated.model, &mut Workspace::new(&generated.model), &all[..row.takes.len()], &mut out).unwrap();
                 assert_close(name, &out, &expected, 1e-12);
             }
+            // Forces of the contact are those of the one that is computed; the second one has none.
+            let found = called(NAMES[1], &plain, &given).split_off(plain.nq() + plain.nv());
+            let mut expected = [0.0; 26];
+            step("contact_forces").unwrap().call(&plain, &mut Workspace::new(&plain), &[q, v, &found], &mut expected[..13]).unwrap();
+            let all: [&[f64]; 4] = [q, v, &contacts, &found];
+            assert_close(names[2], &generated.graphs[2].evaluate(|argument, k| all[argument][k]), &expected, 1e-12);
         }
     }
     // Functions that would leave given contacts out are errors.

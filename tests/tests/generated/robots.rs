@@ -132,7 +132,7 @@ pub(crate) fn native<'a>(robots: impl Iterator<Item = &'a Robot>) -> Program {
 /// vector instructions and multiply-adds are chosen when it runs.
 pub(crate) static CHOSEN: LazyLock<Program> = LazyLock::new(|| {
     let asked = "::std::is_x86_feature_detected!(\"avx2\")";
-    anybodys(&COMPILED, "with the instructions that there are", |source| source.replace(asked, "crate::has_avx2()"))
+    anybodys(&COMPILED, "with the instructions that there are", "opt-level=3", |source| source.replace(asked, "crate::has_avx2()"))
 });
 
 /// The same program as on a processor without AVX2 and fused multiply-add: a variable of the
@@ -142,7 +142,7 @@ pub(crate) static PORTABLE: LazyLock<Program> = LazyLock::new(|| CHOSEN.with_var
 /// The same on a processor that is neither x86-64 nor Arm: its lanes are arrays.
 pub(crate) static ELSEWHERE: LazyLock<Program> = LazyLock::new(|| {
     let [asked, other] = ["x86_64", "none"].map(|arch| format!("target_arch = \"{arch}\""));
-    anybodys(&LANES.map(|l| l.0), "for another processor", |source| source.replace(&asked, &other))
+    anybodys(&LANES.map(|l| l.0), "for another processor", "opt-level=1", |source| source.replace(&asked, &other))
 });
 
 /// The robots that are compiled: together they have every kind of statement, which
@@ -157,13 +157,13 @@ pub(crate) fn is_compiled(robot: &&Robot) -> bool {
 /// Those with limbs in lanes, and how many.
 pub(crate) const LANES: [(&str, usize); 3] = [("walker", 4), ("strider", 2), ("humanoid_derivatives", 2)];
 
-fn anybodys(robots: &[&str], how: &str, change: impl Fn(String) -> String) -> Program {
+fn anybodys(robots: &[&str], how: &str, level: &str, change: impl Fn(String) -> String) -> Program {
     let find = |name: &&str| ROBOTS.iter().find(|r| r.name == *name).expect("one of them");
     let some: Vec<&Robot> = robots.iter().map(find).collect();
     let changed: Vec<Generated> =
         some.iter().map(|r| Generated { source: change(r.generated.source.clone()), ..r.generated.clone() }).collect();
     let named: Vec<(&str, &Generated)> = some.iter().map(|r| r.name.as_str()).zip(&changed).collect();
-    let program = Program::build(&named, &["-O", "-C", "debug-assertions=on"]);
+    let program = Program::build(&named, &["-C", level, "-C", "debug-assertions=on"]);
     println!("compiled {} robots {how} in {:.1?}", named.len(), program.time);
     program
 }

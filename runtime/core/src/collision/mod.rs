@@ -49,6 +49,11 @@ pub enum Form<S = f64> {
         /// Half the length of the cylinder alone.
         half: S,
     },
+    /// An ellipsoid along the axes.
+    Ellipsoid {
+        /// Half its axes.
+        radii: [S; 3],
+    },
     /// A cylinder along z.
     Cylinder {
         /// Its radius.
@@ -124,6 +129,7 @@ impl<S: Scalar> Form<S> {
             Self::Plane => Form::Plane,
             Self::Sphere { radius } => Form::Sphere { radius: f(radius) },
             Self::Capsule { radius, half } => Form::Capsule { radius: f(radius), half: f(half) },
+            Self::Ellipsoid { radii } => Form::Ellipsoid { radii: radii.map(f) },
             Self::Cylinder { radius, half } => Form::Cylinder { radius: f(radius), half: f(half) },
             Self::Box { half } => Form::Box { half: half.map(f) },
         }
@@ -136,7 +142,7 @@ impl<S: Scalar> Form<S> {
             Self::Sphere { radius } => *radius,
             Self::Capsule { radius, half } => *radius + *half,
             Self::Cylinder { radius, half } => (*radius * *radius + *half * *half).sqrt(),
-            Self::Box { half: [a, b, c] } => (*a * *a + *b * *b + *c * *c).sqrt(),
+            Self::Ellipsoid { radii: [a, b, c] } | Self::Box { half: [a, b, c] } => (*a * *a + *b * *b + *c * *c).sqrt(),
         }
     }
 }
@@ -148,6 +154,7 @@ impl<S> Form<S> {
             Self::Plane => "plane",
             Self::Sphere { .. } => "sphere",
             Self::Capsule { .. } => "capsule",
+            Self::Ellipsoid { .. } => "ellipsoid",
             Self::Cylinder { .. } => "cylinder",
             Self::Box { .. } => "box",
         }
@@ -159,8 +166,9 @@ impl<S> Form<S> {
             Self::Plane => 0,
             Self::Sphere { .. } => 1,
             Self::Capsule { .. } => 2,
-            Self::Cylinder { .. } => 3,
-            Self::Box { .. } => 4,
+            Self::Ellipsoid { .. } => 3,
+            Self::Cylinder { .. } => 4,
+            Self::Box { .. } => 5,
         }
     }
 
@@ -169,10 +177,11 @@ impl<S> Form<S> {
     pub fn places(first: &Self, second: &Self) -> Option<usize> {
         match (first, second) {
             (Self::Plane, Self::Plane) => None,
-            (Self::Plane, Self::Sphere { .. }) => Some(1),
+            (Self::Plane, Self::Sphere { .. } | Self::Ellipsoid { .. }) => Some(1),
             (Self::Plane, Self::Capsule { .. }) => Some(2),
             (Self::Plane, Self::Cylinder { .. }) => Some(4),
             (Self::Plane, Self::Box { .. }) => Some(8),
+            (Self::Sphere { .. }, Self::Ellipsoid { .. }) => None,
             (Self::Sphere { .. }, _) => Some(1),
             (Self::Capsule { .. }, Self::Capsule { .. }) => Some(2),
             (Self::Capsule { .. }, Self::Box { .. }) => Some(2),
@@ -199,10 +208,11 @@ const SLACK: f64 = 1.0 + 1e-6;
 /// The places where two shapes may touch, the one of lower rank first, as many as
 /// [`Form::places`] says. `reach`: a place beyond this distance does not count, m.
 pub(crate) fn touches<S: Scalar>(first: &Placed<'_, S>, second: &Placed<'_, S>, reach: S) -> Vec<Touch<S>> {
-    use Form::{Box, Capsule, Cylinder, Plane, Sphere};
+    use Form::{Box, Capsule, Cylinder, Ellipsoid, Plane, Sphere};
     match (first.form, second.form) {
         (Plane, Sphere { radius }) => [plane::sphere(first, second.position, *radius)].into(),
         (Plane, Capsule { radius, half }) => plane::capsule(first, second, *radius, *half).into(),
+        (Plane, Ellipsoid { radii }) => [plane::ellipsoid(first, second, *radii)].into(),
         (Plane, Cylinder { radius, half }) => plane::cylinder(first, second, *radius, *half, reach).into(),
         (Plane, Box { half }) => plane::cuboid(first, second, *half, reach),
         (Sphere { radius }, Sphere { radius: other }) => [round::spheres(first, second, *radius, *other)].into(),

@@ -34,6 +34,16 @@ pub(super) fn capsule<S: Scalar>(plane: &Placed<'_, S>, other: &Placed<'_, S>, r
     })
 }
 
+/// The lowest point: p − R A² Rᵀn/|A Rᵀn|, A the half axes.
+pub(super) fn ellipsoid<S: Scalar>(plane: &Placed<'_, S>, other: &Placed<'_, S>, radii: [S; 3]) -> Touch<S> {
+    let normal = plane.axis(2);
+    let radii = Vector3::from(radii);
+    let scaled = (other.rotation.transpose() * normal).component_mul(&radii);
+    let length = scaled.dot(&scaled).sqrt();
+    let lowest = other.position - other.rotation * scaled.component_mul(&radii) * (S::one() / length);
+    touch(S::one(), normal, (lowest - plane.position).dot(&normal), lowest, None)
+}
+
 /// The lowest point of each rim, and two more of the lower one.
 pub(super) fn cylinder<S: Scalar>(plane: &Placed<'_, S>, other: &Placed<'_, S>, radius: S, half: S, reach: S) -> [Touch<S>; 4] {
     let (normal, one) = (plane.axis(2), S::one());

@@ -43,11 +43,19 @@ impl<S> Constraints<S> {
     }
 }
 
-/// Contacts at the acceleration x, of origins d²p/dt²: `out` `[contacts][13]` has for each place 1,
-/// the point, the normal, the force and the moment about the point, in axes of the world; zeros
-/// where nothing touches. The normal is from the world to the body, or from the first body of the
-/// pair to the second; force and moment act on this body.
-pub(crate) fn contact_forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, (q, v): (&[S], &[S]), x: &[S], out: &mut [S]) {
+/// Contacts at the acceleration x, of origins d²p/dt²: `out` `[contacts + given][13]` has for each
+/// place, and for each given contact, 1, the point, the normal, the force and the moment about the
+/// point, in axes of the world; zeros where nothing touches. The normal is from the world to the
+/// body, or from the first body of the pair to the second; force and moment act on this body.
+///
+/// `given`: contacts that a caller found, `[given][8]`, or empty: they have no rows then.
+pub(crate) fn contact_forces<S: Scalar>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    (q, v, given): (&[S], &[S], &[S]),
+    x: &[S],
+    out: &mut [S],
+) {
     out.fill(S::zero());
     let constraints = &model.constraints;
     let placed = Bodies::at(model, ws, q);
@@ -55,11 +63,11 @@ pub(crate) fn contact_forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>,
     let columns = motion::columns(&placed, origin);
     let [rates, accelerations] = [v, x].map(|x| motion::twists(model, &columns, x));
     let mut first = vec![0; constraints.pairs.len()];
-    let places: Vec<usize> = constraints.pair_of_contacts().collect();
+    let places: Vec<usize> = constraints.pair_of_contacts().chain(constraints.pair_of_given()).collect();
     places.iter().enumerate().rev().for_each(|(place, pair)| first[*pair] = place);
     // Contacts of one dimension: rows of a table, and their places
     let mut tables: BTreeMap<usize, (Vec<S>, Vec<usize>)> = BTreeMap::new();
-    for Found { pair, bodies: [one, other], dimension, rows } in pairs::contacts(constraints, &placed, (origin, &rates), &[]) {
+    for Found { pair, bodies: [one, other], dimension, rows } in pairs::contacts(constraints, &placed, (origin, &rates), given) {
         let relative = (accelerations[other] - accelerations[one]).to_array();
         let (table, places) = tables.entry(dimension).or_default();
         for (k, row) in rows.chunks(contact::length(dimension)).enumerate() {

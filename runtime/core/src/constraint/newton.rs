@@ -645,7 +645,7 @@ mod tests {
         let exact = solved(&touching, q, v, a);
         let mut ws = Workspace::new(&touching);
         let mut place = [0.0; CONTACT];
-        contact_forces(&touching, &mut ws, (&[q], &[v]), &[exact], &mut place);
+        contact_forces(&touching, &mut ws, (&[q], &[v], &[]), &[exact], &mut place);
         let expected = [1.0, 0.0, 0.0, 0.5 * (q - 0.1), 0.0, 0.0, 1.0, 0.0, 0.0, MASS * (exact - a), 0.0, 0.0, 0.0];
         assert!(place.iter().zip(expected).all(|(x, y)| (x - y).abs() < 1e-12 * y.abs().max(1.0)), "{place:?}");
         for moved in [0.0, 1e-3, -1e-3, 5.0, -200.0] {
@@ -659,7 +659,7 @@ mod tests {
         let (found, Certificate { error, .. }, steps) = searched(&touching, &mut ws, &smooth);
         assert!(found[0] == exact && error < 1e-11 && (1.0..4.0).contains(&steps), "{found:?} {error} {steps}");
         // Not in contact
-        contact_forces(&touching, &mut ws, (&[0.11], &[v]), &[a], &mut place);
+        contact_forces(&touching, &mut ws, (&[0.11], &[v], &[]), &[a], &mut place);
         assert_eq!(place, [0.0; CONTACT]);
         assert_eq!((solved(&touching, 0.11, -1.0, -9.81), solved(&limited, 0.11, -1.0, -9.81)), (-9.81, -9.81));
     }

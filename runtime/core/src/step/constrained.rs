@@ -128,11 +128,25 @@ impl<S: Scalar> Steps<S> {
             applies: always,
             least: nothing,
             run: &|model, ws, inputs, out| {
-                let [q, v, found] = [Argument::Q, Argument::V, FOUND].map(|argument| inputs.get(argument));
-                contact_forces(model, ws, (q, v), found, out);
+                let [q, v, contacts, found] = [Argument::Q, Argument::V, CONTACTS, FOUND].map(|argument| inputs.get(argument));
+                contact_forces(model, ws, (q, v, contacts), found, out);
             },
         }],
         ..Self::constrained_acceleration
+    };
+
+    pub(super) const contact_forces_with_contacts: Function<S> = Function {
+        name: "contact_forces_with_contacts",
+        summary: "contact_forces, and the same of contacts that a caller finds",
+        takes: &[Argument::Q, Argument::V, CONTACTS, FOUND],
+        gives: &[],
+        outputs: &[
+            Port::new("forces", &[Dim::Contacts, Dim::Of(CONTACT)], "1, m, 1, N, N·m, of each place of contact"),
+            Port::new("given_forces", &[Dim::Given, Dim::Of(CONTACT)], "1, m, 1, N, N·m, of each given contact"),
+        ],
+        unit: "",
+        group: Group::GivenContacts,
+        ..Self::contact_forces
     };
 }
 

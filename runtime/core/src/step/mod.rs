@@ -293,7 +293,7 @@ steps! { OF_CONSTRAINTS, Constraints, CONSTRAINED_TAKES, CONSTRAINED_GIVES, [con
         "MuJoCo documentation, Computation: constraint model; Numerical integration";
 }
 
-steps! { OF_CALLERS, GivenContacts, WITH_CONTACTS_TAKES, CONSTRAINED_GIVES, [constrained_acceleration_with_contacts];
+steps! { OF_CALLERS, GivenContacts, WITH_CONTACTS_TAKES, CONSTRAINED_GIVES, [constrained_acceleration_with_contacts contact_forces_with_contacts];
     constrained_step_semi_implicit_euler_with_contacts: euler::semi_implicit, untied, [forward_dynamics_with_wrenches],
         "constrained_step_semi_implicit_euler with contacts that a caller finds",
         "MuJoCo documentation, Computation: constraint model";
