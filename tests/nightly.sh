@@ -34,6 +34,7 @@ step mjcf-steps python3 tests/mjcf/steps.py
 step mjcf-contact python3 tests/mjcf/contact.py
 step parry cargo run --release --manifest-path examples/parry/Cargo.toml
 step mjcf-gradients python3 tests/mjcf/gradients.py
+step mjcf-stages python3 tests/mjcf/stages.py
 step sdf python3 tests/sdf/oracle.py
 step xacro python3 tests/xacro/oracle.py
 step mutants python3 tests/mutants/mutants.py

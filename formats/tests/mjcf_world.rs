@@ -613,7 +613,8 @@ fn a_spatial_tendon_is_a_path() {
     assert_eq!(all, [(1.0, vec![("world", [0.0, 0.0, 2.0]), p]), (0.5, vec![p, ("b", [3.0, 0.0, 0.5])])]);
     assert_eq!((&friction.length, &held.length), (&limit.length, &limit.length));
     let TouchingLaw::Equation { references, .. } = held.law else { panic!("{held:?}") };
-    // In the reference pose the site is at 0.5: 1.5 and 3/2; springs are at rest half a metre above.
+    // In the reference pose the site is at 0.5: 1.5 and 3/2. Springs are at rest half a metre
+    // above.
     assert_eq!(references, [3.0, 0.0]);
     let [spring] = &read.world.passive[..] else { panic!("{:?}", read.world.passive) };
     assert_eq!(spring.bias, [2.0 * 2.5, -2.0, 0.0]);

@@ -1,73 +1,35 @@
 //! Times rollouts of generated steps beside MuJoCo's `mj_step`, in one process and in turns.
 //!
 //! speed.py compiles this file with the path of generated code in `GENERATED`: a function `step`
-//! with controls and h, and the translation of states. Arguments: a compiled model (mjb), states,
-//! the file to write, the number of states, steps, rounds, the length of a step, and what a state
-//! of MuJoCo contains (mjtState). With `--cfg constrained` the step has constraints.
+//! with controls and h, and the translation of states. Arguments: see beside.rs; then steps,
+//! rounds, the length of a step, and what a state of MuJoCo contains (mjtState). With
+//! `--cfg constrained` the step has constraints.
 
-use std::ffi::{CString, c_char, c_int, c_void};
+use std::ffi::{c_int, c_void};
 use std::hint::black_box;
-use std::time::Instant;
 
 #[allow(dead_code)]
 mod robot {
     include!(env!("GENERATED"));
 }
+mod beside;
 
-use robot::{NA, NQ, NU, NV};
+use beside::{State, Theirs, clock, medians, states, write};
+use robot::NV;
 
 unsafe extern "C" {
-    fn mj_loadModel(file: *const c_char, vfs: *const c_void) -> *mut c_void;
-    fn mj_makeData(model: *const c_void) -> *mut c_void;
-    fn mj_stateSize(model: *const c_void, parts: c_int) -> c_int;
-    fn mj_setState(model: *const c_void, data: *mut c_void, state: *const f64, parts: c_int);
     fn mj_getState(model: *const c_void, data: *const c_void, state: *mut f64, parts: c_int);
     fn mj_step(model: *const c_void, data: *mut c_void);
 }
 
-/// MuJoCo with one model.
-struct Theirs {
-    model: *mut c_void,
-    data: *mut c_void,
-    parts: c_int,
-    size: usize,
-}
-
-impl Theirs {
-    fn new(file: &str, parts: c_int) -> Self {
-        let file = CString::new(file).expect("a path without zeros");
-        // SAFETY: the path ends with a zero; the model is checked before it is used.
-        unsafe {
-            let model = mj_loadModel(file.as_ptr(), std::ptr::null());
-            assert!(!model.is_null(), "MuJoCo does not load the model");
-            let size = mj_stateSize(model, parts);
-            Self { model, data: mj_makeData(model), parts, size: usize::try_from(size).expect("a size") }
-        }
+fn rolled(theirs: &mut Theirs, start: &[f64], steps: usize, end: &mut [f64]) {
+    assert_eq!(end.len(), theirs.size);
+    theirs.set(start);
+    // SAFETY: model and data are MuJoCo's, and the state has its size.
+    unsafe {
+        (0..steps).for_each(|_| mj_step(theirs.model, theirs.data));
+        mj_getState(theirs.model, theirs.data, end.as_mut_ptr(), theirs.parts);
     }
-
-    fn roll(&mut self, start: &[f64], steps: usize, end: &mut [f64]) {
-        assert!(start.len() == self.size && end.len() == self.size);
-        // SAFETY: model and data are MuJoCo's, and the states have their size.
-        unsafe {
-            mj_setState(self.model, self.data, start.as_ptr(), self.parts);
-            (0..steps).for_each(|_| mj_step(self.model, self.data));
-            mj_getState(self.model, self.data, end.as_mut_ptr(), self.parts);
-        }
-    }
-}
-
-#[derive(Clone)]
-struct State {
-    q: [f64; NQ],
-    v: [f64; NV],
-    act: [f64; NA],
-    ctrl: [f64; NU],
-    /// The last acceleration, of steps with constraints.
-    warm: [f64; NV],
-}
-
-fn array<const N: usize>(numbers: Vec<f64>) -> [f64; N] {
-    numbers.try_into().expect("as many numbers as the robot has")
 }
 
 fn alone(start: &State, steps: usize, h: f64) -> State {
@@ -143,44 +105,26 @@ lanes!(in_f32, batch_f32, f32);
 fn main() {
     let words: Vec<String> = std::env::args().collect();
     let number = |k: usize| words[k].parse::<usize>().expect("a number");
-    let (states, steps, rounds, parts) = (number(4), number(5), number(6), number(8));
+    let (steps, rounds) = (number(5), number(6));
     let h: f64 = words[7].parse().expect("a length");
-    let mut theirs = Theirs::new(&words[1], c_int::try_from(parts).expect("few bits"));
-    let bytes = std::fs::read(&words[2]).expect("states");
-    let mut numbers = bytes.chunks_exact(8).map(|x| f64::from_le_bytes(x.try_into().expect("eight bytes")));
-    let mut take = |count: usize| numbers.by_ref().take(count).collect::<Vec<f64>>();
-    let (mut their_starts, mut starts) = (Vec::new(), Vec::new());
-    for _ in 0..states {
-        their_starts.push(take(theirs.size));
-        let robot::StateOfMujoco { q, v } = robot::state_of_mujoco(&array(take(NQ)), &array(take(NV)));
-        starts.push(State { q, v, act: array(take(NA)), ctrl: array(take(NU)), warm: [0.0; NV] });
-    }
-
+    let mut theirs = Theirs::new(&words[1], &words[8]);
+    let (their_starts, starts) = states(&words[2], &words[4], theirs.size);
+    let count = starts.len() * steps;
     let mut their_ends = their_starts.clone();
     let mut ends = [starts.clone(), starts.clone(), starts.clone()];
     let mut times: [Vec<f64>; 4] = Default::default();
     for _ in 0..rounds {
-        let clock = |times: &mut Vec<f64>, run: &mut dyn FnMut()| {
-            let start = Instant::now();
-            run();
-            times.push(start.elapsed().as_secs_f64() * 1e9 / (states * steps) as f64);
-        };
-        clock(&mut times[0], &mut || {
-            their_starts.iter().zip(&mut their_ends).for_each(|(start, end)| theirs.roll(start, steps, end));
+        clock(&mut times[0], count, &mut || {
+            their_starts.iter().zip(&mut their_ends).for_each(|(start, end)| rolled(&mut theirs, start, steps, end));
         });
-        clock(&mut times[1], &mut || ends[0] = black_box(&starts).iter().map(|start| alone(start, steps, h)).collect());
-        clock(&mut times[2], &mut || ends[1] = in_f64(black_box(&starts), steps, h));
-        clock(&mut times[3], &mut || ends[2] = in_f32(black_box(&starts), steps, h));
+        clock(&mut times[1], count, &mut || ends[0] = black_box(&starts).iter().map(|start| alone(start, steps, h)).collect());
+        clock(&mut times[2], count, &mut || ends[1] = in_f64(black_box(&starts), steps, h));
+        clock(&mut times[3], count, &mut || ends[2] = in_f32(black_box(&starts), steps, h));
     }
-    let medians = times.map(|mut times| {
-        times.sort_by(f64::total_cmp);
-        times[times.len() / 2]
-    });
-    println!("{medians:?}");
+    println!("{:?}", medians(times));
     let own = ends.iter().flatten().flat_map(|s| {
         let robot::MujocoState { qpos, qvel } = robot::mujoco_state(&s.q, &s.v);
         qpos.into_iter().chain(qvel).chain(s.act)
     });
-    let bytes: Vec<u8> = their_ends.iter().flatten().copied().chain(own).flat_map(f64::to_le_bytes).collect();
-    std::fs::write(&words[3], bytes).expect("the ends can be written");
+    write(&words[3], their_ends.iter().flatten().copied().chain(own));
 }

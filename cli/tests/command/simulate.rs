@@ -476,6 +476,13 @@ fn a_ball_falls_onto_the_floor_of_its_file() {
     let two = File::new("two.xml", two.as_bytes());
     let without = told(&[two.name(), "--constraints", "--leave-out", "contact", "--end", "0.1"]);
     assert!(without.status == 0 && without.err.contains("`leave_out` has \"contact\""), "{}", without.err);
+    // Another solver is an error, and Newton's method where an option allows it.
+    let pgs =
+        File::new("pgs.xml", BALL.replace("timestep=\"0.005\"", "timestep=\"0.005\" solver=\"PGS\" noslip_iterations=\"2\"").as_bytes());
+    let refused = told(&[pgs.name(), "--constraints"]);
+    assert!(refused.status == 1 && refused.err.contains("`--leave-out solver`"), "{}", refused.err);
+    let solved = told(&[pgs.name(), "--constraints", "--leave-out", "solver", "--end", "0.1"]);
+    assert!(solved.status == 0 && solved.err.contains("the solver PGS: Newton's method finds the optimum"), "{}", solved.err);
 }
 
 #[test]

@@ -38,8 +38,8 @@ impl<'a> Places<'a> {
         Self { description, links, model: None }
     }
 
-    /// The path of a tag `<spatial>`; `sites`: those of its tags `<site>`, in order. `None`: it goes
-    /// around a geom, or the file has mistakes, which are reported.
+    /// The path of a tag `<spatial>`; `sites`: those of its tags `<site>`, in order. `None`: it
+    /// goes around a geom, or the file has mistakes, which are reported.
     pub(crate) fn path(&mut self, element: &Element, sites: &[usize], scope: &Scope<'_>, log: &mut Diagnostics) -> Option<Path> {
         let strands = strands(element, sites, self.links, scope, log)?;
         if !log.is_ok() {

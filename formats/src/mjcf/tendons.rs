@@ -1,4 +1,4 @@
-//! The section `<tendon>`: sums of coordinates and paths over sites, with the springs and dampers on
+//! The section `<tendon>`: sums of coordinates and paths over sites, with springs and dampers on
 //! them.
 
 use articulated_core::description::Description;

@@ -5,9 +5,9 @@
 //! l̇ = Σ c Σ u · (ṗ_{k+1} − ṗ_k)        u: from p_k to p_{k+1}, of norm one
 //! ```
 //!
-//! A line between points in one place pulls along the first axis of the world. Joints that move both
-//! ends of a line have no entry in its part of ∂l/∂q. Source: MuJoCo documentation, XML reference:
-//! tendon/spatial.
+//! A line between points in one place pulls along the first axis of the world. Joints that move
+//! both ends of a line have no entry in its part of ∂l/∂q. Source: MuJoCo documentation, XML
+//! reference: tendon/spatial.
 
 use alloc::vec::Vec;
 

@@ -92,8 +92,8 @@ impl<S: Scalar> ActuatorLaw<S> {
 }
 
 impl<S: Scalar> Actuators<S> {
-    /// Adds their torques to `tau` `[nv]`, N·m or N, which is zero on entry, but for those of forces
-    /// on frames. Missing inputs are 0.
+    /// Adds their torques to `tau` `[nv]`, N·m or N, which is zero on entry, but for those of
+    /// forces on frames. Missing inputs are 0.
     ///
     /// inputs: `[nu]`, of [`Actuators::inputs`]; q: `[nq]`; v: `[nv]`.
     pub fn add_torques(&self, inputs: &[S], q: &[S], v: &[S], tau: &mut [S]) {

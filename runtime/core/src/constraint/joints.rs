@@ -8,9 +8,8 @@
 
 use alloc::vec::Vec;
 
-use super::{Bound, Constraints, DryFriction, Limit, sums};
+use super::{Bound, Constraints, DryFriction, Limit};
 use crate::Scalar;
-use crate::algorithm::Placed;
 use crate::algorithm::manifold::{quaternion, three};
 use crate::scalar::flag;
 use crate::spatial::Vector3;
@@ -77,10 +76,9 @@ impl<S: Scalar> JointRow<S> {
 
 impl<S: Scalar> Constraints<S> {
     /// The rows of joints in a state.
-    pub(super) fn joint_rows(&self, bodies: &Placed<'_, S>, q: &[S], v: &[S]) -> Vec<JointRow<S>> {
+    pub(super) fn joint_rows(&self, q: &[S], v: &[S]) -> Vec<JointRow<S>> {
         let mut rows: Vec<JointRow<S>> = self.friction.iter().map(|own| own.row(q, v)).collect();
         self.limits.iter().for_each(|limit| limit.rows(q, v, &mut rows));
-        sums::rows(&self.sums, bodies, (q, v), &mut rows);
         rows
     }
 }

@@ -21,6 +21,7 @@ use super::contact::{self, Contact, Law};
 use super::joints::JointRow;
 use super::motion::{self, Column, Twists};
 use super::pairs::{self, Found};
+use super::sums;
 use crate::Scalar;
 use crate::algorithm::ltdl::{factor, inverse_square, path_to_root, solve};
 use crate::algorithm::{Placed as Bodies, Workspace, mass_matrix};
@@ -95,6 +96,8 @@ struct Group<S> {
     dimension: usize,
     /// A row of numbers for each contact.
     rows: Vec<S>,
+    /// Positive where one of them acts.
+    acts: S,
 }
 
 impl<S> Group<S> {
@@ -139,14 +142,18 @@ impl<'a, S: Scalar> Problem<'a, S> {
             mass,
             start: smooth.a,
             columns,
-            rows: constraints.joint_rows(&placed, smooth.q, smooth.v),
+            rows: constraints.joint_rows(smooth.q, smooth.v),
             groups: Vec::new(),
         };
         let twists = problem.motion(smooth.v);
         let moving = Moving { model, placed: &placed, columns: &problem.columns, origin, twists: &twists };
+        sums::rows(&constraints.sums, &placed, (smooth.q, smooth.v), &mut problem.rows);
         anchors::rows(&constraints.anchors, &moving, &mut problem.rows);
         for Found { bodies, dimension, rows, .. } in pairs::contacts(constraints, &placed, (origin, &twists), smooth.given) {
             problem.add(bodies, dimension, &rows);
+        }
+        for group in &mut problem.groups {
+            group.acts = group.rows.chunks(contact::length(group.dimension)).fold(S::zero(), |sum, row| sum + row[0]);
         }
         problem.parents = problem.ways();
         problem
@@ -155,7 +162,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
     fn add(&mut self, bodies: [BodyId; 2], dimension: usize, rows: &[S]) {
         match self.groups.iter_mut().find(|group| group.bodies == bodies && group.dimension == dimension) {
             Some(group) => group.rows.extend_from_slice(rows),
-            None => self.groups.push(Group { bodies, dimension, rows: rows.to_vec() }),
+            None => self.groups.push(Group { bodies, dimension, rows: rows.to_vec(), acts: S::zero() }),
         }
     }
 
@@ -213,16 +220,30 @@ impl<'a, S: Scalar> Problem<'a, S> {
         visit: impl Fn(&Contact<S>, [Twist<S>; N], &mut [S]),
     ) {
         let [first, second] = group.bodies;
-        S::for_each(group.count(), &group.rows, carried, results, |row, carried, results| {
-            let mut state = [&*carried, &*results].concat();
-            S::when(row[0].positive(), &mut state, |state| {
-                let relative = motions.map(|twists| twists[second] - twists[first]);
-                visit(&Contact::of(row, group.dimension), relative, state);
+        let all = |carried: &mut [S], results: &mut [S]| {
+            S::for_each(group.count(), &group.rows, carried, results, |row, carried, results| {
+                let mut state = [&*carried, &*results].concat();
+                S::when(row[0].positive(), &mut state, |state| {
+                    let relative = motions.map(|twists| twists[second] - twists[first]);
+                    visit(&Contact::of(row, group.dimension), relative, state);
+                });
+                let (before, after) = state.split_at(carried.len());
+                carried.copy_from_slice(before);
+                results.copy_from_slice(after);
             });
-            let (before, after) = state.split_at(carried.len());
-            carried.copy_from_slice(before);
-            results.copy_from_slice(after);
+        };
+        if group.count() < 2 {
+            return all(carried, results);
+        }
+        // Most groups of a robot with many have none that acts.
+        let mut state = [&*carried, &*results].concat();
+        S::when(group.acts.positive(), &mut state, |state| {
+            let (before, after) = state.split_at_mut(carried.len());
+            all(before, after);
         });
+        let (before, after) = state.split_at(carried.len());
+        carried.copy_from_slice(before);
+        results.copy_from_slice(after);
     }
 
     /// g, and the sum of the sizes of its terms, both with M's diagonal as weights.
