@@ -338,6 +338,8 @@ fn frames_that_are_held_together_have_their_places() {
         ("<connect body1=\"c\" body2=\"d\"/>", "body1 and anchor, or site1 and site2"),
         ("<connect site1=\"s\"/>", "body1 and anchor, or site1 and site2"),
         ("<weld body2=\"c\"/>", "body1, or site1 and site2"),
+        ("<weld site1=\"s\" site2=\"t\" anchor=\"1 2 3\"/>", "both site1 and anchor"),
+        ("<connect site1=\"s\" site2=\"t\" body1=\"c\"/>", "both site1 and body1"),
         ("<weld body1=\"c\" body2=\"nobody\"/>", "the name of a body"),
         ("<weld body1=\"c\" relpose=\"1 2 x\"/>", "a decimal number"),
     ] {

@@ -12,7 +12,7 @@ from ._compiled import CompiledRobot
 from ._derivative import Derivative
 from ._errors import RobotError, RobotWarning
 from ._robot import Actuator, Function, Joint, Robot, bundled, bundled_names, functions, load, loads
-from ._rollout import ActuatedRollout, ActuatedRolloutGradient, ContactForces, MujocoState, Rollout, RolloutGradient, State
+from ._rollout import ActuatedRollout, ActuatedRolloutGradient, ConstrainedStep, ContactForces, MujocoState, Rollout, RolloutGradient, State
 from ._scene import Motion, Scene, bundled_scene_names
 
 __all__ = [
@@ -20,6 +20,7 @@ __all__ = [
     "ActuatedRolloutGradient",
     "Actuator",
     "CompiledRobot",
+    "ConstrainedStep",
     "ContactForces",
     "Derivative",
     "Function",
@@ -41,6 +42,6 @@ __all__ = [
     "loads",
 ]
 __version__ = "0.1.0"
-_RESULTS = Rollout, RolloutGradient, ActuatedRollout, ActuatedRolloutGradient, ContactForces
+_RESULTS = Rollout, RolloutGradient, ActuatedRollout, ActuatedRolloutGradient, ConstrainedStep, ContactForces
 for _class in (RobotError, RobotWarning, Robot, CompiledRobot, Derivative, Actuator, Joint, Function, *_RESULTS, Scene, Motion):
     _class.__module__ = __name__

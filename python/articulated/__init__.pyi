@@ -97,6 +97,7 @@ def load(
     leave_out: Iterable[Literal["flex", "composite", "plugin", "constraint", "solver", "contact"]] = ...,
     allow_unknown_version: bool = False,
     snap_angles: Optional[float] = None,
+    given_contacts: Iterable[Sequence[Union[str, int]]] = ...,
 ) -> Robot: ...
 def loads(
     text: Union[str, bytes, bytearray, memoryview],
@@ -114,6 +115,7 @@ def loads(
     leave_out: Iterable[Literal["flex", "composite", "plugin", "constraint", "solver", "contact"]] = ...,
     allow_unknown_version: bool = False,
     snap_angles: Optional[float] = None,
+    given_contacts: Iterable[Sequence[Union[str, int]]] = ...,
 ) -> Robot: ...
 def bundled(
     name: str,
@@ -353,6 +355,20 @@ class Robot(_Functions):
     def contact_forces(
         self, q: ArrayLike, v: ArrayLike, ctrl: Optional[ArrayLike] = None, *, act: Optional[ArrayLike] = None
     ) -> ContactForces: ...
+    def constrained_step(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        ctrl: Optional[ArrayLike],
+        h: float,
+        *,
+        act: Optional[ArrayLike] = None,
+        contacts: Optional[ArrayLike] = None,
+        warm: Optional[ArrayLike] = None,
+        method: str = "implicit_damping",
+    ) -> ConstrainedStep: ...
+    @property
+    def given_contacts(self) -> list[tuple[str, str]]: ...
     @property
     def contact_shapes(self) -> list[tuple[str, str]]: ...
     def constrained_rollout_gradient(
@@ -425,6 +441,12 @@ class ActuatedRolloutGradient(NamedTuple):
     v: NDArray[np.float64]
     act: NDArray[np.float64]
     ctrl: NDArray[np.float64]
+
+class ConstrainedStep(NamedTuple):
+    q: NDArray[np.float64]
+    v: NDArray[np.float64]
+    act: NDArray[np.float64]
+    warm: NDArray[np.float64]
 
 class ContactForces(NamedTuple):
     acts: NDArray[np.bool_]

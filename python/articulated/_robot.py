@@ -136,7 +136,7 @@ def _inertia(value):
 
 
 # No exception for suspicious content, nothing left out, and no snapped angle.
-_AS_WRITTEN = ((False, False, False), (), None)
+_AS_WRITTEN = ((False, False, False), (), None, ())
 
 
 class _Source(NamedTuple):
@@ -507,6 +507,38 @@ class Robot(_native.Robot):
         """
         return _rollout.contact_forces(self, q, v, act, ctrl)
 
+    def constrained_step(self, q, v, ctrl, h, *, act=None, contacts=None, warm=None, method="implicit_damping"):
+        """A step of states of a robot of an MJCF with all constraints, among them contacts that you found.
+
+        >>> robot = articulated.load("model.xml", effects="file", given_contacts=[("floor", "gem", 4)])  # doctest: +SKIP
+        >>> found = np.zeros((4, 8))                                                                  # doctest: +SKIP
+        >>> found[0] = [1, -0.001, *point, 0, 0, 1]                                                   # doctest: +SKIP
+        >>> after = robot.constrained_step(q, v, ctrl, 0.002, contacts=found)                         # doctest: +SKIP
+
+        Args:
+            q: Coordinates, [..., nq]. v: Rates, [..., nv].
+            ctrl: Controls, [..., nu]; None for zeros.
+            h: The length of the step, s.
+            act: Activations of the actuators that have one, [..., na]; None for zeros.
+            contacts: For each pair of ``given_contacts`` 1 or 0, the distance, m, the point, m, and the normal, in axes of the world,
+                from the first geom of the pair to the second, [..., given, 8]; None: none touches.
+            warm: Where the search begins: ``warm`` of the last step, [..., nv]; None for zeros.
+            method: implicit_damping (MuJoCo's Euler), implicit_velocity (its implicitfast) or semi_implicit_euler; without given
+                contacts also rk4_mujoco.
+
+        Returns:
+            ConstrainedStep: q [..., nq], v [..., nv], act [..., na] and warm [..., nv] after the step.
+
+        Raises:
+            RobotError, ValueError: As ``constrained_rollout``.
+        """
+        return _rollout.constrained_step(self, q, v, act, ctrl, h, contacts, warm, method)
+
+    @property
+    def given_contacts(self):
+        """Names of the two geoms of each contact that ``constrained_step`` takes, (given, 2)."""
+        return [tuple(names) for names in self._given_contacts()]
+
     @property
     def contact_shapes(self):
         """Names of the two geoms of each place where geoms of an MJCF may touch, (contacts, 2)."""
@@ -718,15 +750,29 @@ def _pairs(what, given):
     return tuple((_name(what, name), value) for name, value in given.items())
 
 
-def _reading(leave_out, snap_angles, **allowed):
-    """How to read a file: what is allowed, what is left out, and the tolerance of snapped angles."""
+def _given(pairs):
+    """Pairs of geoms with the number of their places."""
+    found = []
+    for pair in pairs:
+        words = tuple(pair) if isinstance(pair, (tuple, list)) else ()
+        places = words[2] if len(words) == 3 else 1
+        fits = len(words) in (2, 3) and all(isinstance(word, str) for word in words[:2])
+        if not fits or isinstance(places, bool) or not isinstance(places, (int, np.integer)) or places < 1:
+            raise TypeError(f"given_contacts: found {pair!r}, expected two names of geoms, and in how many places they touch")
+        found.append((*words[:2], int(places)))
+    return tuple(found)
+
+
+def _reading(leave_out, snap_angles, given_contacts, **allowed):
+    """How to read a file: what is allowed, what is left out, the tolerance of snapped angles, and contacts of the caller."""
     for name, value in allowed.items():
         if not isinstance(value, (bool, np.bool_)):
             raise TypeError(f"{name}: found {type(value).__name__}, expected True or False")
     if snap_angles is not None and (isinstance(snap_angles, bool) or not isinstance(snap_angles, (int, float, np.integer, np.floating))):
         raise TypeError(f"snap_angles: found {type(snap_angles).__name__}, expected a number, rad, or None")
     kinds = tuple(sorted(set(_names("leave_out", leave_out))))
-    return tuple(bool(value) for value in allowed.values()), kinds, None if snap_angles is None else float(snap_angles)
+    tolerance = None if snap_angles is None else float(snap_angles)
+    return tuple(bool(value) for value in allowed.values()), kinds, tolerance, _given(given_contacts)
 
 
 def _coupling(coupling):
@@ -769,6 +815,7 @@ def load(
     leave_out=(),
     allow_unknown_version=False,
     snap_angles=None,
+    given_contacts=(),
 ):
     """The robot of a file.
 
@@ -791,6 +838,8 @@ def load(
             "flex", "composite", "plugin", "constraint", "solver", "contact". Those of another kind are errors.
         allow_unknown_version: True reads a URDF of a version other than 1.0, 1.1 and 1.2 as 1.0, with a warning.
         snap_angles: Takes angles within so many rad of a multiple of π/2 as that multiple.
+        given_contacts: Pairs of geoms of an MJCF whose contacts you find, for ``Robot.constrained_step``: two names, and in how many
+            places they touch at most, 1 if left out, such as ``[("floor", "gem", 4)]``.
 
     Raises:
         RobotError: The file is not a robot; ``diagnostics`` lists all mistakes at once.
@@ -802,6 +851,7 @@ def load(
     reading = _reading(
         leave_out,
         snap_angles,
+        given_contacts,
         allow_unphysical_inertia=allow_unphysical_inertia,
         first_of_duplicates=first_of_duplicates,
         allow_unknown_version=allow_unknown_version,
@@ -826,6 +876,7 @@ def loads(
     leave_out=(),
     allow_unknown_version=False,
     snap_angles=None,
+    given_contacts=(),
 ):
     """The robot of a text, str or bytes, which includes no files; ``name`` is the name of its file in messages. See ``load``."""
     if isinstance(text, str):
@@ -839,6 +890,7 @@ def loads(
     reading = _reading(
         leave_out,
         snap_angles,
+        given_contacts,
         allow_unphysical_inertia=allow_unphysical_inertia,
         first_of_duplicates=first_of_duplicates,
         allow_unknown_version=allow_unknown_version,

@@ -15,6 +15,7 @@ ActuatedRollout = collections.namedtuple("ActuatedRollout", ["q", "v", "act"])
 ActuatedRolloutGradient = collections.namedtuple("ActuatedRolloutGradient", ["q", "v", "act", "ctrl"])
 State = collections.namedtuple("State", ["q", "v"])
 ContactForces = collections.namedtuple("ContactForces", ["acts", "point", "normal", "force", "moment", "relative_error", "search_steps"])
+ConstrainedStep = collections.namedtuple("ConstrainedStep", ["q", "v", "act", "warm"])
 MujocoState = collections.namedtuple("MujocoState", ["qpos", "qvel"])
 # How names of steps begin: with torques, with controls of actuators, and with constraints too.
 STEP, ACTUATED, CONSTRAINED = "step_", "actuated_step_", "constrained_step_"
@@ -27,9 +28,12 @@ _DERIVATIVES = weakref.WeakKeyDictionary()
 class Steps:
     """A method of steps of one kind."""
 
-    def __init__(self, robot, method, kind):
+    def __init__(self, robot, method, kind, takes_contacts=False):
         self.robot, self.actuated, self.constrained = robot, kind != STEP, kind == CONSTRAINED
         self.name = method if str(method).startswith(kind) else f"{kind}{method}"
+        if kind == CONSTRAINED and not takes_contacts and robot.given_contacts:
+            found = f"{len(robot.given_contacts)} contacts that a caller gives"
+            raise ValueError(f"given_contacts: found {found}, expected constrained_step, which takes them, or a robot without")
         if kind == CONSTRAINED and robot not in _CHECKED:
             for warning in robot._check_constraints():
                 warnings.warn(RobotWarning(warning), stacklevel=5)
@@ -88,6 +92,33 @@ def contact_forces(robot, q, v, act, ctrl):
     vectors = [places[..., k : k + 3] for k in (1, 4, 7, 10)]
     error, count = (certificates[:, k].reshape(batch)[()] for k in (0, 1))
     return ContactForces(places[..., 0] == 1.0, *vectors, error, count.astype(int))
+
+
+def constrained_step(robot, q, v, act, ctrl, h, contacts, warm, method):
+    steps = Steps(robot, method, CONSTRAINED, takes_contacts=True)
+    ctrl = np.zeros(len(robot.actuators)) if ctrl is None else np.asarray(as_numbers("ctrl", ctrl), dtype=np.float64)
+    (q, v, act, held), batch = steps.arrays(q, v, act, ctrl[..., None, :] if ctrl.ndim else ctrl)
+    given = len(robot.given_contacts)
+    if contacts is not None and not given:
+        raise ValueError("contacts: found contacts, expected a robot with pairs for them: load(…, given_contacts=[…])")
+    flat = [
+        _beside(name, np.zeros(tail) if value is None else value, tail, batch)
+        for name, value, tail in (("contacts", contacts, (given, 8)), ("warm", warm, (robot.nv,)))
+    ]
+    ends = robot._given_step(str(method), q, v, act, np.ascontiguousarray(held[:, 0]), *flat, step_length(h))
+    return ConstrainedStep(*(end.reshape((*batch, end.shape[1])) for end in ends))
+
+
+def _beside(name, value, tail, batch):
+    """Numbers for each state of a batch: a row for each."""
+    array = np.asarray(as_numbers(name, value), dtype=np.float64)
+    try:
+        full = np.broadcast_to(array, (*batch, *tail))
+    except ValueError:
+        raise ValueError(f"{name}: found shape {array.shape}, expected {tail}, or that behind the dimensions of the batch {batch}") from None
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name}: found {array[~np.isfinite(array)].flat[0]}, expected finite numbers")
+    return np.ascontiguousarray(full.reshape(math.prod(batch), math.prod(tail)))
 
 
 def exchanged(robot, name, given):

@@ -11,6 +11,7 @@ mod contacts;
 mod derived;
 mod errors;
 mod exchange;
+mod given;
 mod method;
 mod robot;
 mod rollout;

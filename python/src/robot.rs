@@ -8,6 +8,7 @@ use std::sync::OnceLock;
 
 use articulated::algorithm::{Function, Needs, functions};
 use articulated::description::{Coupling, Limit, Origin, Payload};
+use articulated::formats::world::GivenContact;
 use articulated::formats::{Environment, Included, LeaveOut};
 use articulated::spatial::Reference;
 use articulated::{Base, Model};
@@ -26,6 +27,7 @@ use crate::contacts;
 use crate::derived::Derived;
 use crate::errors;
 use crate::exchange;
+use crate::given;
 use crate::method::Keywords;
 use crate::rollout;
 use crate::signature::{Signature, signatures};
@@ -318,7 +320,7 @@ impl Robot {
         locks: Vec<(String, Vec<f64>)>,
         args: Vec<(String, String)>,
         packages: Vec<(String, PathBuf)>,
-        reading: ((bool, bool, bool), Vec<String>, Option<f64>),
+        reading: ((bool, bool, bool), Vec<String>, Option<f64>, Vec<(String, String, usize)>),
         coupling: (bool, Vec<(String, Vec<(String, f64)>, f64)>),
         effects: bool,
         like: Option<&Bound<'_, Self>>,
@@ -359,8 +361,10 @@ impl Robot {
             |(link, mass, center_of_mass, inertia): PayloadRow| Payload { link, name: None, mass, center_of_mass, inertia }.into();
         options.payloads = payloads.into_iter().map(payload).collect();
         options.lock = locks.into_iter().map(Into::into).collect();
-        let (allowed, leave_out, snap_angles) = reading;
+        let (allowed, leave_out, snap_angles, given) = reading;
         options.snap_angles = snap_angles;
+        let pair = |(first, second, places)| GivenContact { shapes: [first, second], places };
+        options.given_contacts = given.into_iter().map(pair).map(Into::into).collect();
         (options.allow_unphysical_inertia, options.first_of_duplicates, options.allow_unknown_version) = allowed;
         let kinds =
             leave_out.iter().map(|kind| kind.parse::<LeaveOut>().map_err(|error| PyValueError::new_err(format!("leave_out: {error}"))));
@@ -401,6 +405,30 @@ impl Robot {
         ctrl: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<contacts::Found<'py>> {
         contacts::run(py, &self.model, [&q, &v, &act, &ctrl])
+    }
+
+    /// A step with constraints and with contacts that the caller found: see [`given::run`].
+    #[expect(clippy::too_many_arguments, reason = "those of the method in Python")]
+    fn _given_step<'py>(
+        &self,
+        py: Python<'py>,
+        method: &str,
+        q: PyReadonlyArray2<'py, f64>,
+        v: PyReadonlyArray2<'py, f64>,
+        act: PyReadonlyArray2<'py, f64>,
+        ctrl: PyReadonlyArray2<'py, f64>,
+        contacts: PyReadonlyArray2<'py, f64>,
+        warm: PyReadonlyArray2<'py, f64>,
+        h: f64,
+    ) -> PyResult<given::Ends<'py>> {
+        given::run(py, &self.model, method, [&q, &v, &act, &ctrl, &contacts, &warm], h)
+    }
+
+    /// Names of the two shapes of each contact that a caller gives.
+    fn _given_contacts(&self) -> Vec<[String; 2]> {
+        let constraints = self.model.constraints();
+        let names = |pair: usize| constraints.pairs[pair].shapes.map(|shape| constraints.shapes[shape].name.clone());
+        constraints.pair_of_given().map(names).collect()
     }
 
     /// Names of the two shapes of each place where shapes may touch.

@@ -201,9 +201,42 @@ def test_a_ball_comes_to_rest_on_its_floor():
         robot.constrained_rollout(q, np.zeros(6), np.zeros((1, 0)), 0.005, method="rk4")
     with pytest.raises(articulated.RobotError, match="constrained_rollout: found no limit"):
         articulated.loads(BALL.replace(b"condim", b"contype='0' conaffinity='0' condim")).constrained_rollout(q, np.zeros(6), np.zeros((1, 0)), 0.005)
-    egg = BALL.replace(b'type="sphere" size="0.1"', b'type="ellipsoid" size="0.1 0.1 0.2"')
+    egg = BALL.replace(b'type="plane" size="1 1 1"', b'type="ellipsoid" size="0.1 0.1 0.2"')
     with pytest.raises(articulated.RobotError, match="leave_out"):
         articulated.loads(egg).constrained_rollout(q, np.zeros(6), np.zeros((1, 0)), 0.005)
+
+
+def test_given_contacts_are_those_that_are_computed():
+    names = BALL.replace(b'type="sphere"', b'name="round" type="sphere"')
+    computed, robot = articulated.loads(names), articulated.loads(names, given_contacts=[("floor", "round", 2)])
+    assert robot.given_contacts == [("floor", "round")] * 2 and computed.given_contacts == [] and robot.contact_shapes == []
+    q, v = np.array([0.1, 0.2, 0.099, 0, 0, 0, 1]), np.array([0, 0, 0, 0.1, 0, -0.2])
+    contacts, warm = np.zeros((2, 8)), None
+    for _ in range(5):
+        low = q[2] - 0.1
+        contacts[0] = [low < 0, low, q[0], q[1], low / 2, 0, 0, 1]
+        own = robot.constrained_step(q, v, None, 0.005, contacts=contacts, warm=warm)
+        expected = computed.constrained_step(q, v, None, 0.005, warm=warm)
+        for one, other in zip(own, expected):
+            np.testing.assert_allclose(one, other, rtol=0, atol=1e-12)
+        q, v, _, warm = own
+    ends = computed.constrained_rollout(np.array([0.1, 0.2, 0.099, 0, 0, 0, 1]), np.array([0, 0, 0, 0.1, 0, -0.2]), np.zeros((5, 0)), 0.005)
+    np.testing.assert_allclose(q, ends.q[-1], rtol=0, atol=1e-12)
+    # Without contacts it falls; many states have a row each.
+    free = robot.constrained_step(np.tile(q, (2, 3, 1)), v, None, 0.005)
+    assert free.q.shape == (2, 3, 7) and free.warm.shape == (2, 3, 6) and abs(free.v[0, 0, 5] - (v[5] - 9.81 * 0.005)) < 1e-12
+    with pytest.raises(ValueError, match="given_contacts: found 2 contacts"):
+        robot.constrained_rollout(q, v, np.zeros((1, 0)), 0.005)
+    with pytest.raises(ValueError, match="contacts: found contacts, expected a robot"):
+        computed.constrained_step(q, v, None, 0.005, contacts=contacts)
+    with pytest.raises(ValueError, match="contacts: found shape"):
+        robot.constrained_step(q, v, None, 0.005, contacts=contacts[:1, :7])
+    with pytest.raises(ValueError, match='method: found "rk4_mujoco", expected one of semi_implicit_euler, '):
+        robot.constrained_step(q, v, None, 0.005, method="rk4_mujoco")
+    with pytest.raises(TypeError, match="given_contacts: found"):
+        articulated.loads(names, given_contacts=["floor"])
+    with pytest.raises(articulated.RobotError, match="no pair of the geoms"):
+        articulated.loads(names, given_contacts=[("floor", "cube")])
 
 
 SLIDER = b"""<mujoco><option cone="elliptic"/><worldbody><geom type="plane" size="1 1 1"/>

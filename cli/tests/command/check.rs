@@ -488,5 +488,5 @@ fn what_is_not_read_can_be_left_out() {
         assert_eq!((&accepted["usable"], &accepted["warnings"][0]["line"]), (&true.into(), &2.into()), "{accepted}");
     }
     let wrong = run(&["check", robot.name(), "--leave-out", "flexible"]);
-    assert!(wrong.status == 2 && wrong.err.contains("expected flex, composite, plugin, constraint or contact"), "{}", wrong.err);
+    assert!(wrong.status == 2 && wrong.err.contains("expected flex, composite, plugin, constraint, solver or contact"), "{}", wrong.err);
 }

@@ -15,6 +15,12 @@ pub(crate) fn references<'a>(element: &'a Element, log: &mut Diagnostics) -> Ref
         true => (Sort::Body, ["body1", "body2"]),
         false => (Sort::Site, ["site1", "site2"]),
     };
+    let given = |all: &[&'static str]| all.iter().copied().find(|name| element.attribute(name).is_some());
+    if let (Some(site), Some(other)) = (given(&["site1", "site2"]), given(&["body1", "body2", "anchor", "relpose"])) {
+        let found = format!("both {site} and {other}");
+        element.error((&Subject::Document, other), Code::Together, found, "sites, or bodies with their frames", log);
+        return References::new();
+    }
     let needed = &fields[..if sort == Sort::Body { 1 } else { 2 }];
     for field in needed.iter().filter(|field| element.attribute(field).is_none()) {
         let expected = match element.is("connect") {

@@ -62,17 +62,19 @@ pub(crate) fn contact_forces<S: Scalar>(
     let origin = motion::origin(model, &placed);
     let columns = motion::columns(&placed, origin);
     let [rates, accelerations] = [v, x].map(|x| motion::twists(model, &columns, x));
-    let mut first = vec![0; constraints.pairs.len()];
+    // The next place of each pair
+    let mut next = vec![0; constraints.pairs.len()];
     let places: Vec<usize> = constraints.pair_of_contacts().chain(constraints.pair_of_given()).collect();
-    places.iter().enumerate().rev().for_each(|(place, pair)| first[*pair] = place);
+    places.iter().enumerate().rev().for_each(|(place, pair)| next[*pair] = place);
     // Contacts of one dimension: rows of a table, and their places
     let mut tables: BTreeMap<usize, (Vec<S>, Vec<usize>)> = BTreeMap::new();
     for Found { pair, bodies: [one, other], dimension, rows } in pairs::contacts(constraints, &placed, (origin, &rates), given) {
         let relative = (accelerations[other] - accelerations[one]).to_array();
         let (table, places) = tables.entry(dimension).or_default();
-        for (k, row) in rows.chunks(contact::length(dimension)).enumerate() {
+        for row in rows.chunks(contact::length(dimension)) {
             table.extend(row.iter().chain(&relative));
-            places.push(first[pair] + k);
+            places.push(next[pair]);
+            next[pair] += 1;
         }
     }
     for (dimension, (table, places)) in tables {
