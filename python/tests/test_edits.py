@@ -162,7 +162,7 @@ def test_options_of_the_reader():
         articulated.loads(cloth, name="cloth.xml")
     with pytest.warns(articulated.RobotWarning, match="found a flexible body"):
         assert articulated.loads(cloth, name="cloth.xml", leave_out=["flex"]).nv == 1
-    with pytest.raises(ValueError, match='leave_out: found "flexible", expected flex, composite, plugin, constraint or contact'):
+    with pytest.raises(ValueError, match='leave_out: found "flexible", expected flex, composite, plugin, constraint, solver or contact'):
         articulated.loads(cloth, name="cloth.xml", leave_out=["flexible"])
     with pytest.warns(articulated.RobotWarning, match="1.5707"):
         articulated.loads(plain, snap_angles=1e-3)
