@@ -1,6 +1,7 @@
 //! The constraints of a file on a model of its robot.
 
 use articulated_core::actuator::path_at;
+use articulated_core::algorithm::Workspace;
 use articulated_core::collision::{Form, Shape};
 use articulated_core::constraint::{
     Anchor, Bound, Cone, Constraints, DryFriction, Length, Limit, Pair, Soft, Sum, SumLaw, Term, poses, weights,
@@ -99,12 +100,13 @@ impl Made<'_> {
         let centers: Vec<(BodyId, [f64; 3])> = centers.collect();
         let sums: Vec<(&TouchingSum, Length, SumLaw)> =
             touching.sums.iter().filter_map(|sum| self.sum(sum).map(|(length, law)| (sum, length, law))).collect();
-        let row = |length: &Length| match length {
+        let mut ws = Workspace::new(model);
+        let mut row = |length: &Length| match length {
             Length::Sum(terms) => terms.iter().map(|term| (term.v, term.factor)).collect(),
-            Length::Path(strands) => path_at(model, &self.reference, strands).1,
+            Length::Path(strands) => path_at(model, &mut ws, &self.reference, strands).1,
         };
         let of_lengths: Vec<Vec<(usize, f64)>> =
-            sums.iter().flat_map(|(_, length, law)| [row(length), other(law).map_or(Vec::new(), row)]).collect();
+            sums.iter().flat_map(|(_, length, law)| [row(length), other(law).map_or(Vec::new(), &mut row)]).collect();
         let mut weights = weights(self.heavy, &self.reference, &centers, &of_lengths);
         // Bodies that slide alone have the inverse of their mass.
         for (k, (_, _, slides)) in touching.bodies.iter().enumerate() {

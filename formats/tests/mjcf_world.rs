@@ -625,6 +625,18 @@ fn a_spatial_tendon_is_a_path() {
     assert!(touching.unread.is_empty() && read.warnings.len() == 3, "{:?}", read.warnings);
 }
 
+/// Lengths of very many tendons of a large file would take minutes.
+#[test]
+fn very_many_spatial_tendons_are_an_error() {
+    let bodies: String = (0..1200).map(|k| format!("<body><joint/><geom size='1'/><site name='{k}'/></body>")).collect();
+    let sites: String = (0..20).map(|k| format!("<site site='{k}'/>")).collect();
+    let tendons = format!("<spatial>{sites}</spatial>").repeat(800);
+    let text = format!("<mujoco><worldbody>{bodies}</worldbody><tendon>{tendons}</tendon></mujoco>");
+    let error = read(text.as_bytes(), &options()).expect_err("an error");
+    assert_eq!(error.errors[0].code, Code::TooLarge, "{error}");
+    assert!(error.errors.len() == 1 && error.to_string().contains("very many points of spatial tendons"), "{error}");
+}
+
 /// A pair that is twice in a file makes contact twice, as in MuJoCo.
 #[test]
 fn a_pair_may_be_there_twice() {

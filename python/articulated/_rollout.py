@@ -105,7 +105,7 @@ def constrained_step(robot, q, v, act, ctrl, h, contacts, warm, method):
         _beside(name, np.zeros(tail) if value is None else value, tail, batch)
         for name, value, tail in (("contacts", contacts, (given, 8)), ("warm", warm, (robot.nv,)))
     ]
-    ends = robot._given_step(str(method), q, v, act, np.ascontiguousarray(held[:, 0]), *flat, step_length(h))
+    ends = robot._given_step(steps.name.removeprefix(CONSTRAINED), q, v, act, np.ascontiguousarray(held[:, 0]), *flat, step_length(h))
     return ConstrainedStep(*(end.reshape((*batch, end.shape[1])) for end in ends))
 
 

@@ -222,6 +222,8 @@ def test_given_contacts_are_those_that_are_computed():
         q, v, _, warm = own
     ends = computed.constrained_rollout(np.array([0.1, 0.2, 0.099, 0, 0, 0, 1]), np.array([0, 0, 0, 0.1, 0, -0.2]), np.zeros((5, 0)), 0.005)
     np.testing.assert_allclose(q, ends.q[-1], rtol=0, atol=1e-12)
+    named = computed.constrained_step(q, v, None, 0.005, method="constrained_step_implicit_damping")
+    np.testing.assert_array_equal(named.q, computed.constrained_step(q, v, None, 0.005).q)
     # Without contacts it falls; many states have a row each.
     free = robot.constrained_step(np.tile(q, (2, 3, 1)), v, None, 0.005)
     assert free.q.shape == (2, 3, 7) and free.warm.shape == (2, 3, 6) and abs(free.v[0, 0, 5] - (v[5] - 9.81 * 0.005)) < 1e-12

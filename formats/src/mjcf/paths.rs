@@ -1,6 +1,9 @@
 //! Paths of spatial tendons: straight lines over sites, with pulleys.
 
+use std::collections::HashMap;
+
 use articulated_core::actuator::path_at;
+use articulated_core::algorithm::Workspace;
 use articulated_core::description::{Base, Description};
 use articulated_core::diagnostic::{Code, Diagnostics, Subject};
 use articulated_core::model::Model;
@@ -24,18 +27,55 @@ pub(crate) struct Path {
     pub(crate) row: Drives,
 }
 
+/// Points of paths times links of the file: more are not measured.
+const MOST: usize = 20_000_000;
+/// Most links of a file with paths.
+const MOST_LINKS: usize = 10_000;
+
 /// The file in which lengths are measured.
 pub(crate) struct Places<'a> {
     description: &'a Description,
     links: &'a [String],
     /// Made for the first path.
-    model: Option<Model<f64>>,
+    known: Option<Known>,
+    /// How many points times links were measured.
+    measured: usize,
+}
+
+/// The model of a file.
+struct Known {
+    model: Model<f64>,
+    ws: Workspace<f64>,
+    /// Coordinates of the reference pose, and those where springs of joints are at rest.
+    at: [Vec<f64>; 2],
+    /// The first degree of freedom of each joint of the file.
+    starts: Vec<usize>,
+}
+
+impl Known {
+    fn of(description: &Description, scope: &Scope<'_>) -> Option<Self> {
+        let model: Model<f64> = Model::new(description, Base::Fixed).ok()?;
+        let mut at = [vec![0.0; model.nq()], vec![0.0; model.nq()]];
+        let places: HashMap<&str, (usize, usize)> =
+            model.joints().iter().map(|joint| (joint.name.as_str(), (joint.q.0, joint.v.0))).collect();
+        let mut starts = Vec::with_capacity(scope.joints.len());
+        for known in &scope.joints {
+            let &(q, v) = places.get(known.name)?;
+            let start = reference(scope, known);
+            let is_number = matches!(known.joint.kind, Kind::Hinge | Kind::Slide);
+            let rest = if is_number { vec![known.joint.rest] } else { start.clone() };
+            at.iter_mut().zip([start, rest]).for_each(|(all, own)| all[q..][..own.len()].copy_from_slice(&own));
+            starts.push(v);
+        }
+        let ws = Workspace::new(&model);
+        Some(Self { model, ws, at, starts })
+    }
 }
 
 impl<'a> Places<'a> {
     /// `links`: the name of the link of each body.
     pub(crate) fn new(description: &'a Description, links: &'a [String]) -> Self {
-        Self { description, links, model: None }
+        Self { description, links, known: None, measured: 0 }
     }
 
     /// The path of a tag `<spatial>`; `sites`: those of its tags `<site>`, in order. `None`: it
@@ -45,26 +85,25 @@ impl<'a> Places<'a> {
         if !log.is_ok() {
             return None;
         }
-        if self.model.is_none() {
-            self.model = Model::new(self.description, Base::Fixed).ok();
+        let points: usize = strands.iter().map(|strand| strand.points.len()).sum();
+        self.measured = self.measured.saturating_add((points + 2).saturating_mul(self.links.len()));
+        if self.measured > MOST || self.links.len() > MOST_LINKS {
+            let expected = format!("at most {MOST_LINKS} links, and {MOST} points of tendons times links");
+            element.error((&Subject::Document, ""), Code::TooLarge, "very many points of spatial tendons", expected, log);
+            return None;
         }
-        let model = self.model.as_ref()?;
+        if self.known.is_none() {
+            self.known = Known::of(self.description, scope);
+        }
+        let Known { model, ws, at, starts } = self.known.as_mut()?;
         let path = strands_of(model, &strands)?;
-        let mut at = [vec![0.0; model.nq()], vec![0.0; model.nq()]];
-        for known in &scope.joints {
-            let own = model.joints().iter().find(|joint| joint.name == known.name)?;
-            let start = reference(scope, known);
-            let is_number = matches!(known.joint.kind, Kind::Hinge | Kind::Slide);
-            let rest = if is_number { vec![known.joint.rest] } else { start.clone() };
-            at.iter_mut().zip([start, rest]).for_each(|(q, own_q)| q[own.q.0..][..own_q.len()].copy_from_slice(&own_q));
-        }
-        let (at_reference, entries) = path_at(model, &at[0], &path);
-        let (at_rest, _) = path_at(model, &at[1], &path);
+        let (at_reference, entries) = path_at(model, ws, &at[0], &path);
+        let (at_rest, _) = path_at(model, ws, &at[1], &path);
+        let mut full = vec![0.0; model.nv()];
+        entries.iter().for_each(|(k, entry)| full[*k] += entry);
         let mut row: Drives = Vec::new();
-        for (index, known) in scope.joints.iter().enumerate() {
-            let own = model.joints().iter().find(|joint| joint.name == known.name)?;
-            let entry = |k: usize| entries.iter().find(|(at, _)| *at == k).map_or(0.0, |(_, entry)| *entry);
-            let gears: Vec<f64> = (own.v.0..own.v.0 + freedoms(known.joint.kind)).map(entry).collect();
+        for (index, (known, start)) in scope.joints.iter().zip(&*starts).enumerate() {
+            let gears = full[*start..][..freedoms(known.joint.kind)].to_vec();
             if gears.iter().any(|gear| *gear != 0.0) {
                 row.push((index, gears));
             }

@@ -96,7 +96,7 @@ impl Editing<'_> {
     }
 
     /// A scene has no states but those of the robot, and torques of joints: actuators with an
-    /// activation, and those of sites, give no force in it.
+    /// activation, those of sites, and spatial tendons give no force in it.
     fn warn_of_activations(&mut self) {
         let Some(control) = self.request.scene.filter(|scene| scene.law().is_none()).map(|scene| &scene.control) else { return };
         if !matches!(control.drive, Drive::Actuators(_)) {
@@ -106,7 +106,9 @@ impl Editing<'_> {
         let is_left = |name: &str| control.without.iter().any(|(left, _)| left == name);
         let is_lost = |own: &&Actuator| (own.activation.is_some() || own.frames.is_some()) && !is_left(&own.name);
         let all = world.actuators.iter().map(|own| ("actuator", own)).chain(world.passive.iter().map(|own| ("tendon", own)));
-        for (sort, actuator) in all.filter(|(_, own)| is_lost(own)) {
+        // A spring that is slack between two lengths is several laws of one name.
+        let mut named = HashSet::new();
+        for (sort, actuator) in all.filter(|(sort, own)| is_lost(own) && named.insert((*sort, own.name.clone()))) {
             let place = Place { at: actuator.place, subject: &Subject::Document, field: sort };
             let what = match actuator.frames {
                 Some(OnFrames::Site(_)) => "a site",

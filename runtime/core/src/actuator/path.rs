@@ -63,7 +63,6 @@ pub(crate) fn row<S: Scalar>(path: &[Strand<S>], bodies: &Placed<'_, S>) -> (S, 
 }
 
 /// The length of a path at q `[nq]`, m, and ∂l/∂q: degrees of freedom, each with its entry.
-pub fn path_at(model: &Model<f64>, q: &[f64], path: &[Strand]) -> (f64, Vec<(usize, f64)>) {
-    let mut ws = Workspace::new(model);
-    row(path, &Placed::at(model, &mut ws, q))
+pub fn path_at(model: &Model<f64>, ws: &mut Workspace<f64>, q: &[f64], path: &[Strand]) -> (f64, Vec<(usize, f64)>) {
+    row(path, &Placed::at(model, ws, q))
 }

@@ -1,6 +1,7 @@
 //! Paths over points of bodies: spatial tendons.
 
 use articulated_core::actuator::{SiteFrame, Strand, path_at};
+use articulated_core::algorithm::Workspace;
 use articulated_core::description::Base;
 use articulated_core::index::BodyId;
 use articulated_core::spatial::Placement;
@@ -23,12 +24,12 @@ fn the_row_of_a_path_is_the_derivative_of_its_length() {
     for_each_tree(20, Flavour::WRITTEN, |case, random| {
         let (model, path) = (&case.model, path(case, random));
         let state = case.state(random);
-        let (_, row) = path_at(model, &state.q, &path);
+        let (_, row) = path_at(model, &mut Workspace::new(model), &state.q, &path);
         for k in 0..model.nv() {
             let length = |h: f64| {
                 let mut step = vec![0.0; model.nv()];
                 step[k] = h;
-                path_at(model, &case.call("integrate", &[&state.q, &step]), &path).0
+                path_at(model, &mut Workspace::new(model), &case.call("integrate", &[&state.q, &step]), &path).0
             };
             let slope = (length(1e-6) - length(-1e-6)) / 2e-6;
             let entry: f64 = row.iter().filter(|(own, _)| *own == k).map(|(_, entry)| *entry).sum();
@@ -44,5 +45,5 @@ fn points_in_one_place_have_a_length_of_zero() {
     let q = case.model.neutral();
     let same = |body| SiteFrame { body, placement: Placement::identity() };
     let path = [Strand { points: vec![same(BodyId(1)), same(BodyId(1))], factor: 1.0 }];
-    assert_eq!(path_at(&case.model, &q, &path), (0.0, Vec::new()));
+    assert_eq!(path_at(&case.model, &mut Workspace::new(&case.model), &q, &path), (0.0, Vec::new()));
 }
