@@ -122,6 +122,7 @@ mod chapters {
         rnea: "rnea.md",
         crba: "crba.md",
         aba: "aba.md",
+        numpy: "numpy.md",
         quaternions: "quaternions.md",
         conditioning: "conditioning.md",
         linear_time: "linear-time.md",
@@ -129,6 +130,7 @@ mod chapters {
         golfer: "golfer.md",
         humanoid: "humanoid.md",
         pitfalls: "pitfalls.md",
+        mended: "mended.md",
         exercises: "exercises.md",
         solutions: "solutions.md",
     }
