@@ -8,9 +8,13 @@ use articulated::description::Description;
 use articulated::{Base, Model};
 
 mod counted;
+mod expanded;
 mod formula;
+mod screws;
 pub use counted::{Counted, count};
+pub use expanded::{Expanded, unit_links};
 pub use formula::formulas;
+pub use screws::{exponential, pose, screw, screw_matrix, space_screws};
 
 /// A robot in all forms that the book uses.
 #[derive(Clone, Debug)]
@@ -118,14 +122,17 @@ mod chapters {
     chapters! {
         introduction: "introduction.md",
         kinematics: "kinematics.md",
+        exponentials: "exponentials.md",
         adjoints: "adjoints.md",
         rnea: "rnea.md",
         crba: "crba.md",
         aba: "aba.md",
         numpy: "numpy.md",
         quaternions: "quaternions.md",
+        small_angles: "small-angles.md",
         conditioning: "conditioning.md",
         linear_time: "linear-time.md",
+        expanded: "expanded.md",
         pendulum: "pendulum.md",
         golfer: "golfer.md",
         humanoid: "humanoid.md",
@@ -133,5 +140,6 @@ mod chapters {
         mended: "mended.md",
         exercises: "exercises.md",
         solutions: "solutions.md",
+        bibliography: "bibliography.md",
     }
 }
