@@ -84,6 +84,7 @@ oracles() {
     step python3 models/urdf/generate.py --check
     step python3 tests/peers/tables.py --check
     step python3 tests/peers/chart.py --check
+    step python3 docs/book/figures.py --check
     step python3 tests/oracles/make.py --check
     step python3 tests/oracles/external.py
     step python3 tests/embedded/measure.py
