@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use articulated_core::algorithm::{Argument, Function, Workspace};
+use articulated_core::algorithm::{Argument, Function, Workspace, difference};
 use articulated_core::model::Model;
 use articulated_core::step::{self, ACT, CTRL, WARM, beside_the_table, rollout};
 use articulated_formats::world::{Stepping, World, step_of_integrator};
@@ -49,6 +49,10 @@ pub(crate) struct RolloutArguments {
     /// The length of a step, s [default: the file's, or 0.001]
     #[arg(long, value_name = "S", value_parser = length)]
     time_step: Option<f64>,
+    /// Also step all states with half the step, and print an estimate of the error of the last
+    /// states. It takes twice the time more
+    #[arg(long, conflicts_with = "hash")]
+    error_estimate: bool,
     /// The seed of random states
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -72,6 +76,8 @@ struct Report {
     seconds: f64,
     /// FNV-1a of the last states.
     hash: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error_estimate: Option<Estimate>,
     /// Names of the actuators, in the order of ctrl: of a method with actuators.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     actuators: Vec<String>,
@@ -89,6 +95,18 @@ struct End {
     /// What touches then.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     touching: Option<Touching>,
+}
+
+/// An estimate of the largest error of the last states, by Richardson: 2ᵖ/(2ᵖ − 1) times what half the
+/// step changes, with the order p of the method, and with p = 1 where constraints act.
+#[derive(Serialize)]
+struct Estimate {
+    /// Of q, in the tangent space, rad|m.
+    q: f64,
+    /// Of v, rad/s|m/s.
+    v: f64,
+    /// The states that it is of: finite with both steps.
+    states: usize,
 }
 
 pub(crate) fn run(arguments: &RolloutArguments, format: Format) -> Result<u8, Failure> {
@@ -126,6 +144,10 @@ pub(crate) fn run(arguments: &RolloutArguments, format: Format) -> Result<u8, Fa
     let begin = Instant::now();
     let ends = parallel::map(&starts, |state| stepped(&model, method, state, (h, arguments.steps, arguments.contacts)));
     let seconds = begin.elapsed().as_secs_f64();
+    let error_estimate = arguments.error_estimate.then(|| {
+        let halves = parallel::map(&starts, |state| stepped(&model, method, state, (0.5 * h, 2 * arguments.steps, false)));
+        estimate(&model, method, ends.iter().zip(&halves))
+    });
     let mut warnings = Vec::new();
     let lost = ends.iter().filter(|end| end.numbers().any(|x| !x.is_finite())).count();
     if lost > 0 {
@@ -145,6 +167,7 @@ pub(crate) fn run(arguments: &RolloutArguments, format: Format) -> Result<u8, Fa
         threads: parallel::threads().min(starts.len()),
         seconds,
         hash: format!("{:016x}", hash(&ends)),
+        error_estimate,
         actuators: if method.takes.contains(&CTRL) {
             model.actuators().laws.iter().map(|law| law.name.clone()).collect()
         } else {
@@ -244,6 +267,22 @@ fn stepped(model: &Model<f64>, method: &Function<f64>, state: &State, (h, count,
     End { q: end.q, v: end.v, act: end.act, touching: touching.ok().flatten() }
 }
 
+/// The estimate of the error of ends, each beside that of half the step.
+fn estimate<'a>(model: &Model<f64>, method: &Function<f64>, pairs: impl Iterator<Item = (&'a End, &'a End)>) -> Estimate {
+    let order = if method.takes.contains(&WARM) { 1 } else { step::order(method) };
+    let factor = 2_f64.powi(order as i32) / (2_f64.powi(order as i32) - 1.0);
+    let (mut ws, mut way) = (Workspace::new(model), vec![0.0; model.nv()]);
+    let mut found = Estimate { q: 0.0, v: 0.0, states: 0 };
+    for (end, half) in pairs.filter(|(end, half)| end.numbers().chain(half.numbers()).all(|x| x.is_finite())) {
+        difference(model, &mut ws, &end.q, &half.q, &mut way);
+        let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0_f64, |most, x| most.max(x.abs())) * factor;
+        found.q = found.q.max(largest(&mut way.iter().copied()));
+        found.v = found.v.max(largest(&mut end.v.iter().zip(&half.v).map(|(one, other)| one - other)));
+        found.states += 1;
+    }
+    found
+}
+
 /// FNV-1a of the bits of all numbers.
 fn hash(ends: &[End]) -> u64 {
     let bytes = ends.iter().flat_map(End::numbers).flat_map(|x| x.to_le_bytes());
@@ -254,7 +293,7 @@ fn text(report: &Report, is_hash: bool) -> String {
     if is_hash {
         return format!("{}\n", report.hash);
     }
-    let Report { robot, method, time_step, steps, threads, seconds, hash, states, .. } = report;
+    let Report { robot, method, time_step, steps, threads, seconds, hash, error_estimate, states, .. } = report;
     let mut out = String::new();
     let all = states.len() as f64 * *steps as f64;
     let _ = writeln!(out, "{robot}: {} by {method}, {} of {time_step} s", counted(states.len(), "state"), counted(*steps as usize, "step"));
@@ -267,6 +306,14 @@ fn text(report: &Report, is_hash: bool) -> String {
         all * time_step / seconds
     );
     let _ = writeln!(out, "hash of the last states: {hash}");
+    match error_estimate {
+        Some(Estimate { states: 0, .. }) => out += "no estimate of the error: no last state is finite with half the step too\n",
+        Some(Estimate { q, v, .. }) => {
+            let _ =
+                writeln!(out, "error of the last states, estimated by half the step: q {} rad|m, v {} rad/s|m/s", number(*q), number(*v));
+        }
+        None => {}
+    }
     for (k, touching) in states.iter().enumerate().filter_map(|(k, end)| Some((k, end.touching.as_ref()?))) {
         let Touching { relative_error, search_steps, contacts } = touching;
         let (count, steps) = (counted(contacts.len(), "contact"), counted(*search_steps as usize, "step"));

@@ -96,17 +96,34 @@ def _loop(robot, function, has_batch):
     return "\n" + "\n".join(lines) + "\n"
 
 
+def _rows_loop(name, takes, gives, has_batch):
+    """C of a derivative for many states: ``given`` and ``out`` are where the rows of each argument and result are."""
+    function, ins, outs = f"{PREFIX}_{name}", range(len(takes)), range(len(gives))
+    lines = [f"void {PREFIX}_loop_{name}(size_t states, const double *const *given, double *const *out) {{"]
+    if has_batch:
+        lines += [f"    {function}_batch_f64({', '.join(['states', *(f'given[{i}]' for i in ins), *(f'out[{j}]' for j in outs)])});"]
+    else:
+        at = [*(f"given[{i}] + k * {takes[i]}" for i in ins), *(f"out[{j}] + k * {gives[j]}" for j in outs)]
+        lines += ["    for (size_t k = 0; k < states; k++) {", f"        {function}({', '.join(at)});", "    }"]
+    return "\n" + "\n".join([*lines, "}"]) + "\n"
+
+
 def symbol(function):
     """The name of the loop of a function."""
     return f"{PREFIX}_loop_{function.name}"
 
 
-def sources(robot, functions, batch):
-    """The C files of these functions and of their loops, each a name and a text."""
-    files = robot._generate_c([function.name for function in functions], PREFIX, batch)
+def sources(robot, functions, batch, derivatives=()):
+    """The C files of these functions and derivatives and of their loops, each a name and a text."""
+    requests = [f"{name} = {request}" for name, request, _, _ in derivatives]
+    files = robot._generate_c([*(function.name for function in functions), *requests], PREFIX, batch)
     header = "".join(text for name, text in files if name.endswith(".h"))
-    has_batch = {f.name: re.search(rf"\b{PREFIX}_{f.name}_batch_f64\s*\(", header) is not None for f in functions}
-    loops = "".join(_loop(robot, function, has_batch[function.name]) for function in functions)
+
+    def has_batch(name):
+        return re.search(rf"\b{PREFIX}_{name}_batch_f64\s*\(", header) is not None
+
+    loops = "".join(_loop(robot, function, has_batch(function.name)) for function in functions)
+    loops += "".join(_rows_loop(name, takes, gives, has_batch(name)) for name, _, takes, gives in derivatives)
     return [*files, (f"{PREFIX}_loop.c", f'#include <stddef.h>\n#include "{PREFIX}.h"\n{loops}')]
 
 
@@ -122,10 +139,13 @@ def build(files, command, flags, folder, name):
     return Path(folder, name)
 
 
-def library(robot, functions, flags, batch):
-    """The path of the shared object of these functions, compiled unless it is in the cache."""
+def library(robot, functions, flags, batch, derivatives=()):
+    """The path of the shared object of these functions, compiled unless it is in the cache.
+
+    ``derivatives``: a name, a request, and the lengths of arguments and of results of each.
+    """
     command = compiler()
-    files = sources(robot, functions, batch)
+    files = sources(robot, functions, batch, derivatives)
     version = subprocess.run([*command, "--version"], capture_output=True, text=True).stdout
     key = repr((files, command, version, FLAGS, flags, processor(flags), platform.machine(), sys.platform))
     path = cache() / f"{hashlib.sha256(key.encode('utf-8', 'surrogatepass')).hexdigest()[:32]}.so"
@@ -141,6 +161,11 @@ def library(robot, functions, flags, batch):
         os.replace(built, path)
         os.replace(digest, record)
     return path
+
+
+def load_derivatives(path, derivatives):
+    """The derivatives of a shared object that ``library`` compiled."""
+    return _native.load_derivatives(path, [(f"{PREFIX}_loop_{name}", takes, gives) for name, _, takes, gives in derivatives])
 
 
 def _digest(path):
@@ -174,10 +199,13 @@ class CompiledRobot:
     rounded to float32.
     """
 
-    def __init__(self, robot, functions, flags, batch, text):
+    def __init__(self, robot, functions, flags, batch, text, derivatives):
         self.robot = robot
         self.functions = tuple(function.name for _, function in functions)
-        self.path = library(robot, [function for _, function in functions], flags, batch)
+        rows = list(derivatives.values())
+        self.path = library(robot, [function for _, function in functions], flags, batch, rows)
+        # For ``articulated.torch`` and ``articulated.jax``, by kind and name of the function.
+        self._derivatives = dict(zip(derivatives, load_derivatives(self.path, rows)))
         rows = [(index, symbol(function), function.name, text(function)) for index, function in functions]
         for name, method in zip(self.functions, _native.load_compiled(robot, self.path, rows)):
             setattr(self, name, method)

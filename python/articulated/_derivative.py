@@ -1,12 +1,34 @@
 """Derivatives of functions by name, as functions on NumPy arrays."""
 
 import collections
+import copy
 import math
 
 import numpy as np
 
-from ._compiled import lengths
-from ._errors import as_numbers
+from ._compiled import lengths, library, load_derivatives
+from ._errors import as_names, as_numbers
+
+
+# Where numbers at random become a configuration, the path has no derivative of use.
+WITHOUT = ("random_configuration",)
+# Those that ``articulated.torch`` and ``articulated.jax`` take.
+KINDS = ("vjp", "jvp", "hvp")
+
+
+def by_all(kind, name, takes):
+    """The request of a derivative of a function by all of its arguments."""
+    return f"{kind}({name}, {' '.join(argument for argument, _, _ in takes)} in coordinates)"
+
+
+def rows(robot, kinds, functions):
+    """For ``library``: by kind and name of a function, a name, a request, and lengths of arguments and results."""
+    found = {}
+    for function in functions:
+        for kind in kinds if function.name not in WITHOUT else ():
+            one = Derivative(robot, by_all(kind, function.name, function.takes))
+            found[kind, function.name] = (f"{kind}_of_{function.name}", one.request, *one.sizes())
+    return found
 
 
 class Derivative:
@@ -21,6 +43,7 @@ class Derivative:
         if not isinstance(request, str):
             raise TypeError(f"derivative: found {type(request).__name__}, expected a text such as 'vjp(inverse_dynamics, q v)'")
         self._native = robot._derived(f"derivative = {request}")
+        self._robot = robot
         self.request = request
         self.takes = tuple((name, lengths(robot, dims), unit) for name, dims, unit in self._native.takes())
         self.gives = tuple((name, lengths(robot, dims), unit) for name, dims, unit in self._native.gives())
@@ -29,6 +52,29 @@ class Derivative:
 
     def __repr__(self):
         return f"<{self.request} of {', '.join(name for name, _, _ in self.takes)}>"
+
+    def compile(self, *, flags=(), batch=True):
+        """The same derivative as C, compiled by the system's C compiler and kept in the cache of ``Robot.compile``.
+
+        Args:
+            flags: More options of the compiler, such as ["-march=native"].
+            batch: Also compile code that computes a state in each lane of a vector.
+
+        Returns:
+            Derivative.
+
+        Raises:
+            RuntimeError: There is no C compiler, or it refuses the code.
+        """
+        one = [("derivative", self.request, *self.sizes())]
+        path = library(self._robot, [], tuple(as_names("flags", flags)), bool(batch), one)
+        compiled = copy.copy(self)
+        (compiled._native,) = load_derivatives(path, one)
+        return compiled
+
+    def sizes(self):
+        """How many numbers each argument has, and each result."""
+        return [[math.prod(shape) for _, shape, _ in ports] for ports in (self.takes, self.gives)]
 
     def __call__(self, *arguments, threads=None):
         """The derivative at arguments of one state, or behind any dimensions of a batch, which broadcast.
@@ -59,6 +105,5 @@ class Derivative:
         count = math.prod(batch)
         flat = [np.ascontiguousarray(np.broadcast_to(x, batch + s).reshape(count, math.prod(s))) for x, (_, s, _) in zip(arrays, self.takes)]
         found = self._native.run(flat, 1 if threads in (None, 1) else 0)
-        ends = np.cumsum([math.prod(shape) for _, shape, _ in self.gives])
-        parts = [part.reshape(batch + shape) for part, (_, shape, _) in zip(np.split(found, ends[:-1], axis=1), self.gives)]
+        parts = [part.reshape(batch + shape) for part, (_, shape, _) in zip(found, self.gives)]
         return self._results(*parts) if self._results else parts[0]

@@ -62,6 +62,20 @@ def is_single(value):
     return dtype is not None and str(dtype) in ("float32", "torch.float32")
 
 
+def as_names(what, names):
+    """``names`` as a list of texts; the errors name the argument."""
+    if isinstance(names, (str, bytes)):
+        raise TypeError(f"{what}: found {names!r}, expected a list of names, such as [{names!r}]")
+    try:
+        names = list(names)
+    except TypeError:
+        raise TypeError(f"{what}: found {type(names).__name__}, expected a list of names") from None
+    for name in names:
+        if not isinstance(name, str):
+            raise TypeError(f"{what}: found {type(name).__name__} in the list, expected names")
+    return names
+
+
 def broadcast(array, shape):
     """The array with the dimensions of a batch that it lacks, in C order."""
     return np.ascontiguousarray(np.broadcast_to(array, shape))

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ._compiled import CompiledRobot, lengths
+from ._derivative import WITHOUT, by_all
 from ._robot import _TABLE, Robot
 
 
@@ -22,8 +23,7 @@ class Rule(NamedTuple):
     gives: tuple
 
 
-# Where numbers at random become a configuration, the path has no derivative of use.
-RULES = {f.name: Rule(f.takes, f.gives) for f in _TABLE if f.name != "random_configuration"}
+RULES = {f.name: Rule(f.takes, f.gives) for f in _TABLE if f.name not in WITHOUT}
 
 
 def _quaternions(robot):
@@ -68,20 +68,18 @@ def _derived(robot, kind, name):
     """A derivative of a function by all of its arguments, traced for the robot."""
     known = _DERIVED.setdefault(robot, {})
     if (kind, name) not in known:
-        takes = " ".join(argument for argument, _, _ in RULES[name].takes)
-        known[kind, name] = robot._derived(f"derivative = {kind}({name}, {takes} in coordinates)")
+        known[kind, name] = robot._derived(f"derivative = {by_all(kind, name, RULES[name].takes)}")
     return known[kind, name]
 
 
 def _run(robot, kind, name, threads, arrays):
     """The results of a derivative, for arrays with one batch dimension."""
+    compiled = robot._derivatives.get((kind, name)) if isinstance(robot, CompiledRobot) else None
     robot = check(robot)
     derived = _derived(robot, kind, name)
     flat = [np.ascontiguousarray(array.reshape(len(array), math.prod(array.shape[1:])), dtype=np.float64) for array in arrays]
-    found = derived.run(flat, 1 if threads in (None, 1) else 0)
-    shapes = [lengths(robot, dims) for _, dims, _ in derived.gives()]
-    ends = np.cumsum([math.prod(shape) for shape in shapes])
-    return [part.reshape((len(found), *shape)) for part, shape in zip(np.split(found, ends[:-1], axis=1), shapes)]
+    found = (compiled or derived).run(flat, 1 if threads in (None, 1) else 0)
+    return [part.reshape((len(part), *lengths(robot, dims))) for part, (_, dims, _) in zip(found, derived.gives())]
 
 
 # Arguments that are configurations.

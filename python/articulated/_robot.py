@@ -8,8 +8,8 @@ import numpy as np
 
 from . import _native, _rollout, _wheel
 from ._compiled import CompiledRobot
-from ._derivative import Derivative
-from ._errors import RobotWarning, as_numbers
+from ._derivative import KINDS, Derivative, rows
+from ._errors import RobotWarning, as_names, as_numbers
 
 
 class Actuator(NamedTuple):
@@ -69,19 +69,6 @@ def _missing(robot, name, functions):
 def _unknown(what, found, names, expected):
     near = _native.nearest(str(found), list(names))
     return ValueError(f"{what}: found {found!r}, expected {expected}" + (f"; did you mean {near!r}?" if near else ""))
-
-
-def _names(what, names):
-    if isinstance(names, (str, bytes)):
-        raise TypeError(f"{what}: found {names!r}, expected a list of names, such as [{names!r}]")
-    try:
-        names = list(names)
-    except TypeError:
-        raise TypeError(f"{what}: found {type(names).__name__}, expected a list of names") from None
-    for name in names:
-        if not isinstance(name, str):
-            raise TypeError(f"{what}: found {type(name).__name__} in the list, expected names")
-    return names
 
 
 def _name(what, name):
@@ -215,7 +202,7 @@ class Robot(_native.Robot):
 
     def with_frames(self, frames):
         """The same robot with these frames only, in this order. Fewer frames take less time."""
-        return self._made(self._source._replace(frames=tuple(_names("frames", frames))), self)
+        return self._made(self._source._replace(frames=tuple(as_names("frames", frames))), self)
 
     def with_wrenches_in(self, reference):
         """The same robot, with the external wrenches that functions take in other axes.
@@ -330,7 +317,7 @@ class Robot(_native.Robot):
             raise _unknown("name", name, _INDEX, "a function of articulated.functions()")
         return self._call(index, arguments, threads, out)
 
-    def compile(self, functions, *, flags=(), batch=False):
+    def compile(self, functions, *, flags=(), batch=False, derivatives=()):
         """Some of the functions as straight-line C for this robot, compiled by the system's C compiler.
 
         Compiled robots are kept in the user's cache, or in the folder that the environment variable
@@ -341,15 +328,23 @@ class Robot(_native.Robot):
             flags: More options of the compiler, such as ["-march=native"].
             batch: Also compile code that computes a state in each lane of a vector: a call of N states
                 takes a third of the time or less, and the compiler two to four times as long.
+            derivatives: Also compile derivatives of these functions, those that ``articulated.torch`` and
+                ``articulated.jax`` take: "vjp" for gradients, "jvp" for forward mode, "hvp" for second ones.
 
         Returns:
             CompiledRobot, with the functions as methods.
 
         Raises:
             RuntimeError: There is no C compiler, or it refuses the code.
+            ValueError: A function or a derivative is unknown.
         """
-        rows = [(index, _TABLE[index]) for index in self._chosen("compile", functions)]
-        return CompiledRobot(self, rows, tuple(_names("flags", flags)), bool(batch), _text)
+        chosen = [(index, _TABLE[index]) for index in self._chosen("compile", functions)]
+        kinds = as_names("derivatives", derivatives)
+        for kind in kinds:
+            if kind not in KINDS:
+                raise _unknown("derivatives", kind, KINDS, f"some of {', '.join(KINDS)}")
+        derived = rows(self, kinds, [function for _, function in chosen])
+        return CompiledRobot(self, chosen, tuple(as_names("flags", flags)), bool(batch), _text, derived)
 
     def derivative(self, request):
         """A derivative of a function by name, as a function on NumPy arrays.
@@ -607,10 +602,10 @@ class Robot(_native.Robot):
             RuntimeError: There is no C compiler, or it refuses the code.
         """
         rows = [_TABLE[index] for index in self._chosen("wheel", functions)]
-        return _wheel.write(self, _path("folder", folder), rows, name, version, tuple(_names("flags", flags)), bool(batch), _documentation)
+        return _wheel.write(self, _path("folder", folder), rows, name, version, tuple(as_names("flags", flags)), bool(batch), _documentation)
 
     def _chosen(self, what, functions):
-        chosen = list(dict.fromkeys(_names("functions", functions)))
+        chosen = list(dict.fromkeys(as_names("functions", functions)))
         for name in chosen:
             if name not in _INDEX:
                 raise _unknown("functions", name, _INDEX, "functions of articulated.functions()")
@@ -770,7 +765,7 @@ def _reading(leave_out, snap_angles, given_contacts, **allowed):
             raise TypeError(f"{name}: found {type(value).__name__}, expected True or False")
     if snap_angles is not None and (isinstance(snap_angles, bool) or not isinstance(snap_angles, (int, float, np.integer, np.floating))):
         raise TypeError(f"snap_angles: found {type(snap_angles).__name__}, expected a number, rad, or None")
-    kinds = tuple(sorted(set(_names("leave_out", leave_out))))
+    kinds = tuple(sorted(set(as_names("leave_out", leave_out))))
     tolerance = None if snap_angles is None else float(snap_angles)
     return tuple(bool(value) for value in allowed.values()), kinds, tolerance, _given(given_contacts)
 
@@ -791,7 +786,7 @@ def _robot(file, document, base, gravity, frames, wrenches_in, includes, **given
     if base not in ("fixed", "floating"):
         raise ValueError(f'base: found {base!r}, expected "fixed" or "floating"')
     gravity = None if gravity is None else _vector("gravity", gravity, "three finite numbers, m/s² in the world frame")
-    frames = None if frames is None else tuple(_names("frames", frames))
+    frames = None if frames is None else tuple(as_names("frames", frames))
     source = _Source(file, document, base, gravity, includes, _reference(wrenches_in), frames)
     robot = Robot._made(source._replace(**given))
     for finding in robot._warnings:

@@ -1,7 +1,7 @@
 //! Arguments of a call: NumPy arrays of one state or of many, checked.
 
 use articulated::Scalar;
-use numpy::{Element, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{Element, PyArrayDyn, PyArrayMethods, PyReadonlyArray2, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -28,6 +28,25 @@ impl Real for f32 {
     fn wide(self) -> f64 {
         self.into()
     }
+}
+
+/// The numbers of arrays with a row for each of the same states, row k of `sizes[k]` numbers.
+pub(crate) fn of_same_states<'a, const N: usize>(
+    arrays: [&'a PyReadonlyArray2<'_, f64>; N],
+    sizes: [usize; N],
+) -> PyResult<[&'a [f64]; N]> {
+    let states = arrays.first().map_or(0, |array| array.shape()[0]);
+    let mut parts: [&[f64]; N] = [&[]; N];
+    for ((into, array), size) in parts.iter_mut().zip(arrays).zip(sizes) {
+        let own = array.as_slice().ok().filter(|_| array.shape() == [states, size]);
+        *into = own.ok_or_else(other_states)?;
+    }
+    Ok(parts)
+}
+
+/// The error of arrays that are not of the same states.
+pub(crate) fn other_states() -> PyErr {
+    PyValueError::new_err("found arrays of other shapes, expected those of the same states")
 }
 
 /// An argument with its states.

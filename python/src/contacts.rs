@@ -8,6 +8,7 @@ use numpy::{PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArray
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::arrays::of_same_states;
 use crate::rollout::array;
 
 /// Places of contact, and how exact the accelerations are.
@@ -20,14 +21,7 @@ pub(crate) fn run<'py>(py: Python<'py>, model: &Model<f64>, given: [&PyReadonlyA
     let shape = model.shape();
     let sizes = [shape.nq, shape.nv, shape.activations, shape.controls];
     let states = given[0].shape()[0];
-    let wrong = || PyValueError::new_err("found arrays of other shapes, expected those of the same states");
-    if given.iter().zip(sizes).any(|(own, size)| own.shape() != [states, size]) {
-        return Err(wrong());
-    }
-    let mut parts: [&[f64]; 4] = [&[]; 4];
-    for (into, own) in parts.iter_mut().zip(given) {
-        *into = own.as_slice().map_err(|_| wrong())?;
-    }
+    let parts = of_same_states(given, sizes)?;
     let (nv, length) = (shape.nv, CONTACT * shape.contacts);
     let (mut places, mut certificates) = (vec![0.0; states * length], vec![0.0; states * 2]);
     let one = |ws: &mut Workspace<f64>, state: usize, places: &mut [f64], certificate: &mut [f64]| -> Result<(), FunctionError> {

@@ -3,7 +3,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use articulated::algorithm::Argument;
+use articulated::algorithm::{Argument, Shape};
 use articulated_codegen::graph::{Graph, Op};
 use articulated_codegen::{COptions, FunctionSpec, Output, Request, Target, generate};
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use crate::{batch, dimensions, errors};
 
 /// States of a part that one thread computes.
-const PART: usize = 256;
+pub(crate) const PART: usize = 256;
 
 /// A function that was traced.
 #[pyclass(frozen, module = "articulated._native")]
@@ -23,6 +23,8 @@ pub(crate) struct Derived {
     graph: Graph,
     arguments: Vec<Argument>,
     outputs: Vec<Output>,
+    /// Numbers of each result.
+    sizes: Vec<usize>,
 }
 
 #[pymethods]
@@ -45,15 +47,12 @@ impl Derived {
         Ok(list)
     }
 
-    /// The results in each state, a row each; arguments are arrays with a row for each state.
-    fn run<'py>(&self, py: Python<'py>, arguments: Vec<PyReadonlyArray2<'py, f64>>, threads: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let states = arguments.first().map_or(1, |array| array.shape()[0]);
-        let lengths: Vec<usize> = arguments.iter().map(|array| array.shape()[1]).collect();
-        let wrong = || PyValueError::new_err("found arguments of other shapes, expected a row for each state");
-        if arguments.len() != self.arguments.len() || arguments.iter().any(|array| array.shape()[0] != states) {
+    /// The results in each state, an array each with a row for each state; arguments are such arrays.
+    fn run<'py>(&self, py: Python<'py>, arguments: Vec<PyReadonlyArray2<'py, f64>>, threads: usize) -> PyResult<Parts<'py>> {
+        let (states, lengths, given) = rows(&arguments)?;
+        if arguments.len() != self.arguments.len() {
             return Err(wrong());
         }
-        let given: Vec<&[f64]> = arguments.iter().map(|array| array.as_slice().map_err(|_| wrong())).collect::<PyResult<_>>()?;
         let needed = self.graph.nodes().iter().filter(|node| node.op == Op::Input);
         if needed.into_iter().any(|node| lengths.get(node.args[0] as usize).is_none_or(|length| node.args[1] as usize >= *length)) {
             return Err(wrong());
@@ -72,16 +71,40 @@ impl Derived {
                 out.par_chunks_mut(size).enumerate().for_each(part);
             }
         });
-        let array = PyArray2::<f64>::zeros(py, [states, results], false);
-        // The array is new: no other reference to it exists.
-        array.readwrite().as_slice_mut()?.copy_from_slice(&out);
-        Ok(array)
+        let mut at = 0;
+        let part = |&size: &usize| {
+            let array = PyArray2::<f64>::zeros(py, [states, size], false);
+            // The array is new: no other reference to it exists.
+            for (row, all) in array.readwrite().as_slice_mut()?.chunks_mut(size.max(1)).zip(out.chunks(results.max(1))) {
+                row.copy_from_slice(&all[at..][..size]);
+            }
+            at += size;
+            Ok(array)
+        };
+        self.sizes.iter().map(part).collect()
     }
+}
+
+/// Results, each with a row for each state.
+pub(crate) type Parts<'py> = Vec<Bound<'py, PyArray2<f64>>>;
+
+/// The number of states, the lengths of rows and the numbers of arrays with a row for each state.
+pub(crate) fn rows<'a>(arrays: &'a [PyReadonlyArray2<'_, f64>]) -> PyResult<(usize, Vec<usize>, Vec<&'a [f64]>)> {
+    let states = arrays.first().map_or(1, |array| array.shape()[0]);
+    if arrays.iter().any(|array| array.shape()[0] != states) {
+        return Err(wrong());
+    }
+    let given = arrays.iter().map(|array| array.as_slice().map_err(|_| wrong())).collect::<PyResult<_>>()?;
+    Ok((states, arrays.iter().map(|array| array.shape()[1]).collect(), given))
+}
+
+pub(crate) fn wrong() -> PyErr {
+    PyValueError::new_err("found arguments of other shapes, expected a row for each state")
 }
 
 impl Derived {
     /// The function of this request, such as `g = vjp(inverse_dynamics)`.
-    pub(crate) fn of(py: Python<'_>, mut request: Request, text: String) -> PyResult<Self> {
+    pub(crate) fn of(py: Python<'_>, shape: Shape, mut request: Request, text: String) -> PyResult<Self> {
         let spec = FunctionSpec::parse(&text).map_err(|error| PyValueError::new_err(error.to_string()))?;
         if spec.transform.is_none() {
             return Err(PyValueError::new_err(format!("found {text:?}, expected a derivative, such as vjp(inverse_dynamics)")));
@@ -94,6 +117,8 @@ impl Derived {
         let generated = py.detach(|| catch_unwind(AssertUnwindSafe(|| generate(&request)))).map_err(|_| batch::mistake())?;
         let mut generated = generated.map_err(|findings| errors::refused(py, &findings))?;
         let graph = generated.graphs.pop().unwrap_or_default();
-        Ok(Self { graph, arguments: spec.arguments(), outputs: spec.outputs() })
+        let outputs = spec.outputs();
+        let sizes = outputs.iter().map(|output| output.dims.iter().map(|dim| dim.len(shape)).product()).collect();
+        Ok(Self { graph, arguments: spec.arguments(), outputs, sizes })
     }
 }

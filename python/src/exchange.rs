@@ -7,6 +7,8 @@ use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::arrays::{of_same_states, other_states};
+
 /// Positions `[states][nq]` and rates `[states][nv]` of each state, by a function of the group
 /// `mujoco`.
 pub(crate) fn run<'py>(
@@ -16,14 +18,9 @@ pub(crate) fn run<'py>(
     positions: &PyReadonlyArray2<'py, f64>,
     rates: &PyReadonlyArray2<'py, f64>,
 ) -> PyResult<[Bound<'py, PyArray2<f64>>; 2]> {
-    let wrong = || PyValueError::new_err("found arrays of other shapes, expected those of the same states");
-    let row = step::<f64>(name).filter(|row| row.group == Group::Mujoco).ok_or_else(wrong)?;
+    let row = step::<f64>(name).filter(|row| row.group == Group::Mujoco).ok_or_else(other_states)?;
     let (nq, nv, states) = (model.nq(), model.nv(), positions.shape()[0]);
-    if positions.shape() != [states, nq] || rates.shape() != [states, nv] {
-        return Err(wrong());
-    }
-    let [positions, rates] = [positions, rates].map(|array| array.as_slice().map_err(|_| wrong()));
-    let (positions, rates) = (positions?, rates?);
+    let [positions, rates] = of_same_states([positions, rates], [nq, nv])?;
     let out = [PyArray2::<f64>::zeros(py, [states, nq], false), PyArray2::<f64>::zeros(py, [states, nv], false)];
     // The arrays are new: no other reference to them exists.
     let [mut first, mut second] = out.each_ref().map(PyArrayMethods::readwrite);

@@ -8,6 +8,8 @@ use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::arrays::of_same_states;
+
 /// q, v, activations and `warm` after the step, a row for each state.
 pub(crate) type Ends<'py> = [Bound<'py, PyArray2<f64>>; 4];
 
@@ -31,14 +33,7 @@ pub(crate) fn run<'py>(
     })?;
     let sizes = [shape.nq, shape.nv, shape.activations, shape.controls, GIVEN * shape.given, shape.nv];
     let states = given[0].shape()[0];
-    let wrong = || PyValueError::new_err("found arrays of other shapes, expected those of the same states");
-    if given.iter().zip(sizes).any(|(own, size)| own.shape() != [states, size]) {
-        return Err(wrong());
-    }
-    let mut parts: [&[f64]; 6] = [&[]; 6];
-    for (into, own) in parts.iter_mut().zip(given) {
-        *into = own.as_slice().map_err(|_| wrong())?;
-    }
+    let parts = of_same_states(given, sizes)?;
     let ends = [shape.nq, shape.nv, shape.activations, shape.nv];
     let length: usize = ends.iter().sum();
     let mut all = vec![0.0; states * length];

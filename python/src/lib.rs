@@ -96,7 +96,7 @@ fn command(py: Python<'_>, words: Vec<OsString>) -> u8 {
 #[pymodule(gil_used = true)]
 mod _native {
     #[pymodule_export]
-    use super::compiled::load_compiled;
+    use super::compiled::{load_compiled, load_derivatives};
     #[pymodule_export]
     use super::method::method_of_robots;
     #[pymodule_export]

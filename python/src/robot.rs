@@ -88,6 +88,12 @@ fn reference_of(name: &str) -> PyResult<Reference> {
     named.ok_or_else(wrong)
 }
 
+/// Names of the two shapes of each of these pairs.
+fn names_of_shapes(model: &Model<f64>, pairs: impl Iterator<Item = usize>) -> Vec<[String; 2]> {
+    let constraints = model.constraints();
+    pairs.map(|pair| constraints.pairs[pair].shapes.map(|shape| constraints.shapes[shape].name.clone())).collect()
+}
+
 /// Names of the moving links, in the order of [`Model::links`].
 fn links(model: &Model<f64>) -> Vec<String> {
     model.links().filter_map(|i| model.bodies()[i].link.as_ref()).map(|link| link.name.clone()).collect()
@@ -426,16 +432,12 @@ impl Robot {
 
     /// Names of the two shapes of each contact that a caller gives.
     fn _given_contacts(&self) -> Vec<[String; 2]> {
-        let constraints = self.model.constraints();
-        let names = |pair: usize| constraints.pairs[pair].shapes.map(|shape| constraints.shapes[shape].name.clone());
-        constraints.pair_of_given().map(names).collect()
+        names_of_shapes(&self.model, self.model.constraints().pair_of_given())
     }
 
     /// Names of the two shapes of each place where shapes may touch.
     fn _contact_shapes(&self) -> Vec<[String; 2]> {
-        let constraints = self.model.constraints();
-        let names = |pair: usize| constraints.pairs[pair].shapes.map(|shape| constraints.shapes[shape].name.clone());
-        constraints.pair_of_contacts().map(names).collect()
+        names_of_shapes(&self.model, self.model.constraints().pair_of_contacts())
     }
 
     /// A warning of smooth forces of the file that do not act beside its actuators, if there are
@@ -476,7 +478,7 @@ impl Robot {
 
     /// The derivative of this request, such as `g = vjp(inverse_dynamics)`, traced for the robot.
     fn _derived(&self, py: Python<'_>, text: String) -> PyResult<Derived> {
-        Derived::of(py, self.request.clone(), text)
+        Derived::of(py, self.model.shape(), self.request.clone(), text)
     }
 
     /// The states after every so many steps: q, v, activations, and torques or controls of all

@@ -8,6 +8,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
+use crate::arrays::other_states;
 use crate::batch;
 
 /// How names of steps begin: with torques, with controls of actuators, and with constraints too.
@@ -44,15 +45,14 @@ pub(crate) fn run<'py>(
     let [states, count, _] = [held.shape()[0], held.shape()[1], held.shape()[2]];
     let fits = held.shape()[2] == width
         && start.iter().zip(sizes).take(2 + usize::from(is_actuated)).all(|(own, size)| own.shape() == [states, size]);
-    let wrong = || PyValueError::new_err("found arrays of other shapes, expected those of the same states");
     if !fits || every == 0 {
-        return Err(wrong());
+        return Err(other_states());
     }
     let mut given: [&[f64]; 3] = [&[]; 3];
     for (into, own) in given.iter_mut().zip(&start).take(2 + usize::from(is_actuated)) {
-        *into = own.as_slice().map_err(|_| wrong())?;
+        *into = own.as_slice().map_err(|_| other_states())?;
     }
-    let held = held.as_slice().map_err(|_| wrong())?;
+    let held = held.as_slice().map_err(|_| other_states())?;
     let records = count / every;
     let mut out = sizes.map(|size| vec![0.0; states * records * size]);
     let one = |(state, mut rows): (usize, [&mut [f64]; 3])| {

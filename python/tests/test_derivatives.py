@@ -41,6 +41,22 @@ def test_second_derivatives():
     np.testing.assert_allclose(robot.derivative("hvp(potential_energy)")(q, 1.0, dq), hessian @ dq, rtol=0, atol=1e-10)
 
 
+@pytest.mark.parametrize("batch", [True, False])
+def test_compiled_derivatives_are_those_of_the_trace(batch):
+    rng = np.random.default_rng(3)
+    for name, states in (("panda_like", 1), ("quadruped", 600)):
+        robot = articulated.bundled(name)
+        q, (v, a, weights) = robot.random_configuration(rng, states), rng.normal(size=(3, states, robot.nv))
+        pull = robot.derivative("vjp(inverse_dynamics)")
+        compiled = pull.compile(batch=batch)
+        assert compiled.takes == pull.takes and compiled.request == pull.request
+        for found, expected in zip(compiled(q, v, a, weights), pull(q, v, a, weights)):
+            np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+        for found, expected in zip(compiled(q, v, a, weights, threads=0), compiled(q, v, a, weights)):
+            np.testing.assert_array_equal(found, expected)
+        assert [part.shape for part in compiled(q[:0], v[:0], a[:0], weights[:0])] == [(0, robot.nv)] * 3
+
+
 def test_bad_requests_and_calls():
     robot = articulated.bundled("panda_like")
     q = np.zeros(7)
@@ -51,6 +67,9 @@ def test_bad_requests_and_calls():
         (lambda: robot.derivative("inverse_dynamics"), ValueError, "expected a derivative"),
         (lambda: robot.derivative("vjp(inverse_dynamics, x)"), ValueError, "expected some of q v a"),
         (lambda: robot.derivative(3), TypeError, "found int"),
+        (lambda: robot.compile(["mass_matrix"], derivatives=["vjq"]), ValueError, "derivatives: found 'vjq', expected some of vjp, jvp, hvp"),
+        (lambda: robot.compile(["mass_matrix"], derivatives="vjp"), TypeError, "expected a list of names"),
+        (lambda: slope.compile(flags="-O3"), TypeError, "flags: found '-O3'"),
         (lambda: slope(), TypeError, "found 0 arguments, expected 1: q"),
         (lambda: slope(q[:6]), ValueError, "q: found shape"),
         (lambda: slope("q"), TypeError, "q: found dtype <U1"),

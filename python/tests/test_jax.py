@@ -140,6 +140,9 @@ def test_compiled_functions_and_single_precision():
         compiled = robot.compile(["gravity_torque", "inverse_dynamics_derivatives"])
         run = lambda of: jax.jacrev(lambda q: articulated.jax.gravity_torque(of, q))(q)  # noqa: E731
         np.testing.assert_allclose(run(compiled), run(robot), rtol=0, atol=1e-10)
+        compiled = robot.compile(["gravity_torque"], batch=True, derivatives=["vjp", "jvp"])
+        assert set(compiled._derivatives) == {("vjp", "gravity_torque"), ("jvp", "gravity_torque")}
+        np.testing.assert_allclose(run(compiled), run(robot), rtol=0, atol=1e-10)
     with jax.enable_x64(False) if hasattr(jax, "enable_x64") else jax.experimental.disable_x64():
         tau = articulated.jax.gravity_torque(robot, q)
         assert tau.dtype == np.float32

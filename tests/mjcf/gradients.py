@@ -15,16 +15,13 @@ Exit status: 0 if the median is at most 1e-4 for all models, else 1.
 """
 
 import argparse
-import json
-import os
 import sys
-import tempfile
 from pathlib import Path
 
 from contact import motion, prepare
-from oracle import HERE, enter
-from programs import COMMAND
-from speed import in_package, run
+from linked import timed
+from oracle import enter
+from speed import in_package
 
 MODELS = [("gymnasium", "hopper.xml"), ("gymnasium", "half_cheetah.xml"), ("gymnasium", "walker2d_v5.xml"), ("gymnasium", "ant.xml")]
 STATES, ROUNDS, MOST = 64, 11, 1e-4
@@ -51,26 +48,12 @@ def measured(path):
     import numpy as np
 
     prepared = prepare(path, "Euler")
-    model, _, controls, states = prepared
+    model = prepared[0]
     model.opt.tolerance, model.opt.iterations, model.opt.ls_iterations = 1e-15, 100, 100
     starts = list(motion(model, mujoco.MjData(model), np.random.default_rng(3), STATES))
-    contents = [getattr(mujoco.mjtState, f"mjSTATE_{name}") for name in ("QPOS", "QVEL", "ACT", "CTRL")]
-    with tempfile.TemporaryDirectory() as folder:
-        folder = Path(folder)
-        shared = next(Path(mujoco.__file__).parent.glob("libmujoco.so*"))
-        code, program, name = folder / "generated.rs", folder / "gradients", "constrained_step_implicit_damping"
-        functions = f"step = {name}, slopes = jacobian({name}, q v ctrl), pull = vjp({name}, q v ctrl), mujoco"
-        run(COMMAND, "generate", path, "--effects", "file", "--leave-out", "constraint,solver", "--functions", functions, "--max-code-size", "400", "-o", code)
-        run(
-            "rustc", "--edition", "2024", "-C", "opt-level=3", "-C", "codegen-units=16", "-C", "target-cpu=native", HERE / "gradients.rs", "-o", program,
-            "-C", f"link-arg={shared}", "-C", f"link-arg=-Wl,-rpath,{shared.parent}", env={**os.environ, "GENERATED": str(code)},
-        )
-        mujoco.mj_saveModel(model, str(folder / "model.mjb"), None)
-        numbers = [part for q, v, _, act, ctrl in starts for part in (q, v, act, ctrl, q, v, act[states], ctrl[controls])]
-        (folder / "starts").write_bytes(np.concatenate(numbers).astype("<f8").tobytes())
-        words = ["model.mjb", "starts", "ends", len(starts), ROUNDS, repr(float(model.opt.timestep)), sum(map(int, contents))]
-        medians = json.loads(run(program, *words, cwd=folder))
-        numbers = np.fromfile(folder / "ends", "<f8")
+    name = "constrained_step_implicit_damping"
+    functions = f"step = {name}, slopes = jacobian({name}, q v ctrl), pull = vjp({name}, q v ctrl), mujoco"
+    medians, numbers = timed(path, "gradients.rs", functions, prepared, starts, ROUNDS, "--max-code-size", "400")
     nv, nu, na = model.nv, model.nu, model.na
     if (model.jnt_type == mujoco.mjtJoint.mjJNT_FREE).any() or na:
         return nv, medians, None

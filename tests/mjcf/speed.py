@@ -17,14 +17,13 @@ The ends are compared: f64 to 1e-11, f32 to 1e-4 of 1 and the largest rate. Exit
 import argparse
 import datetime
 import json
-import os
 import platform
-import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
+from linked import build, run
 from oracle import HERE, enter, packages
 from programs import COMMAND, REPOSITORY
 from steps import random_starts, smooth
@@ -131,10 +130,6 @@ class Program:
     """speed.rs with the step of a robot."""
 
     def __init__(self, path, method, folder, constrained=False):
-        import mujoco
-
-        shared = next(Path(mujoco.__file__).parent.glob("libmujoco.so*"))
-        code, self.file = folder / "generated.rs", folder / "speed"
         actuated = json.loads(run(COMMAND, "rollout", path, "--steps", "1", "--format", "json")).get("actuators", [])
         if not actuated and not constrained:
             raise RuntimeError(f"{path.name}: found no actuators, expected one at least")
@@ -142,11 +137,7 @@ class Program:
         if constrained:
             kind, own, cfg = "constrained", ["--leave-out", "constraint,solver"], ["--cfg", "constrained"]
         functions = f"step = {kind}_step_{method}, mujoco"
-        run(COMMAND, "generate", path, "--effects", "file", "--functions", functions, "--batch", "f64,f32", "-o", code, *own)
-        run(
-            "rustc", *cfg, "--edition", "2024", "-C", "opt-level=3", "-C", "codegen-units=1", "-C", "target-cpu=native", HERE / "speed.rs", "-o", self.file,
-            "-C", f"link-arg={shared}", "-C", f"link-arg=-Wl,-rpath,{shared.parent}", env={**os.environ, "GENERATED": str(code)},
-        )
+        self.file = build(path, "speed.rs", folder, functions, "--batch", "f64,f32", *own, units=1, cfg=cfg)
         self.folder = folder
 
     def rolled(self, prepared, starts, steps, rounds, h):
@@ -183,13 +174,6 @@ class Program:
                 own.append((q, v, act))
             ends.append(own)
         return medians, ends
-
-
-def run(*words, **options):
-    done = subprocess.run(list(map(str, words)), capture_output=True, text=True, **options)
-    if done.returncode:
-        raise RuntimeError(f"{Path(str(words[0])).name}: {done.stderr[-2000:]}")
-    return done.stdout
 
 
 def apart(model, states, one, other):

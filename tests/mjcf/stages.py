@@ -13,15 +13,12 @@ Exit status: 0.
 """
 
 import argparse
-import json
-import os
-import tempfile
 from pathlib import Path
 
 from contact import motion, prepare
-from oracle import HERE, enter
-from programs import COMMAND
-from speed import in_package, run
+from linked import timed
+from oracle import enter
+from speed import in_package
 
 MODELS = [("gymnasium", "half_cheetah.xml"), ("gymnasium", "ant.xml"), ("gymnasium", "humanoid.xml")]
 STATES, ROUNDS = 64, 11
@@ -51,32 +48,17 @@ def measured(path):
     import numpy as np
 
     prepared = prepare(path, "Euler")
-    model, _, controls, states = prepared
+    model = prepared[0]
     data = mujoco.MjData(model)
     starts = list(motion(model, data, np.random.default_rng(3), STATES))
-    contents = [getattr(mujoco.mjtState, f"mjSTATE_{name}") for name in ("QPOS", "QVEL", "ACT", "CTRL")]
     iterations = []
     for q, v, _, act, ctrl in starts:
         data.qpos[:], data.qvel[:], data.act[:], data.ctrl[:] = q, v, act, ctrl
         mujoco.mj_step(model, data)
         mujoco.mj_forward(model, data)
         iterations.append(data.solver_niter.sum())
-    with tempfile.TemporaryDirectory() as folder:
-        folder = Path(folder)
-        shared = next(Path(mujoco.__file__).parent.glob("libmujoco.so*"))
-        code, program = folder / "generated.rs", folder / "stages"
-        run(COMMAND, "generate", path, "--effects", "file", "--leave-out", "constraint,solver", "--functions", ", ".join(FUNCTIONS), "-o", code)
-        run(
-            "rustc", "--edition", "2024", "-C", "opt-level=3", "-C", "codegen-units=16", "-C", "target-cpu=native", HERE / "stages.rs", "-o", program,
-            "-C", f"link-arg={shared}", "-C", f"link-arg=-Wl,-rpath,{shared.parent}", env={**os.environ, "GENERATED": str(code)},
-        )
-        mujoco.mj_saveModel(model, str(folder / "model.mjb"), None)
-        numbers = [part for q, v, _, act, ctrl in starts for part in (q, v, act, ctrl, q, v, act[states], ctrl[controls])]
-        (folder / "starts").write_bytes(np.concatenate(numbers).astype("<f8").tobytes())
-        words = ["model.mjb", "starts", "ends", len(starts), ROUNDS, repr(float(model.opt.timestep)), sum(map(int, contents))]
-        medians = json.loads(run(program, *words, cwd=folder))
-        steps = float(np.fromfile(folder / "ends", "<f8").mean())
-    return medians, steps, float(np.mean(iterations))
+    medians, steps = timed(path, "stages.rs", ", ".join(FUNCTIONS), prepared, starts, ROUNDS)
+    return medians, float(steps.mean()), float(np.mean(iterations))
 
 
 if __name__ == "__main__":

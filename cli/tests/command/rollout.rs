@@ -25,6 +25,26 @@ fn a_pushed_cart_moves_as_its_equation_says() {
 }
 
 #[test]
+fn the_error_estimate_is_that_of_the_step() {
+    let cart = File::new("cart.urdf", CART.as_bytes());
+    let states = File::new("states.json", br#"{"states": [{"q": [0.5], "v": [1], "tau": [4]}, {"q": [0], "v": [0]}]}"#);
+    let words = ["rollout", cart.name(), "--steps", "100", "--states", states.name(), "--time-step", "0.01", "--error-estimate"];
+    let estimate = |more: &[&str]| run(&[&words[..], more, &["--format", "json"]].concat()).json()["error_estimate"].clone();
+    // x = 0.5 + t + a t (t + h)/2 with a = 2 m/s²: the error is a t h/2.
+    let euler = estimate(&[]);
+    assert!((euler["q"].as_f64().unwrap() - 0.01).abs() < 1e-12 && euler["v"].as_f64().unwrap() < 1e-13, "{euler}");
+    assert_eq!(euler["states"], 2);
+    let rk4 = estimate(&["--method", "rk4"]);
+    assert!(rk4["q"].as_f64().unwrap() < 1e-13, "{rk4}");
+    let text = run(&words).out;
+    assert!(text.contains("error of the last states, estimated by half the step: q 0.01 rad|m, v "), "{text}");
+    // States that are not finite have no estimate.
+    let scene = File::new("stiff.toml", b"robot = \"simple_pendulum\"\n[effects]\ndamping = 1e4\n");
+    let text = run(&["rollout", scene.name(), "--steps", "500", "--states", "2", "--error-estimate"]).out;
+    assert!(text.contains("no estimate of the error"), "{text}");
+}
+
+#[test]
 fn what_is_wrong_is_told() {
     let cart = File::new("cart.urdf", CART.as_bytes());
     let told = |words: &[&str]| {

@@ -1,6 +1,6 @@
 //! First derivatives of inverse and forward dynamics.
 //!
-//! Singh, Russell & Wensing, *IEEE Robot. Autom. Lett.* 7, 2022, 1824–1831 (joints with several
+//! Singh, Russell & Wensing, *IEEE Robot. Autom. Lett.* 7, 2022 (joints with several
 //! degrees of freedom included), with 2B of their Coriolis operator as
 //! [`crate::spatial::CoriolisInertia`] and everything in common axes about each body's own origin
 //! ([`super::common`]):

@@ -58,7 +58,7 @@ pub use momentum::{
 pub use operational_space::{operational_space_inertia, operational_space_inertia_inverse};
 pub(crate) use pushed::Placed;
 pub use registry::{Function, Group, Inputs, Needs, Shape, Variant};
-pub use regressor::{PARAMETERS, kinetic_energy_regressor, potential_energy_regressor, torque_regressor};
+pub use regressor::{PARAMETERS, joint_regressor, kinetic_energy_regressor, potential_energy_regressor, torque_regressor};
 pub use rnea::{inverse_dynamics_with_wrenches, joint_wrenches};
 pub use table::presets::*;
 pub use table::{FunctionId, function, functions};

@@ -9,6 +9,7 @@
 use super::Workspace;
 use super::common::{Axes, accelerations, on_the_way, positions, twists};
 use crate::Scalar;
+use crate::effect::{JOINT_PARAMETERS, joint_columns};
 use crate::index::BodyId;
 use crate::model::{BodyLink, Model};
 use crate::spatial::{Matrix3, Placement, Twist, Vector3, rate_matrix, rotate, rotate_back};
@@ -60,6 +61,26 @@ fn entries<S: Scalar>(axis: &Twist<S>, a: &Vector3<S>, u: &Matrix3<S>) -> [S; PA
     let off = |i: usize, j: usize| -(g[(i, j)] + g[(j, i)]);
     let on = |i: usize| half - g[(i, i)];
     [t.dot(a), first.x, first.y, first.z, on(0), off(0, 1), off(0, 2), on(1), off(1, 2), on(2)]
+}
+
+/// Y with τ_l = Y_l (d_l, μ_l, I_l) of effects on joints: viscous damping d, dry friction μ and
+/// armature I = I_rotor n² of the joint of each degree of freedom. A row depends on the numbers of
+/// its own degree of freedom alone, so the matrix is stored without its zeros.
+///
+/// v, a: `[nv]`; out: `[nv][3]`, N·m|N per N·m·s/rad|N·s/m, N·m|N and kg·m²|kg: v, v/√(v² + s²) and
+/// a. s is the rate below which the model's friction is smooth, 1e-5 rad/s|m/s if it has none. Torques
+/// of joints that follow a coordinate depend on the same columns: Σ d c², Σ |μ c| for rates far above
+/// s, and Σ I c² with their multipliers c add to the numbers of the leader.
+///
+/// # Panics
+/// As [`torque_regressor`].
+pub fn joint_regressor<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, v: &[S], a: &[S], out: &mut [S]) {
+    for body in model.outward().map(|i| &model.bodies[i]).filter(|body| body.coordinates.mimic.is_none()) {
+        for freedom in 0..body.joint.nv() {
+            let at = body.coordinates.v + freedom;
+            out[at * JOINT_PARAMETERS..][..JOINT_PARAMETERS].copy_from_slice(&joint_columns(&body.effects.joint, freedom, v[at], a[at]));
+        }
+    }
 }
 
 /// y with kinetic energy T = yᵀπ.

@@ -134,6 +134,10 @@ macro_rules! for_each_function {
                 Regressors, Nothing, false,
                 "Y with inverse_dynamics = Y π without effects, π the inertial parameters of the moving links in their axes",
                 "virtual power; Atkeson, An & Hollerbach, Int. J. Robot. Res. 5, 1986";
+            joint_regressor(v, a) -> [Nv, Of(3)] "per N·m·s/rad|N·s/m, N·m|N, kg·m²|kg",
+                Regressors, Nothing, false,
+                "torques of each degree of freedom per unit of its damping, dry friction and armature: v, v/√(v² + s²), a; s is the speed of friction, or 1e-5",
+                "linear in the parameters; Khalil & Dombre, Modeling, Identification and Control of Robots, 2002";
             kinetic_energy_regressor(q, v) -> [Links, Of(10)] "per m, m c, I_xx I_xy I_xz I_yy I_yz I_zz about the link's origin",
                 Regressors, Nothing, false,
                 "y with kinetic_energy = yᵀπ without effects", "Gautier & Khalil, IEEE ICRA 1988";

@@ -594,6 +594,18 @@ impl<S: Scalar> Effects<S> {
     }
 }
 
+/// Parameters of a joint that torques are linear in: damping, dry friction and armature.
+pub const JOINT_PARAMETERS: usize = 3;
+
+/// The torque that a degree of freedom needs per unit of each: v, v/√(v² + s²) and a, at the rate v
+/// and the acceleration a. s is that of its friction, or the default of friction.
+pub(crate) fn joint_columns<S: Scalar>(effects: &[JointEffect<S>], freedom: usize, v: S, a: S) -> [S; JOINT_PARAMETERS] {
+    let one = S::one();
+    let own = effects.iter().find(|e| e.effect == EffectId::friction && e.freedom == freedom);
+    let smooth = own.map_or(S::from_f64(friction::SPEED), |e| e.parameters[1]);
+    [-damping::force(&[one], v), -friction::force(&[one, smooth], v), armature::inertia(&[one, one]) * a]
+}
+
 /// v / √(v² + s²): the sign of v, smooth for |v| below s.
 #[inline(always)]
 fn smooth_sign<S: Scalar>(v: S, s: S) -> S {

@@ -70,6 +70,39 @@ fn inverse_dynamics_is_m_a_and_bias_forces_and_followers_too() {
     });
 }
 
+/// Y (d, μ, I) is what damping, friction and armature add to the torques; of a coordinate that
+/// others follow with Σ d c² and Σ I c².
+#[test]
+fn joint_regressor_times_parameters_is_what_damping_friction_and_armature_add() {
+    const LINEAR: [EffectId; 3] = [EffectId::damping, EffectId::friction, EffectId::armature];
+    for (flavour, most) in [(FREE, 3), (Flavour::ANY, 2)] {
+        let met = std::cell::Cell::new(0);
+        for_each_tree(60, flavour, |case, random| {
+            // Friction of followers is not linear in the numbers of their leader.
+            let is_wanted = |e| LINEAR.contains(&e) && (most == 3 || e != EffectId::friction);
+            let (model, State { q, v, a, .. }) = subject(case, random, is_wanted);
+            // A joint that follows several has no column: its torque depends on the rates of all.
+            let mut numbers = vec![[0.0; effect::JOINT_PARAMETERS]; model.nv()];
+            for body in model.outward().map(|i| &model.bodies()[i]) {
+                let at = &body.coordinates;
+                let ratio = at.rate_of_one().unwrap_or(1.0);
+                for one in &body.effects.joint {
+                    let k = LINEAR.iter().position(|e| *e == one.effect).expect("one of three");
+                    let p = &one.parameters;
+                    numbers[at.v + one.freedom][k] += p[0] * ratio * ratio * if k == 2 { p[1] * p[1] } else { 1.0 };
+                    met.set(met.get() + 1);
+                }
+            }
+            let torques = |model: &Model<f64>| call(model, "inverse_dynamics", &[&q, &v, &a]);
+            let rows = call(&model, "joint_regressor", &[&v, &a]);
+            let added = rows.chunks(effect::JOINT_PARAMETERS).zip(&numbers).map(|(y, p)| y.iter().zip(p).map(|(y, p)| y * p).sum::<f64>());
+            let expected: Vec<f64> = torques(&case.model).iter().zip(added).map(|(tau, more)| tau + more).collect();
+            assert_near(&torques(&model), &expected, 1e-13, &case.name);
+        });
+        assert!(met.get() > 100, "{} effects", met.get());
+    }
+}
+
 /// d(T + U)/dt along the motion, by duals, is the power of torques and of dissipative effects.
 #[test]
 fn what_torques_give_and_effects_take_is_the_change_of_energy() {

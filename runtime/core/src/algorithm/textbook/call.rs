@@ -75,6 +75,7 @@ impl<S: Scalar> Textbook<S> {
             F::centroidal_momentum_matrix => self.centroidal_momentum_matrix(q),
             F::centroidal_momentum_rate => self.centroidal_momentum_rate(q, x[1], x[2]),
             F::torque_regressor => self.torque_regressor(q, x[1], x[2]),
+            F::joint_regressor => self.joint_regressor(x[0], x[1]),
             F::kinetic_energy_regressor => self.kinetic_energy_regressor(q, x[1]),
             F::potential_energy_regressor => self.potential_energy_regressor(q),
             // The book has no effects.

@@ -79,7 +79,15 @@ impl<S: Scalar> Textbook<S> {
         (0..self.nv).flat_map(|i| columns.iter().map(move |c| c[i])).collect()
     }
 
-    /// y with T = y·π, `[links][10]`.
+    /// v, v/√(v² + s²) with s = 1e-5 and a of each degree of freedom, `[nv][3]`: per damping, dry
+    /// friction and armature.
+    pub fn joint_regressor(&self, v: &[S], a: &[S]) -> Vec<S> {
+        let smooth = S::from_f64(1e-5);
+        v.iter().zip(a).flat_map(|(&v, &a)| [v, v / (smooth * smooth + v * v).sqrt(), a]).collect()
+    }
+
+    /// y with U = y·π, `[links][10]`.
+
     pub fn kinetic_energy_regressor(&self, q: &[S], v: &[S]) -> Vec<S> {
         let twists = self.body_twists(Reference::Body, q, v);
         self.unit_links().map(|(i, g)| twists[i].dot(&(g * twists[i])) * S::from_f64(0.5)).collect()
