@@ -88,6 +88,8 @@ oracles() {
     step python3 tests/oracles/make.py --check
     step python3 tests/oracles/external.py
     step python3 tests/embedded/measure.py
+    step python3 tests/cmake/run.py --install
+    step python3 tests/ipopt/run.py
     step python3 tests/mjcf/oracle.py --sample
     step python3 tests/mjcf/coming_from.py
     step python3 tests/mjcf/steps.py --file tests/mjcf/models/{steps,actuated,surroundings,drone,spatial}.xml

@@ -56,9 +56,9 @@ def install():
     if not shutil.which("apt-get") or os.geteuid() != 0:
         return
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": os.environ | {"DEBIAN_FRONTEND": "noninteractive"}}
-    words = ["apt-get", "install", "-y", "--no-install-recommends", "chromium"]
+    words = ["apt-get", "-o", "DPkg::Lock::Timeout=600", "install", "-y", "--no-install-recommends", "chromium"]
     if subprocess.run(words, **quiet).returncode != 0:
-        subprocess.run(["apt-get", "update"], **quiet)
+        subprocess.run(["apt-get", "-o", "DPkg::Lock::Timeout=600", "update"], **quiet)
         subprocess.run(words, **quiet)
 
 
