@@ -38,6 +38,7 @@ step mjcf-stages python3 tests/mjcf/stages.py
 step sdf python3 tests/sdf/oracle.py
 step xacro python3 tests/xacro/oracle.py
 step mutants python3 tests/mutants/mutants.py
+step sdist python/sdist.sh
 step sql sql/check.sh
 
 if [ ${#failed[@]} -gt 0 ]; then

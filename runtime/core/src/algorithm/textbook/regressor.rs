@@ -86,8 +86,7 @@ impl<S: Scalar> Textbook<S> {
         v.iter().zip(a).flat_map(|(&v, &a)| [v, v / (smooth * smooth + v * v).sqrt(), a]).collect()
     }
 
-    /// y with U = y·π, `[links][10]`.
-
+    /// y with T = y·π, `[links][10]`.
     pub fn kinetic_energy_regressor(&self, q: &[S], v: &[S]) -> Vec<S> {
         let twists = self.body_twists(Reference::Body, q, v);
         self.unit_links().map(|(i, g)| twists[i].dot(&(g * twists[i])) * S::from_f64(0.5)).collect()
