@@ -38,6 +38,7 @@ use command_line::{Arguments, Command};
 use failure::{Failure, OK, USAGE};
 
 pub use simulate::in_process as scene;
+pub use simulate::still;
 
 /// Runs the command with these words, the program's own name first. The exit status: see
 /// [`failure`].

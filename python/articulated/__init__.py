@@ -11,6 +11,8 @@
 from ._compiled import CompiledRobot
 from ._derivative import Derivative
 from ._errors import RobotError, RobotWarning
+from ._found import FoundRobot, robots
+from ._player import Player
 from ._robot import Actuator, Function, Joint, Robot, bundled, bundled_names, functions, load, loads
 from ._rollout import ActuatedRollout, ActuatedRolloutGradient, ConstrainedStep, ContactForces, MujocoState, Rollout, RolloutGradient, State
 from ._scene import Motion, Scene, bundled_scene_names
@@ -23,10 +25,12 @@ __all__ = [
     "ConstrainedStep",
     "ContactForces",
     "Derivative",
+    "FoundRobot",
     "Function",
     "Joint",
     "Motion",
     "MujocoState",
+    "Player",
     "Robot",
     "RobotError",
     "RobotWarning",
@@ -40,8 +44,9 @@ __all__ = [
     "functions",
     "load",
     "loads",
+    "robots",
 ]
 __version__ = "0.1.0"
 _RESULTS = Rollout, RolloutGradient, ActuatedRollout, ActuatedRolloutGradient, ConstrainedStep, ContactForces
-for _class in (RobotError, RobotWarning, Robot, CompiledRobot, Derivative, Actuator, Joint, Function, *_RESULTS, Scene, Motion):
+for _class in (RobotError, RobotWarning, Robot, CompiledRobot, Derivative, Actuator, Joint, Function, *_RESULTS, Scene, Motion, FoundRobot, Player):
     _class.__module__ = __name__

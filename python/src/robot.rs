@@ -12,6 +12,7 @@ use articulated::formats::world::GivenContact;
 use articulated::formats::{Environment, Included, LeaveOut};
 use articulated::spatial::Reference;
 use articulated::{Base, Model};
+use articulated_cli::still;
 use articulated_codegen::scene::Scene;
 use articulated_codegen::{Appended, COptions, Real, Request, Target, forces_of_the_file, generate, unread_constraints};
 use articulated_core::actuator::ActuatorLaw;
@@ -30,6 +31,7 @@ use crate::exchange;
 use crate::given;
 use crate::method::Keywords;
 use crate::rollout;
+use crate::scene;
 use crate::signature::{Signature, signatures};
 
 /// A robot's model. `articulated.load` makes one.
@@ -461,6 +463,12 @@ impl Robot {
         }
         log.result(Some(())).map_err(|findings| refused(&findings))?;
         Ok(warnings.iter().map(ToString::to_string).collect())
+    }
+
+    /// The page of the robot at `q`, and warnings about its meshes. `packages`: folders of ROS
+    /// packages.
+    fn _page(&self, py: Python<'_>, q: Vec<f64>, title: &str, packages: Vec<PathBuf>) -> scene::WithWarnings<String> {
+        scene::told(py, py.detach(|| still::page(&self.request, &q, title, &packages)))
     }
 
     /// C99 of functions: its files, each with a name and a text. All names begin with `prefix`.

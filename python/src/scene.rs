@@ -7,7 +7,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 
 /// A value and the warnings on the way to it.
-type WithWarnings<T> = PyResult<(T, Vec<String>)>;
+pub(crate) type WithWarnings<T> = PyResult<(T, Vec<String>)>;
 
 /// Steps between two looks at signals, so that a user can interrupt a motion.
 const BLOCK: u64 = 1 << 8;
@@ -27,7 +27,8 @@ fn refused(py: Python<'_>, refusal: &Refusal) -> PyErr {
     error().map_or_else(|failed| failed, PyErr::from_value)
 }
 
-fn told<T>(py: Python<'_>, (out, warnings): scene::WithWarnings<T>) -> WithWarnings<T> {
+/// The value, or the error that Python raises.
+pub(crate) fn told<T>(py: Python<'_>, (out, warnings): scene::WithWarnings<T>) -> WithWarnings<T> {
     Ok((out.map_err(|refusal| refused(py, &refusal))?, warnings))
 }
 

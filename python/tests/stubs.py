@@ -94,6 +94,59 @@ class Motion:
     def write(self, path: Union[str, PathLike[str]], packages: Iterable[Union[str, PathLike[str]]] = ...) -> list[str]: ...
     def show(self, packages: Iterable[Union[str, PathLike[str]]] = ...) -> Path: ...
 
+class FoundRobot(NamedTuple):
+    name: str
+    file: Path
+    format: Literal["urdf", "xacro", "mjcf", "sdf"]
+    package: str
+    packages: Mapping[str, Path]
+    def load(
+        self,
+        base: _Base = "fixed",
+        gravity: Optional[ArrayLike] = ...,
+        frames: Optional[Iterable[str]] = None,
+        wrenches_in: _Reference = "body",
+        *,
+        packages: Optional[Mapping[str, Union[str, PathLike[str]]]] = None,
+        **options: Any,
+    ) -> Robot: ...
+
+class Player:
+    def __init__(
+        self,
+        robot: Union[Robot, CompiledRobot],
+        q: Optional[ArrayLike] = None,
+        *,
+        title: Optional[str] = None,
+        packages: Iterable[Union[str, PathLike[str]]] = ...,
+    ) -> None: ...
+    @property
+    def url(self) -> str: ...
+    @property
+    def pages(self) -> int: ...
+    @property
+    def frames(self) -> tuple[str, ...]: ...
+    @frames.setter
+    def frames(self, names: Iterable[str]) -> None: ...
+    @property
+    def trace(self) -> tuple[str, ...]: ...
+    @trace.setter
+    def trace(self, names: Iterable[str]) -> None: ...
+    def show(
+        self,
+        q: ArrayLike,
+        *,
+        frames: Optional[Iterable[str]] = None,
+        trace: Optional[Iterable[str]] = None,
+        lines: Optional[Iterable[ArrayLike]] = None,
+    ) -> None: ...
+    def open(self) -> str: ...
+    def wait(self, timeout: Optional[float] = None) -> None: ...
+    def close(self) -> None: ...
+    def __enter__(self) -> Player: ...
+    def __exit__(self, *error: object) -> None: ...
+
+def robots(pattern: Optional[str] = None) -> list[FoundRobot]: ...
 def functions() -> tuple[Function, ...]: ...
 def bundled_scene_names() -> dict[str, str]: ...
 def bundled_names() -> dict[str, str]: ...
@@ -408,12 +461,61 @@ def derivatives(library, array, imported):
     return "\n".join(lines) + "\n"
 
 
+# Types of articulated.viser and articulated.rerun.
+VISER = '''"""A robot in viser. Made by tests/stubs.py."""
+
+from os import PathLike
+from typing import Any, Iterable, Optional, Union
+
+from numpy.typing import ArrayLike
+
+from . import CompiledRobot, Robot
+
+class Viewer:
+    # A viser.ViserServer.
+    server: Any
+    def __init__(
+        self,
+        robot: Union[Robot, CompiledRobot],
+        server: Optional[Any] = None,
+        *,
+        name: str = "robot",
+        frames: Iterable[str] = ...,
+        packages: Iterable[Union[str, PathLike[str]]] = ...,
+    ) -> None: ...
+    def show(self, q: ArrayLike) -> None: ...
+'''
+RERUN = '''"""A robot in rerun. Made by tests/stubs.py."""
+
+from os import PathLike
+from typing import Any, Iterable, Optional, Union
+
+from numpy.typing import ArrayLike
+
+from . import CompiledRobot, Robot
+
+class Viewer:
+    def __init__(
+        self,
+        robot: Union[Robot, CompiledRobot],
+        path: str = "robot",
+        *,
+        frames: Iterable[str] = ...,
+        packages: Iterable[Union[str, PathLike[str]]] = ...,
+        recording: Optional[Any] = None,
+    ) -> None: ...
+    def show(self, q: ArrayLike) -> None: ...
+'''
+
+
 def main():
     rows = articulated.functions()
     texts = {
         "__init__.pyi": package(rows),
         "torch.pyi": derivatives("PyTorch", "Tensor", "from torch import Tensor"),
         "jax.pyi": derivatives("JAX", "ArrayLike", "from numpy.typing import ArrayLike"),
+        "viser.pyi": VISER,
+        "rerun.pyi": RERUN,
     }
     for name, text in texts.items():
         if "--check" not in sys.argv[1:]:

@@ -230,6 +230,7 @@ def test_bad_names():
 
 def test_examples_of_the_documentation(tmp_path, monkeypatch):
     import doctest
+    import http.client
     import importlib.util
     import os
     import shutil
@@ -241,17 +242,29 @@ def test_examples_of_the_documentation(tmp_path, monkeypatch):
     assert doctest.testmod(articulated).failed == 0
     text = (Path(__file__).resolve().parent.parent / "README.md").read_text(encoding="utf-8")
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(webbrowser, "open", lambda url: True)
+    pages = []
+
+    def visit(url):
+        # The page of a player listens to it.
+        if url.startswith("http"):
+            pages.append(http.client.HTTPConnection(url.split("/")[2]))
+            pages[-1].request("GET", "/events?" + url.split("?")[1])
+        return True
+
+    monkeypatch.setattr(webbrowser, "open", visit)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     monkeypatch.setenv("ARTICULATED_CACHE", str(tmp_path / "cache"))
     (tmp_path / "gripper.urdf").write_text(GRIPPER)
     scope, run = {}, 0
-    needs = {"to_arrow": "pyarrow", "articulated.torch": "torch", "articulated.jax": "jax"}
+    needs = {"to_arrow": "pyarrow", "articulated.torch": "torch", "articulated.jax": "jax", "articulated.viser": "viser", "articulated.rerun": "rerun"}
     for block in text.split("```python\n")[1:]:
         code = block.split("```")[0]
         is_there = all(importlib.util.find_spec(module) for word, module in needs.items() if word in code)
+        # Robots of a package that is not needed here: see test_robots.py.
+        is_there = is_there and "articulated.robots(" not in code
         if is_there and (".compile(" not in code or shutil.which(os.environ.get("CC", "cc").split()[0])):
             exec(code, scope)
             run += 1
     assert run >= 2 and scope["taus"].shape == (4096, 7) and scope["mass"].shape == (7, 7)
     assert (scope["arm"].nv, scope["arm"].frames) == (7, ("hand_palm",))
+    assert len(pages) == 1

@@ -71,8 +71,12 @@ class Browser:
 
     def open(self, file):
         """Loads a file, after the events of the page before are forgotten."""
+        self.visit(Path(file).resolve().as_uri())
+
+    def visit(self, url):
+        """Loads the page of an address, in the same way."""
         self.events.clear()
-        self("Page.navigate", url=Path(file).resolve().as_uri())
+        self("Page.navigate", url=url)
         wait(lambda: self.value("document.readyState") == "complete", ANSWERED, "the page to load")
 
     def until(self, expression, seconds=ANSWERED):
@@ -90,8 +94,8 @@ class Browser:
         """The window as an image."""
         return Image.open(io.BytesIO(base64.b64decode(self("Page.captureScreenshot", format="png")["data"]))).convert("RGB")
 
-    def complaints(self):
-        """Errors, warnings and exceptions of the page, and requests that leave the machine."""
+    def complaints(self, own=()):
+        """Errors, warnings and exceptions of the page, and requests; those whose address begins with one of `own` are left out."""
         found = []
         for event in self.events:
             method, what = event.get("method"), event.get("params", {})
@@ -101,7 +105,7 @@ class Browser:
                 found.append(f"console: {what['args']}")
             elif method == "Log.entryAdded" and what["entry"]["level"] in ("error", "warning"):
                 found.append(f"log: {what['entry']['text']}")
-            elif method == "Network.requestWillBeSent" and what["request"]["url"].split(":")[0] not in ("file", "data", "blob", "about"):
+            elif method == "Network.requestWillBeSent" and what["request"]["url"].split(":")[0] not in ("file", "data", "blob", "about") and not what["request"]["url"].startswith(tuple(own)):
                 found.append(f"request: {what['request']['url']}")
         return found
 

@@ -19,6 +19,7 @@ import tempfile
 import time
 from pathlib import Path
 
+import live
 import shapes
 
 HERE = Path(__file__).resolve().parent
@@ -196,9 +197,9 @@ def opened(path, *, webgl=True):
             browser.close()
 
 
-def finish(browser, name):
+def finish(browser, name, own=()):
     """No complaint of the browser."""
-    assert browser.complaints() == [], f"{name}: {browser.complaints()}"
+    assert browser.complaints(own) == [], f"{name}: {browser.complaints(own)}"
     print(f"{name}: ok, {time.monotonic() - STARTED:.0f} s", flush=True)
 
 
@@ -265,6 +266,68 @@ def check_silhouettes(browser, articulated, folder):
     finish(browser, "silhouettes")
 
 
+def check_live(browser, folder):
+    """A page that a program feeds shows each configuration, axes and paths; it has no clock."""
+    python = live.python(TARGET)
+    if not python:
+        print("not run: the live player, which needs a Python with the package (python/check.sh, or ARTICULATED_PYTHON)")
+        return
+    note = "document.getElementById('note').textContent"
+    with live.served(python) as (url, show):
+        # Its file alone, without a server, has the picture of the first configuration.
+        (folder / "live.html").write_bytes(live.get(url))
+        browser.open(folder / "live.html")
+        browser.value(SHOWN)
+        alone = browser.screenshot().crop(MIDDLE)
+        assert browser.complaints() == [] and "live" not in browser.value(note), browser.complaints()
+        browser.visit(url)
+        browser.until(f"{note}.endsWith('; live')")
+        browser.value(SHOWN)
+        differs = differing(alone, browser.screenshot().crop(MIDDLE))
+        assert drawn_in(alone, (244, 246, 248)) < 0.9 * alone.width * alone.height and differs < 100, differs
+        assert not browser.value("['play', 'scrub', 'strip', 'numbers', 'video'].some(name => document.getElementById(name).offsetParent)")
+        seen = []
+
+        def look(name, act, place=MIDDLE):
+            act()
+            time.sleep(0.2)
+            browser.value(SHOWN)
+            image = browser.screenshot().crop(place)
+            image.save(folder / f"live_{name}.png")
+            seen.append(image)
+
+        bent = [0.5, 0.6, 0.0, -1.5, 0.0, 1.8, 0.0]
+        # The view grows until it has all of this; then it stays.
+        swing = [[x, *bent[1:]] for x in [0.5, 0.2, -0.1, -0.4]]
+        for q in [*swing, [0.0] * 7]:
+            show(q)
+            time.sleep(0.1)
+        look("start", lambda: None)
+        look("same", lambda: show([0.0] * 7))
+        look("bent", lambda: show(bent))
+        look("axes", lambda: show(bent, frames=["link_7"]))
+        look("paths", lambda: [show(q, trace=["link_7"], frames=[]) for q in swing])
+        look("back", lambda: show([0.0] * 7, trace=[]))
+        look("posted", lambda: live.post(url, {"q": bent}))
+        look("fan", lambda: show([0.0] * 7, lines=[[[0, 0, 0], [0.5, 0.1 * k, 0.2]] for k in range(-5, 6)]))
+        look("without", lambda: show([0.0] * 7, lines=[]))
+        changes = [differing(a, b) for a, b in zip(seen, seen[1:])]
+        assert changes[0] == 0 and min(changes[1:]) > 100, changes
+        # The same configuration has the same picture, whoever sends it.
+        assert differing(seen[0], seen[5]) == 0 and differing(seen[2], seen[6]) == 0
+        assert differing(seen[0], seen[7]) > 100 and differing(seen[0], seen[8]) == 0
+        assert drawn_in(seen[4], (123, 63, 160)) > 50 and drawn_in(seen[3], (123, 63, 160)) == 0
+        assert all(drawn_in(seen[3], color) > 5 and drawn_in(seen[2], color) == 0 for color in [(198, 40, 40), (46, 125, 50)])
+        turns(browser)
+    browser.until(f"{note}.endsWith('; no connection')")
+    finish(browser, "live", own=[url.partition("?")[0]])
+
+
+def drawn_in(image, color):
+    """How many pixels have exactly this colour."""
+    return sum(n for n, pixel in image.getcolors(1 << 24) if pixel == color)
+
+
 def check_without_webgl(path, folder):
     """The same pictures where the browser has no WebGL."""
     with opened(path, webgl=False) as browser:
@@ -300,6 +363,7 @@ def main():
             check(browser, articulated, folder)
             check_shapes(browser, articulated, folder)
             check_silhouettes(browser, articulated, folder)
+            check_live(browser, folder)
         check_without_webgl(path, folder)
 
 

@@ -184,6 +184,7 @@ fn setting<'a>(session: &'a Session, recording: &Recording, summary: &Summary) -
         balls: contacts().map(ball).collect(),
         ground: contacts().next().and_then(plane),
         projectile: projectile(session, recording),
+        is_live: false,
     }
 }
 

@@ -101,7 +101,7 @@ pub struct Recorded {
 /// A value and the warnings on the way to it.
 pub type WithWarnings<T> = (Result<T, Refusal>, Vec<String>);
 
-fn warned<T>(run: impl FnOnce() -> Result<T, Failure>) -> WithWarnings<T> {
+pub(super) fn warned<T>(run: impl FnOnce() -> Result<T, Failure>) -> WithWarnings<T> {
     let (out, warnings) = collect(run);
     (out.map_err(Refusal::from), warnings)
 }

@@ -18,6 +18,7 @@ mod plot;
 mod recording;
 mod settings;
 mod size;
+pub mod still;
 mod summary;
 mod table;
 mod text;

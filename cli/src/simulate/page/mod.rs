@@ -45,6 +45,8 @@ pub(super) struct Setting<'a> {
     pub(super) ground: Option<([f64; 3], f64)>,
     /// The ball that is hit.
     pub(super) projectile: Option<Projectile>,
+    /// A page without a clock, which the program that serves it feeds with placements.
+    pub(super) is_live: bool,
 }
 
 /// A ball that flies through one point: with one velocity before a time, and with another after it.
@@ -68,6 +70,9 @@ pub(super) struct Projectile {
 #[serde(rename_all = "camelCase")]
 struct Motion<'a> {
     note: &'a str,
+    is_live: bool,
+    /// The link whose placement is that of the body, for each body that moves.
+    bodies: &'a [String],
     up: [f64; 3],
     /// Height of the grid along `up`, m.
     ground: f64,
@@ -130,6 +135,8 @@ pub(super) fn html(r: &Recording, setting: &Setting<'_>, meshes: &Meshes<'_>) ->
     let touching = chosen.iter().filter_map(|&k| r.contacts.get(k));
     let motion = Motion {
         note: &setting.note,
+        is_live: setting.is_live,
+        bodies: &figure.frames,
         up: space.up.into(),
         ground: space.ground,
         center: space.center.into(),
@@ -269,6 +276,7 @@ mod tests {
             balls: Vec::new(),
             ground: None,
             projectile: None,
+            is_live: false,
         };
         html(recording, &setting, &Meshes::new(Vec::new(), &[], "robot")).unwrap()
     }

@@ -39,8 +39,13 @@
     return [low, next, gap > 0 ? Math.min(1, Math.max(0, (t - times[low]) / gap)) : 0];
   }
 
+  // Of a page that a program feeds: the bodies as they are now, the poses that the view has to show, and frames and paths by name.
+  const live = { bodies: null, poses: [], frames: {}, trace: {}, lines: [], words: '' };
+  const matrix = ([a, b, c, d, e, f, g, h, i, ...p]) => ({ R: [[a, b, c], [d, e, f], [g, h, i]], p });
+
   // All bodies at a time; body 0 is what does not move.
   function pose(t) {
+    if (live.bodies) return live.bodies;
     const [a, b, s] = find(t), all = [FIXED];
     for (let k = 0; k < motion.moving; k++) {
       const A = stored(a, k), B = stored(b, k), sign = A.o.reduce((sum, x, i) => sum + x * B.o[i], 0) < 0 ? -1 : 1;
@@ -136,6 +141,7 @@
     return { target: [...target], distance: known ? Math.max(distance, 0.05 * motion.radius) : 3.3 * motion.radius };
   }
   function* poses() {
+    if (live.bodies) return yield* [...live.poses, live.bodies];
     const stride = Math.max(1, Math.floor(frames / 600));
     for (let k = 0; k < frames; k += stride) yield pose(times[k]);
     yield pose(last);
@@ -303,6 +309,31 @@
     return written;
   }
 
+  // Paths, and the axes of frames: x red, y green, z blue.
+  const PATH = '#7b3fa0', LINE = 'rgba(27, 108, 168, .45)', AXES = ['#c62828', '#2e7d32', '#1565c0'];
+  function traces(ctx, cam) {
+    const line = points => {
+      ctx.beginPath();
+      let down = false;
+      for (const p of points) {
+        const there = cam.depth(p) > cam.near, [x, y] = cam.show(p);
+        if (there && down) ctx.lineTo(x, y); else if (there) ctx.moveTo(x, y);
+        down = there;
+      }
+      ctx.stroke();
+    };
+    ctx.strokeStyle = LINE; ctx.lineWidth = 1;
+    live.lines.forEach(line);
+    ctx.strokeStyle = PATH; ctx.lineWidth = 1.6;
+    Object.values(live.trace).forEach(line);
+    ctx.lineWidth = 2.4;
+    for (const [name, { R, p }] of Object.entries(live.frames)) {
+      AXES.forEach((color, k) => { ctx.strokeStyle = color; line([p, add(p, scaled(R.map(row => row[k]), 0.12 * motion.size))]); });
+      const [x, y] = cam.show(p);
+      if (cam.depth(p) > cam.near) label(ctx, name, x + 6, y + 14);
+    }
+  }
+
   // Draws the motion at a time; gives the places of links and joints on the screen, for names under the pointer.
   function draw(ctx, w, h, t, shown, panels) {
     const X = pose(t);
@@ -380,6 +411,7 @@
         ctx.lineWidth = 1; ctx.beginPath(); ctx.arc(x, y, Math.min(6, Math.max(2, 0.014 * motion.size * z)), 0, 2 * Math.PI); ctx.fill(); ctx.stroke();
       }
     }
+    traces(ctx, cam);
     const written = shown.names ? names(ctx, w, h, marks, panels) : [];
     for (const b of motion.boxes) spots.push({ at: cam.show(at(X[b.body], b.center)), name: `${b.name}, ${number(b.mass)} kg` });
     for (const m of marks) spots.push({ at: m.spot, name: m.joint.name });
@@ -458,6 +490,7 @@
     if (now.contacts && touches) put('contact force', TOUCH, true);
     if (now.sticks && motion.joints.length) put('joint', '#d9622b', true);
     if (ball) put('ball', '#f2a93b', true);
+    for (const name of Object.keys(live.trace)) put(`path of ${name}`, PATH, true);
     const all = [...rows], most = 12, box = $('legend');
     box.replaceChildren(...all.slice(0, most).map(([text, { color, round }]) => {
       const row = document.createElement('div'), swatch = document.createElement('i');
@@ -482,7 +515,7 @@
   }
   // The picture; of one that is saved, panels cover nothing, and its title is in it.
   function picture(saved) {
-    const [ctx, w, h] = fitted(view), text = `${document.title}   ${clock(state.t)} s`;
+    const [ctx, w, h] = fitted(view), text = motion.isLive ? document.title : `${document.title}   ${clock(state.t)} s`;
     ctx.font = '13px "DejaVu Sans", Verdana, Arial, sans-serif';
     const caption = [8, 8, 28 + ctx.measureText(text).width, 34];
     const drawn = draw(ctx, w, h, state.t, shown(), saved ? [caption] : panels());
@@ -494,7 +527,7 @@
     [state.spots, state.written] = [spots, written];
     strip(...fitted(stripCanvas), state.t);
     $('numbers').textContent = readout(state.t);
-    $('note').textContent = `${motion.note}; squares of the ground ${Number(mesh.toPrecision(3))} m`;
+    $('note').textContent = `${motion.note}; squares of the ground ${Number(mesh.toPrecision(3))} m${live.words}`;
     scrub.value = state.t;
     play.textContent = state.playing ? 'Pause' : 'Play';
   }
@@ -586,6 +619,29 @@
     if (near) { tip.textContent = near.name; tip.style.left = `${e.clientX + 14}px`; tip.style.top = `${e.clientY + 10}px`; }
   }
   window.addEventListener('resize', () => { if (fitting) fitting(); });
+  // What a program sends. Without a token in the address the page shows the robot as it was when it was made.
+  const token = new URLSearchParams(location.search).get('token');
+  if (motion.isLive) document.body.classList.add('live');
+  if (motion.isLive && token) {
+    const source = new EventSource(`events?token=${encodeURIComponent(token)}`), end = () => { source.close(); live.words = '; no connection'; };
+    source.onopen = () => { live.words = '; live'; };
+    source.addEventListener('end', end);
+    source.onerror = end;
+    source.onmessage = e => {
+      const now = JSON.parse(e.data), before = Object.keys(live.trace).join('\n'), three = all => Array.from({ length: all.length / 3 }, (_, k) => all.slice(3 * k, 3 * k + 3));
+      live.bodies = [FIXED, ...now.placements.map(matrix)];
+      // The view grows with the motion, until a user moves it.
+      if (fitting && !following) {
+        const view = JSON.stringify(eye);
+        whole();
+        if ((JSON.stringify(eye) !== view || !live.poses.length) && live.poses.push(live.bodies) > 200) live.poses = live.poses.filter((_, k) => k % 2);
+      }
+      live.frames = Object.fromEntries(Object.entries(now.frames).map(([name, row]) => [name, matrix(row)]));
+      live.lines = now.lines.map(three);
+      live.trace = Object.fromEntries(Object.entries(now.trace).map(([name, all]) => [name, three(all)]));
+      if (Object.keys(live.trace).join('\n') !== before) legend();
+    };
+  }
   begin();
   requestAnimationFrame(tick);
 })();
