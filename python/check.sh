@@ -4,6 +4,7 @@
 # Pinocchio, JAX and pyarrow are installed if there are wheels for this system; without them the tests that need them are skipped, which the
 # last lines say. PyTorch is installed only with ARTICULATED_TORCH=1: its wheels for Linux come with several GB for graphics processors.
 # Where the system has a PyTorch (Debian: python3-torch), ARTICULATED_TORCH=/usr/bin/python3 tests with it.
+# The notebooks run without Jupyter. With ARTICULATED_JUPYTER=1 they run in it too, and draw their plots.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -24,6 +25,11 @@ if [ "$torch" = 1 ]; then
     "$work/test/bin/python" $pip --only-binary :all: torch
 elif [ -z "$torch" ]; then
     echo "not installed: PyTorch, several GB; ARTICULATED_TORCH=1 tests its derivatives, or ARTICULATED_TORCH=/usr/bin/python3 those of the system's"
+fi
+if [ "${ARTICULATED_JUPYTER:-}" = 1 ]; then
+    "$work/test/bin/python" $pip --only-binary :all: nbclient==0.11.0 nbformat==5.11.1 ipykernel==7.4.0 matplotlib==3.11.2
+else
+    echo "not installed: Jupyter and matplotlib; ARTICULATED_JUPYTER=1 runs the notebooks in Jupyter too"
 fi
 
 CARGO_TARGET_DIR=$target "$work/build/bin/maturin" build --quiet --release --locked --out "$work/wheels"
