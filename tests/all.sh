@@ -69,6 +69,7 @@ arm() { # where there is an emulator, which only an administrator can install, a
 
 browser() { # where there is Chromium, which only an administrator can install
     python3 tests/browser/pages.py --install
+    python3 tests/browser/book.py --install
 }
 
 python_package() {

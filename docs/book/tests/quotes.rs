@@ -3,6 +3,9 @@
 //! A quotation is a code block after a line `<!-- quote: path from the repository's root -->` or
 //! `<!-- generated: robot function -->`. Indentation and blank lines are free; `…` on a line of its
 //! own leaves lines out.
+//!
+//! A line `<!-- player: scene -->` or `<!-- sliders: robot -->` asks `docs/book/build.py` for a
+//! motion, or for sliders; the scene or the robot is bundled.
 
 use std::path::Path;
 
@@ -54,6 +57,15 @@ fn quotations_are_what_the_files_say() {
             let (comment, after) = after.split_once(" -->").expect("a comment ends");
             rest = after;
             let Some((kind, what)) = comment.split_once(": ") else { continue };
+            let bundled = match kind {
+                "player" => Some(articulated_models::scene(what).is_some()),
+                "sliders" => Some(articulated_models::robot(what).is_some()),
+                _ => None,
+            };
+            if let Some(found) = bundled {
+                wrong.extend((!found).then(|| format!("{}: {kind} of {what}, which is not bundled", path.display())));
+                continue;
+            }
             let block = after.split("```").nth(1).and_then(|b| b.split_once('\n')).expect("a block follows").1;
             count += 1;
             wrong.extend(check(kind, what, block).err().map(|e| format!("{}: {e}", path.display())));

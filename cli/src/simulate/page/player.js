@@ -611,7 +611,14 @@
       eye.elevation = Math.min(1.55, Math.max(-1.55, eye.elevation + dy * 0.008));
     }
   };
-  view.addEventListener('wheel', e => { e.preventDefault(); nearer(Math.exp(e.deltaY * (e.deltaMode ? 0.05 : 0.0015))); }, { passive: false });
+  // In a frame of another page the wheel and upright strokes move that page; the wheel is the picture's after a click on it.
+  const framed = window !== window.top;
+  if (framed) view.style.touchAction = 'pan-y';
+  view.addEventListener('wheel', e => {
+    if (framed && !(document.hasFocus() && document.activeElement === view)) return;
+    e.preventDefault();
+    nearer(Math.exp(e.deltaY * (e.deltaMode ? 0.05 : 0.0015)));
+  }, { passive: false });
   view.oncontextmenu = e => e.preventDefault();
   function name(e) {
     const away = s => Math.hypot(s.at[0] - e.clientX, s.at[1] - e.clientY), near = state.spots.filter(s => away(s) < 14).sort((a, b) => away(a) - away(b))[0];

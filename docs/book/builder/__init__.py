@@ -1,0 +1,1 @@
+"""What `docs/book/build.py` builds the book with."""
