@@ -97,8 +97,8 @@ struct End {
     touching: Option<Touching>,
 }
 
-/// An estimate of the largest error of the last states, by Richardson: 2ᵖ/(2ᵖ − 1) times what half the
-/// step changes, with the order p of the method, and with p = 1 where constraints act.
+/// An estimate of the largest error of the last states, by Richardson: 2ᵖ/(2ᵖ − 1) times what half
+/// the step changes, with the order p of the method, and with p = 1 where constraints act.
 #[derive(Serialize)]
 struct Estimate {
     /// Of q, in the tangent space, rad|m.

@@ -37,8 +37,8 @@ impl CompiledFunction {
     }
 }
 
-/// `void NAME(size_t states, const double *const *given, double *const *out)`: argument i of state k
-/// is at `given[i] + k * length of i`, result j at `out[j] + k * length of j`.
+/// `void NAME(size_t states, const double *const *given, double *const *out)`: argument i of state
+/// k is at `given[i] + k * length of i`, result j at `out[j] + k * length of j`.
 type RowsLoop = unsafe extern "C" fn(usize, *const *const f64, *const *mut f64);
 
 /// A derivative of a shared object, for a robot.
@@ -53,7 +53,7 @@ pub(crate) struct CompiledDerivative {
 
 #[pymethods]
 impl CompiledDerivative {
-    /// The results in each state, an array each with a row for each state; arguments are such arrays.
+    /// The results: arrays with a row for each state. So are the arguments.
     fn run<'py>(&self, py: Python<'py>, arguments: Vec<PyReadonlyArray2<'py, f64>>, threads: usize) -> PyResult<Parts<'py>> {
         let (states, lengths, given) = rows(&arguments)?;
         if lengths != self.takes {
@@ -76,7 +76,7 @@ impl CompiledDerivative {
                 let count = part.min(states - first);
                 let from: Vec<*const f64> = given.iter().zip(&lengths).map(|(all, size)| all[first * size..].as_ptr()).collect();
                 let to: Vec<*mut f64> = out.iter_mut().map(|rows| rows.as_mut_ptr()).collect();
-                // SAFETY: the loop was written for arrays of these lengths, and each has `count` rows.
+                // SAFETY: the loop was written for rows of these lengths, `count` in each.
                 unsafe { (self.function)(count, from.as_ptr(), to.as_ptr()) };
             };
             if threads == 1 {

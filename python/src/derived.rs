@@ -47,7 +47,7 @@ impl Derived {
         Ok(list)
     }
 
-    /// The results in each state, an array each with a row for each state; arguments are such arrays.
+    /// The results: arrays with a row for each state. So are the arguments.
     fn run<'py>(&self, py: Python<'py>, arguments: Vec<PyReadonlyArray2<'py, f64>>, threads: usize) -> PyResult<Parts<'py>> {
         let (states, lengths, given) = rows(&arguments)?;
         if arguments.len() != self.arguments.len() {

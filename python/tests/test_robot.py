@@ -267,4 +267,4 @@ def test_examples_of_the_documentation(tmp_path, monkeypatch):
             run += 1
     assert run >= 2 and scope["taus"].shape == (4096, 7) and scope["mass"].shape == (7, 7)
     assert (scope["arm"].nv, scope["arm"].frames) == (7, ("hand_palm",))
-    assert len(pages) == 1
+    assert len(pages) == 2
