@@ -11,7 +11,7 @@ import numpy as np
 
 from ._compiled import CompiledRobot
 from ._errors import RobotWarning, as_names, as_numbers
-from ._robot import Robot
+from ._robot import Robot, _name, _path
 
 # Hues of limbs, degrees, as on the page.
 _HUES = (208, 28, 150, 0, 270, 50, 190, 320)
@@ -87,7 +87,8 @@ def page(robot, q=None, title=None, packages=(), level=3):
     if isinstance(packages, (str, bytes, os.PathLike)):
         packages = [packages]
     q = robot.neutral if q is None else configuration(robot, q)
-    html, lines = robot._page(q.tolist(), robot.name if title is None else title, [os.fsdecode(one) for one in packages])
+    title = robot.name if title is None else _name("title", title)
+    html, lines = robot._page(q.tolist(), title, [_path("packages", one) for one in packages])
     for line in lines:
         warnings.warn(RobotWarning(line), stacklevel=level)
     return html

@@ -45,16 +45,15 @@ class Player:
 
     def __init__(self, robot, q=None, *, title=None, packages=()):
         self._robot = robot_of(robot)
-        self._q = self._robot.neutral if q is None else configuration(self._robot, q)
-        self._page = page(self._robot, self._q, title, packages).encode()
+        q = self._robot.neutral if q is None else configuration(self._robot, q)
+        self._page = page(self._robot, q, title, packages).encode()
         self._bodies = tuple(contents(self._page.decode())["bodies"])
-        self._frames, self._trace, self._paths, self._lines = (), (), {}, []
         # Guards what is shown; tells pages of a new message, and waiters of a new page.
         self._changed = threading.Condition(threading.RLock())
-        self._number, self._message, self._pages, self._is_closed = 0, "", 0, False
+        self._number, self._pages, self._is_closed, self._paths = 0, 0, False, {}
+        self._sent = self._framed = None
         with self._changed:
-            self._select()
-            self._publish(self._q)
+            self._draw(q, (), (), [])
         self._token = secrets.token_urlsafe(24)
         # Imported here, as it takes as long as a tenth of the package.
         from ._server import Server
@@ -117,12 +116,8 @@ class Player:
             q = configuration(self._robot, q)
             frames = self._frames if frames is None else chosen("frames", self._robot, frames)
             trace = self._trace if trace is None else chosen("trace", self._robot, trace)
-            if lines is not None:
-                self._lines = [np.ravel(line).tolist() for line in polylines(lines)]
-            if (frames, trace) != (self._frames, self._trace):
-                self._frames, self._trace = frames, trace
-                self._select()
-            self._publish(q)
+            lines = self._lines if lines is None else [np.ravel(line).tolist() for line in polylines(lines)]
+            self._draw(q, frames, trace, lines)
 
     def open(self):
         """Opens the page in a browser, and returns its address."""
@@ -165,25 +160,27 @@ class Player:
         state = "closed" if self._is_closed else f"port {self._server.server_address[1]}, pages: {self._pages}"
         return f"<articulated.Player of {self._robot.name!r}: {state}>"
 
-    def _select(self):
-        """The robot with the frames that are sent."""
-        self._sent = tuple(dict.fromkeys((*self._bodies, *self._frames, *self._trace)))
-        self._framed = self._robot.with_frames(self._sent)
-        self._paths = {name: self._paths.get(name, []) for name in self._trace}
-
-    def _publish(self, q):
-        placements = dict(zip(self._sent, self._framed.placements(q)))
+    def _draw(self, q, frames, trace, lines):
+        """Makes the message of this configuration. Where it fails, all stays as it was."""
+        sent = tuple(dict.fromkeys((*self._bodies, *frames, *trace)))
+        framed = self._framed if sent == self._sent else self._robot.with_frames(sent)
+        found = framed.placements(q)
+        if not np.isfinite(found).all():
+            raise ValueError(f"q: found {q.tolist()}, expected numbers of a size that has finite placements")
+        self._q, self._frames, self._trace, self._sent, self._framed = q.copy(), frames, trace, sent, framed
+        self._lines = lines
+        placements = dict(zip(sent, found.tolist()))
+        self._paths = {name: self._paths.get(name, []) for name in trace}
         for name, path in self._paths.items():
-            point = placements[name][9:].tolist()
+            point = placements[name][9:]
             if path[-1:] != [point]:
                 path.append(point)
                 del path[:-_MOST_POINTS]
-        self._q = q.copy()
         self._message = json.dumps({
-            "placements": [placements[name].tolist() for name in self._bodies],
-            "frames": {name: placements[name].tolist() for name in self._frames},
+            "placements": [placements[name] for name in self._bodies],
+            "frames": {name: placements[name] for name in frames},
             "trace": {name: np.ravel(path).tolist() for name, path in self._paths.items()},
-            "lines": self._lines,
+            "lines": lines,
         })
         self._number += 1
         self._changed.notify_all()

@@ -188,6 +188,16 @@ def test_bad_configurations(player, robot, q, error, message):
             articulated.Player(robot, q)
 
 
+def test_what_fails_changes_nothing():
+    robot = articulated.bundled("quadruped")
+    with articulated.Player(robot) as player:
+        player.show(robot.neutral, trace=[robot.frames[0]])
+        before = player._message
+        with pytest.raises(ValueError, match="expected numbers of a size that has finite placements"):
+            player.show(np.full(robot.nq, 1e308), frames=[robot.frames[1]], trace=[])
+        assert (player._message, player.frames, player.trace) == (before, (), (robot.frames[0],))
+
+
 def test_bad_names(player, robot):
     with pytest.raises(articulated.RobotError, match='did you mean "tip"'):
         player.show([0.0, 0.0], frames=["tpi"])
@@ -199,6 +209,10 @@ def test_bad_names(player, robot):
         articulated.Player("planar")
     with pytest.raises(articulated.RobotError, match="packages: found no folder"):
         articulated.Player(robot, packages=["no/such"])
+    with pytest.raises(TypeError, match="packages: found int"):
+        articulated.Player(robot, packages=[3])
+    with pytest.raises(TypeError, match="title: found int, expected a name"):
+        articulated.Player(robot, title=3)
     assert (player.frames, player.trace) == ((), ())
 
 
