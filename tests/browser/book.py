@@ -21,6 +21,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from urllib.parse import unquote
 
 from pages import SHOWN, SIZE, differing, drawn, ensure_packages, install, opened
 
@@ -133,7 +134,8 @@ def check_room(browser, name):
     browser("Emulation.setEmulatedMedia", features=[])
     for width, height in [SIZE, PHONE]:
         browser("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600)
-        assert browser.value("document.documentElement.scrollWidth") <= width, f"{name} is wider than a window of {width} px"
+        wide = browser.value(f"[...document.querySelectorAll('article *')].filter(e => e.getBoundingClientRect().right > {width} && !e.closest('.math, pre, .table')).map(e => e.outerHTML.slice(0, 90))")
+        assert browser.value("document.documentElement.scrollWidth") <= width, f"{name} is wider than a window of {width} px: {wide[:4]}"
         listed = "getComputedStyle(document.querySelector('.contents')).display"
         if width < 600:
             assert browser.value(listed) == "none"
@@ -150,7 +152,7 @@ def check_links(folder, addresses, name):
         file, _, anchor = address.partition("#")
         page = folder / (file or name)
         assert page.is_file(), f"{name}: link to {address}"
-        assert not anchor or f'id="{anchor}"' in page.read_text(), f"{name}: link to {address}"
+        assert not anchor or f'id="{unquote(anchor)}"' in page.read_text(), f"{name}: link to {address}"
 
 
 def player(browser, keep, name):
