@@ -70,6 +70,7 @@ arm() { # where there is an emulator, which only an administrator can install, a
 browser() { # where there is Chromium, which only an administrator can install
     python3 tests/browser/pages.py --install
     python3 tests/browser/book.py --install
+    python3 tests/browser/site.py --install
 }
 
 python_package() {
@@ -86,6 +87,7 @@ oracles() {
     step python3 tests/peers/tables.py --check
     step python3 tests/peers/chart.py --check
     step python3 docs/book/figures.py --check
+    step python3 tests/verdicts.py --check
     step python3 tests/oracles/make.py --check
     step python3 tests/oracles/external.py
     step python3 tests/embedded/measure.py

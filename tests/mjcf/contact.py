@@ -5,7 +5,7 @@
     python3 tests/mjcf/contact.py --file F.xml …    these files
     python3 tests/mjcf/contact.py --check           the files of CHECKED by one method, and generated code of GENERATED, in this folder
     python3 tests/mjcf/contact.py --all             every file of the packages, by Euler, in 4 states: an hour
-    python3 tests/mjcf/contact.py --all --write     the same, into docs/contact-files.md
+    python3 tests/mjcf/contact.py --all --write     the same, recorded in docs/site/data/contact.json, and docs/contact-files.md
     python3 tests/mjcf/contact.py --states N        so many states of each model
     python3 tests/mjcf/contact.py --speed [F.xml]   time of a step beside mj_step, alone and in vectors, in the states of a motion
 
@@ -19,17 +19,19 @@ the way is a start. What is not computed here is off in MuJoCo too: pairs of sha
   in the last place of each number, or over one rounding of each step if that is more. Left out where a state grows without bound.
 
 Exit status: 0 if one step differs by at most 1e-10, its contacts by 1e-8, and 1000 steps by at most 10 times the latter (30 with a free body), else 1.
+With --all: 0 if every verdict is the recorded one, else 1.
 """
 
 import argparse
 import collections
+import math
 import re
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-from oracle import HERE, enter, packages
+from oracle import HERE, enter, packages, verdicts
 from speed import METHODS, Program, apart, in_package
 from steps import LONGEST, MANY, MANY_OF_FREE, ROUNDING, mjcf_files, of_mujoco, reported, rolled, smooth
 
@@ -58,17 +60,6 @@ COMPUTED = [
     ("plane", "sphere"), ("plane", "capsule"), ("plane", "ellipsoid"), ("plane", "cylinder"), ("plane", "box"), ("sphere", "sphere"), ("sphere", "capsule"),
     ("sphere", "cylinder"), ("sphere", "box"), ("capsule", "capsule"), ("capsule", "box"), ("box", "box"),
 ]
-PAGE = HERE.parent.parent / "docs" / "contact-files.md"
-HEAD = """# Files with constraints
-
-Every MJCF file of nine packages that MuJoCo 4.0.0 compiles and that has constraints, by `python3 tests/mjcf/contact.py --all --write`:
-steps with all constraints beside `mj_step`, by Euler, in 4 states of a motion. What is left out is off on both sides. See [contact](contact.md).
-
-* Equal: one step differs by at most 1e-10 of the largest rate, and the contacts after it (points, normals, forces, moments) by at most 1e-8.
-* Steps: the difference after 1000 steps over that of two MuJoCo rollouts whose starts differ by one unit in the last place; 10 are allowed, 30
-  with a free body.
-
-"""
 
 
 def main():
@@ -78,7 +69,7 @@ def main():
     parser.add_argument("--all", action="store_true", help="every file of the packages")
     parser.add_argument("--states", type=int, default=STATES, help=f"states of each model [default: {STATES}]")
     parser.add_argument("--integrator", choices=["Euler", "implicitfast", "RK4"], help="only this one")
-    parser.add_argument("--write", action="store_true", help="writes docs/contact-files.md; with --all")
+    parser.add_argument("--write", action="store_true", help="records the verdicts; with --all")
     parser.add_argument("--leave-out", nargs="*", default=["constraint", "solver", "contact"], help="kinds of constraints that are left out here, of files that have them")
     parser.add_argument("--speed", nargs="*", metavar="FILE", help="time steps of generated code, of these files [default: MODELS]")
     arguments = parser.parse_args()
@@ -127,37 +118,43 @@ def is_equal(row):
 
 
 def every(arguments):
-    """All files of the packages: a row each. Returns 1 if one step of a file differs."""
+    """All files of the packages: a row each. Returns 1 if a verdict is not the recorded one."""
     arguments.states = min(arguments.states, ALL_STATES)
-    verdicts, rows, differs = collections.Counter(), [], False
+    counts, found = collections.Counter(), {}
     for package, folder in packages(argparse.Namespace(sample=False, only="")):
+        files = found[package] = {"files": {}}
         for path in mjcf_files(folder):
-            name, lost, text = f"{package} {path.relative_to(folder)}", "", ""
             try:
                 row = measure(path, "Euler", arguments)
                 if row is None:
                     continue
-                nv, contacts, count, _, worst, forces, many, _, lost = row
-                equal = worst <= ONE_STEP and forces <= FORCES
-                differs |= not equal
-                verdict = ("equal" if equal else "differs") + (" without" if lost else "")
-                text = f"{nv} | {contacts} | {count} | {worst:.0e} | {forces:.0e} | {'' if many is None else f'{many:.2g}'}"
+                one = finding(row)
             except (RuntimeError, subprocess.TimeoutExpired) as error:
                 if str(error).startswith("MuJoCo"):
                     continue
                 if "found no constraint" in str(error):
                     continue
                 is_slow = isinstance(error, subprocess.TimeoutExpired)
-                verdict, lost, text = "refused", f"no answer in {LONGEST} s" if is_slow else reason(error), " | | | | | "
-            verdicts[verdict] += 1
-            rows.append(f"| {name} | {text} | {verdict} {lost} |")
-            print(rows[-1], flush=True)
-    counts = ", ".join(f"{count} {verdict} something" if verdict.endswith("without") else f"{count} {verdict}" for verdict, count in sorted(verdicts.items()))
-    print(counts)
+                one = {"verdict": f"refused: no answer in {LONGEST} s" if is_slow else f"refused: {reason(error)}", "without": ""}
+            name = path.relative_to(folder).as_posix()
+            files["files"][name] = one
+            counts[one["verdict"].partition(":")[0]] += 1
+            print(package, name, ", ".join(f"{key} {value}" for key, value in one.items() if value not in (None, "")), flush=True)
+    print(", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items())))
     if arguments.write:
-        table = "| file | freedoms | contacts | rows | one step | forces | steps | verdict |\n|---|--:|--:|--:|--:|--:|--:|---|\n"
-        PAGE.write_text(HEAD + f"Together: {counts}.\n\n" + table + "\n".join(rows) + "\n")
-    return int(differs)
+        verdicts.write("contact", found)
+    changes = verdicts.changed("contact", found, ("verdict", "without"))
+    print(*changes, sep="\n", end="\n" if changes else "")
+    return int(bool(changes))
+
+
+def finding(row):
+    """What verdicts.py keeps of a row of `measure`; differences have one digit, and infinite ones are words."""
+    nv, contacts, rows, _, worst, forces, many, _, lost = row
+    verdict = ("equal" if worst <= ONE_STEP and forces <= FORCES else "differs") + (" without" if lost else "")
+    numbers = {"one_step": f"{worst:.0e}", "forces": f"{forces:.0e}", "steps": "" if many is None else f"{many:.2g}"}
+    numbers = {key: float(text) if text and math.isfinite(float(text)) else text or None for key, text in numbers.items()}
+    return {"verdict": verdict, "without": lost, "freedoms": int(nv), "contacts": int(contacts), "rows": int(rows), **numbers}
 
 
 def prepare(path, integrator):

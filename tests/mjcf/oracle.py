@@ -6,7 +6,7 @@
     python3 tests/mjcf/oracle.py --only robosuite packages whose name contains a word
     python3 tests/mjcf/oracle.py --file F.xml     one file
     python3 tests/mjcf/oracle.py --generated      a dozen files, by generated code
-    python3 tests/mjcf/oracle.py --write          also writes docs/mjcf-files.md
+    python3 tests/mjcf/oracle.py --write          also records the verdicts in docs/site/data/mjcf.json, and docs/mjcf-files.md
 
 For each file that MuJoCo compiles: masses, centres of mass and inertias of all bodies, armature, damping, friction, stiffness,
 rest and limits of all joints but free ones (nothing where a flag turns it off), and in random states the mass matrix, the bias force (inverse dynamics
@@ -23,7 +23,7 @@ Every command then runs on the file (tests/every_command.py): no panic, document
 Packages are downloaded, not installed: their models are unpacked into target/mjcf. MuJoCo goes into a virtual environment
 there, with the versions of requirements.txt.
 
-Exit status: 0 if every file that MuJoCo compiles is read and every number agrees, else 1.
+Exit status: 0 if every file that MuJoCo compiles is read, every number agrees, and every verdict is the recorded one, else 1.
 """
 
 import argparse
@@ -39,6 +39,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+import verdicts  # noqa: E402
 from every_command import complaints  # noqa: E402
 from programs import build_command, build_example, evaluated, example  # noqa: E402
 from virtual_environment import python_of  # noqa: E402
@@ -47,7 +48,6 @@ REPOSITORY = HERE.parent.parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
 PLACE = TARGET / "mjcf"
 HELPER = example("dynamics")
-TABLE = REPOSITORY / "docs" / "mjcf-files.md"
 ENDINGS = {".xml", ".mjcf", ".stl", ".obj", ".msh", ".png", ".skn", ".bin", ".jpg", ".hf"}
 # Those that simulate.py moves, and of which code is generated.
 MODELS = {
@@ -101,10 +101,13 @@ def main():
     print("largest differences: " + ", ".join(f"{key} {value:.1e}" for key, value in sorted(worst.items())))
     print("outside of every comparison: " + "; ".join(outside()))
     print("numbers of things: " + ", ".join(f"{key} {value}" for key, value in sorted(counts.items())))
+    found = {name: record(files) for name, files in rows.items()}
     if arguments.write:
-        write(rows, worst, counts)
+        verdicts.write("mjcf", found)
+    changes = verdicts.changed("mjcf", found)
+    print(*changes, sep="\n", end="\n" if changes else "")
     good = all(verdict.startswith(GOOD) for all_rows in rows.values() for _, verdict, *_ in all_rows)
-    sys.exit(not good)
+    sys.exit(not good or bool(changes))
 
 
 # Verdicts that are no mistake.
@@ -123,7 +126,7 @@ def parse():
     parser.add_argument("--only", default="", help="only packages whose name contains this")
     parser.add_argument("--file", help="only this file")
     parser.add_argument("--generated", action="store_true", help="a dozen files, by generated code")
-    parser.add_argument("--write", action="store_true", help="write the table of files")
+    parser.add_argument("--write", action="store_true", help="record the verdicts of the packages that are read")
     return parser.parse_args()
 
 
@@ -400,25 +403,16 @@ def joints(model, robot, armature, differ, np):
             differ("limits", 1, 0, 1.0)
 
 
-def write(rows, worst, things):
-    """The table for people."""
-    out = ["# MJCF files of Python packages", "", "Written by `python3 tests/mjcf/oracle.py --write`; [mjcf.md](mjcf.md) says what is compared.", ""]
-    out += ["| package | files | MuJoCo compiles | read here | equal |", "| --- | ---: | ---: | ---: | ---: |"]
-    total = [0, 0, 0, 0]
-    for name, files in rows.items():
-        compiled = [row for row in files if not row[1].startswith("refused by MuJoCo")]
-        read = [row for row in compiled if not row[1].startswith("refused")]
-        counts = [len(files), len(compiled), len(read), sum(row[1] == "equal" for row in read)]
-        total = [a + b for a, b in zip(total, counts)]
-        out.append("| " + " | ".join([name, *map(str, counts)]) + " |")
-    out.append("| " + " | ".join(["**all**", *map(str, total)]) + " |")
-    out += ["", "Largest differences: " + ", ".join(f"{key} {value:.1e}" for key, value in sorted(worst.items())) + ".", ""]
-    out += ["Compared: " + ", ".join(f"{key} {value}" for key, value in sorted(things.items())) + ".", ""]
-    out += ["Files that MuJoCo refuses are parts of others, or their meshes are not in the package.", ""]
-    for name, files in rows.items():
-        out += [f"## {name}", "", "| file | verdict |", "| --- | --- |"]
-        out += [f"| {file} | {verdict.replace('|', '/')} |" for file, verdict, *_ in files] + [""]
-    TABLE.write_text("\n".join(out))
+def record(files):
+    """What verdicts.py keeps of a package: the largest differences of its equal files, counts of things, and the verdicts."""
+    worst, things = collections.Counter(), collections.Counter()
+    for _, verdict, numbers, counts in files:
+        things.update(counts)
+        if verdict == "equal":
+            for key, value in numbers.items():
+                worst[key] = max(worst[key], float(f"{value:.1e}"))
+    compared = {key: int(value) for key, value in sorted(things.items())}
+    return {"largest_differences": dict(sorted(worst.items())), "compared": compared, "files": {file: {"verdict": verdict} for file, verdict, *_ in files}}
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@
     python3 tests/sdf/oracle.py               the files here and those of packages.txt (0.2 GB of downloads)
     python3 tests/sdf/oracle.py --sample      the files here and Drake's own, as the checks do
     python3 tests/sdf/oracle.py --file F.sdf  one file
-    python3 tests/sdf/oracle.py --write       also writes the table in docs/sdf.md
+    python3 tests/sdf/oracle.py --write       also records the verdicts in docs/site/data/sdf.json, and their summary in docs/sdf.md
 
 For each file that Drake reads: masses, centres of mass and inertias of all links, limits and damping of all joints with one
 coordinate, and in random states the mass matrix, the bias force (inverse dynamics without acceleration), and positions and
@@ -16,7 +16,8 @@ A file with loops is read without the joints that close them: Drake gets it with
 file without its <inertial>.
 
 Drake goes into a virtual environment in target/sdf, with the versions of requirements.txt; other packages are downloaded,
-not installed. Exit status: 0 if every file that Drake reads is read and every number agrees, else 1.
+not installed. Exit status: 0 if every file that Drake reads is read, every number agrees, and every verdict is the recorded
+one, else 1.
 """
 
 import argparse
@@ -33,6 +34,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+import verdicts  # noqa: E402
 from every_command import complaints  # noqa: E402
 from programs import build_command, build_example, evaluated, example  # noqa: E402
 from virtual_environment import python_of  # noqa: E402
@@ -41,8 +43,6 @@ REPOSITORY = HERE.parent.parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
 PLACE = TARGET / "sdf"
 HELPER = example("dynamics")
-PAGE = REPOSITORY / "docs" / "sdf.md"
-BEGIN, END = "<!-- files: written by tests/sdf/oracle.py --write -->", "<!-- end of files -->"
 ENDINGS = {".sdf", ".config"}
 STATES = 3
 FUNCTIONS = ["mass_matrix", "inverse_dynamics", "placements"]
@@ -62,31 +62,39 @@ def main():
         verdict, numbers = compare(Path(arguments.file))
         print(verdict, *(f"{name}: {value:.1e}" for name, value in sorted(numbers.items())), sep="\n  ")
         sys.exit(not verdict.startswith("equal"))
-    rows, worst = [], collections.Counter()
+    found, worst = {}, collections.Counter()
     for name, folder in [("files of tests/sdf", HERE / "models"), *packages(arguments)]:
+        own = collections.Counter()
+        found[name] = {"largest_differences": {}, "files": {}}
         for file in sorted(folder.rglob("*.sdf")):
             verdict, numbers = compare(file)
             # Every command reads the file as it is.
             wrong = complaints(file) if verdict.startswith("equal") else []
             verdict = f"differs: {'; '.join(wrong)}" if wrong else verdict
-            rows.append((name, file.relative_to(folder), verdict))
+            found[name]["files"][file.relative_to(folder).as_posix()] = {"verdict": verdict}
             print(f"{name}: {file.name}: {verdict}", *(f"{key} {value:.1e}" for key, value in numbers.items() if value > BOUND), flush=True)
             if verdict.startswith("equal"):
-                worst |= collections.Counter(numbers)
-    counts = collections.Counter(re.split("[:,]", verdict)[0] for *_, verdict in rows)
+                own |= collections.Counter(numbers)
+        worst |= own
+        found[name]["largest_differences"] = {key: float(f"{value:.1e}") for key, value in sorted(own.items())}
+    all_verdicts = [one["verdict"] for package in found.values() for one in package["files"].values()]
+    counts = collections.Counter(re.split("[:,]", verdict)[0] for verdict in all_verdicts)
     summary = ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items()))
     summary += "; largest differences: " + ", ".join(f"{key} {value:.1e}" for key, value in sorted(worst.items()))
     print(summary)
     if arguments.write:
-        write(rows, summary)
-    sys.exit(any(not verdict.startswith(("equal", "refused by", "refused, ")) for *_, verdict in rows))
+        verdicts.write("sdf", found)
+    changes = verdicts.changed("sdf", found)
+    print(*changes, sep="\n", end="\n" if changes else "")
+    good = all(verdict.startswith(("equal", "refused by", "refused, ")) for verdict in all_verdicts)
+    sys.exit(not good or bool(changes))
 
 
 def parse():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--sample", action="store_true", help="only the packages marked so")
     parser.add_argument("--file", help="only this file")
-    parser.add_argument("--write", action="store_true", help="write the table of files")
+    parser.add_argument("--write", action="store_true", help="record the verdicts of the packages that are read")
     return parser.parse_args()
 
 
@@ -349,15 +357,6 @@ def first_line(text, path):
     """The first finding, without the place in the file."""
     line = (text.strip().splitlines() or [""])[0].replace(str(path), "…").replace(str(path.parent), "…")
     return re.sub(r"^.*?error: |At XML path \S+: ", "", line)[:120]
-
-
-def write(rows, summary):
-    """The table of files in the page."""
-    out = [BEGIN, f"{summary}.", "", "| package | file | verdict |", "| --- | --- | --- |"]
-    out += [f"| {name} | {file} | {verdict.replace('|', '/')} |" for name, file, verdict in rows]
-    text = PAGE.read_text()
-    before, after = text[: text.index(BEGIN)], text[text.index(END) :]
-    PAGE.write_text(before + "\n".join(out) + "\n" + after)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ velocities are v_p = G v with a constant G. So tau = G^T tau_p, M = G^T M_p G an
 import contextlib
 import math
 import os
+from pathlib import Path
 
 import numpy
 import pinocchio as pin
@@ -63,7 +64,7 @@ class Engine:
                 arguments = [pin.JointModelFreeFlyer()] if floating else []
                 self.model = pin.buildModelFromUrdf(str(path), *arguments)
             except Exception as error:  # the binding raises several classes
-                raise Refused(str(error).strip().splitlines()[0][:120]) from None
+                raise Refused(str(error).replace(str(path), Path(path).name).strip().splitlines()[0][:120]) from None
         self.data = self.model.createData()
         moving = {joint["joint"]: joint for joint in joints if joint["kind"] != "fixed"}
         for joint in moving.values():

@@ -5,6 +5,7 @@
     python3 tests/shipped/shipped.py --sample           a few of them, as CI does
     python3 tests/shipped/shipped.py --only dexmate     packages whose name contains a word
     python3 tests/shipped/shipped.py --json FILE        the table for programs, too
+    python3 tests/shipped/shipped.py --write            records the verdicts in docs/site/data/shipped.json
 
 For each file: is it usable, and if not, why? Is it a robot? A robot is a file in which a joint moves a mass, as this project
 reads it, or as Pinocchio does where this project refuses it. For each usable robot, on a fixed and on a floating base: inverse dynamics, mass matrix and forward dynamics against Pinocchio in random states.
@@ -12,7 +13,7 @@ reads it, or as Pinocchio does where this project refuses it. For each usable ro
 Packages are downloaded, not installed: only their URDF files are unpacked, into target/shipped. Pinocchio goes into a
 virtual environment there, with the versions of requirements.txt.
 
-Exit status: 0 if every refusal is listed in refused.txt and every number agrees, else 1.
+Exit status: 0 if every refusal is listed in refused.txt, every number agrees, and every verdict is the recorded one, else 1.
 """
 
 import argparse
@@ -29,6 +30,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+import verdicts  # noqa: E402
 from every_command import complaints  # noqa: E402
 from programs import COMMAND, build_command  # noqa: E402
 
@@ -237,6 +239,32 @@ def verdict(entry, listed):
     return wrong
 
 
+def record(tasks, entries, listed):
+    """What verdicts.py keeps of these files: for each a verdict, and the option that reads a file that is refused."""
+    found = {}
+    for (package, path), entry in zip(tasks, entries):
+        one = {"verdict": in_words(entry, listed).replace(str(path.parent), "…")}
+        if entry.get("option"):
+            one["option"] = entry["option"]
+        found.setdefault(package, {"files": {}})["files"][path.relative_to(PLACE / "files" / package).as_posix()] = one
+    return found
+
+
+def in_words(entry, listed):
+    """The verdict about a file, which begins with its kind."""
+    if not entry["usable"]:
+        return f"refused: {entry['reason']}"
+    wrong = [sentence.removeprefix(entry["file"]).removeprefix(":").removeprefix(",").strip() for sentence in verdict(entry, listed)]
+    if wrong:
+        return f"differs: {'; '.join(wrong)}"
+    if not entry["robot"]:
+        return "no moving mass"
+    reasons = {base: re.sub(r" \[.*| \(.*", "", entry[base]["not_compared"]) for base in ("fixed", "floating") if "not_compared" in entry[base]}
+    if len(reasons) == 2:
+        return f"not compared: {reasons['fixed']}"
+    return next((f"equal, but not compared on a {base} base: {reason}" for base, reason in reasons.items()), "equal")
+
+
 def table(entries):
     """A line per package, then totals."""
     kinds = {}
@@ -276,6 +304,7 @@ def main():
     parser.add_argument("--sample", action="store_true", help="only the packages marked `sample`")
     parser.add_argument("--only", help="only packages whose name contains this")
     parser.add_argument("--json", type=Path, help="write the entries of all files here")
+    parser.add_argument("--write", action="store_true", help="record the verdicts of the packages that are read")
     arguments = parser.parse_args()
     ensure_packages()
     sys.path.insert(0, str(HERE))
@@ -294,6 +323,10 @@ def main():
     listed = {line.partition("  ")[0] for line in (HERE / "refused.txt").read_text().splitlines() if line and not line.startswith("#")}
     table(entries)
     wrong = [sentence for entry in entries for sentence in verdict(entry, listed)]
+    found = record(tasks, entries, listed)
+    if arguments.write:
+        verdicts.write("shipped", found)
+    wrong += verdicts.changed("shipped", found, ("verdict", "option"))
     for sentence in wrong:
         print(sentence)
     if arguments.json:
