@@ -9,7 +9,8 @@ from environment import REPOSITORY
 PLACE = REPOSITORY / "docs" / "speed"
 README, SPEED, BATCHES_PAGE = (REPOSITORY / name for name in ("README.md", "docs/speed.md", "docs/batches.md"))
 DOCUMENTS = (README, SPEED, BATCHES_PAGE)
-BLOCK = re.compile(r"(<!-- speed: ([a-z ]+) -->)(.*?)(<!-- /speed -->)", re.DOTALL)
+# A sentence or a picture begins on its own line: Markdown takes the rest of a line that begins with a comment for HTML.
+BLOCK = re.compile(r"(<!-- speed: ([a-z ]+) -->(?:\n(?=\w|!\[))?)(.*?)(<!-- /speed -->)", re.DOTALL)
 FILE = re.compile(r"speed/([0-9][0-9a-z-]*\.json)")
 
 BUNDLED = ["ur5_like", "panda_like", "quadruped", "humanoid"]
