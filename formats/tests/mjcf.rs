@@ -196,7 +196,7 @@ fn dynamics_that_are_not_read_are_warnings() {
         option("density=\"1000\" wind=\"1 0 0\""),
         option("viscosity=\"1\"").replace("size=\"1\"", "size=\"1\" fluidshape=\"ellipsoid\""),
         joint("type=\"free\" springdamper=\"1 1\""),
-        joint("stiffness=\"1 2\""),
+        joint("type=\"free\" damping=\"1 2\""),
         joint("stiffness=\"1\" springyield=\"0.1\""),
         joint("type=\"free\" frictionloss=\"1\""),
         joint("actuatorgravcomp=\"true\" actuatorfrcrange=\"-1 1\""),
@@ -207,6 +207,21 @@ fn dynamics_that_are_not_read_are_warnings() {
         assert_eq!(codes, [Code::LostDynamics], "{text}");
     }
     assert!(accepted(&option("gravity=\"0 0 0\"")).warnings.is_empty());
+}
+
+/// Damping and stiffness of higher degree are kept, but those that are 0 or turned off.
+#[test]
+fn coefficients_of_higher_degree_are_kept() {
+    let dynamics = |attributes: &str| {
+        let joint = format!("<joint name=\"j\" {attributes}/><inertial pos=\"0 0 1\" mass=\"6\" diaginertia=\"13 10 5\"/>");
+        accepted(&world(&format!("<body name=\"a\">{joint}</body>"))).description.joints[JointId(0)].dynamics
+    };
+    let own = dynamics("damping=\"1 2 3\" stiffness=\"4 0 -5\" springref=\"90\"");
+    assert_eq!((own.damping, own.damping_terms), (Some(1.0), Some([2.0, 3.0])));
+    assert_eq!((own.stiffness, own.stiffness_terms), (Some(4.0), Some([0.0, -5.0])));
+    assert_eq!(own.rest, Some(std::f64::consts::FRAC_PI_2));
+    assert_eq!(dynamics("damping=\"1 0 0\"").damping_terms, None);
+    assert_eq!(dynamics("stiffness=\"0 2\"").stiffness_terms, Some([2.0, 0.0]));
 }
 
 /// Compensated weight, the medium, and armature of a free joint: effects of the world.

@@ -61,6 +61,7 @@ fn flags_turn_off_what_they_name() {
         armature: Some(0.1),
         stiffness: Some(4.0),
         rest: Some(20.0_f64.to_radians()),
+        ..JointDynamics::default()
     };
     assert_eq!(dynamics(&all, "h"), full);
     let spring = dynamics(&all, "s");

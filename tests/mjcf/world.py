@@ -336,13 +336,11 @@ def reduce(model, read, warned):
         if model.jnt_type[joint] == 0:
             if model.jnt_stiffness[joint] and not no_spring:
                 warned.demand("stiffness of the free joint", name, "stiffness of a free joint", "a springdamper of a free joint")
+            if model.dof_dampingpoly[dofs].any() and not no_damper:
+                warned.demand("damping of higher degree of the free joint", name, "a damping of higher degree")
             # Damping of free joints is compared below.
             if no_damper:
                 model.dof_damping[dofs] = 0
-        elif model.jnt_stiffnesspoly[joint].any() and not no_spring:
-            warned.demand("stiffness of higher degree of the joint", name, "a stiffness of higher degree")
-        elif model.dof_dampingpoly[dofs].any() and not no_damper:
-            warned.demand("damping of higher degree of the joint", name, "a damping of higher degree")
         if model.jnt_springyield[joint] > 0 and model.jnt_stiffness[joint] and not no_spring:
             warned.demand("the spring that yields of the joint", name, "a spring that yields")
         # The numbers of balls are compared elsewhere.

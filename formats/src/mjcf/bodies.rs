@@ -621,15 +621,19 @@ fn limits(
 fn dynamics(values: &Values<'_>, kind: Kind, flags: Flags, angle: &dyn Fn(f64) -> f64, log: &mut Diagnostics) -> JointDynamics {
     let [damping, stiffness] = [("damping", flags.no_damper), ("stiffness", flags.no_spring)].map(|(name, is_off)| {
         if !values.has_numbers(name) {
-            return None;
+            return [None; 3];
         }
-        let [first, second, third] = values.at_most(name, [0.0; 3], log);
-        if (second != 0.0 || third != 0.0) && !is_off {
-            let expected = format!("one coefficient: the {name} is linear, and the others are not used");
+        let numbers @ [_, second, third] = values.at_most(name, [0.0; 3], log);
+        let has_terms = (second != 0.0 || third != 0.0) && !is_off;
+        if has_terms && kind == Kind::Free {
+            let expected = format!("one coefficient: the {name} of a free joint is linear, and the others are not used");
             values.element.warning((&values.subject, name), Code::LostDynamics, format!("a {name} of higher degree"), expected, log);
         }
-        Some(first).filter(|_| !is_off)
+        numbers.map(|number| Some(number).filter(|_| !is_off))
     });
+    let terms = |[_, second, third]: [Option<f64>; 3]| Some([second?, third?]).filter(|terms| *terms != [0.0; 2]);
+    let (damping_terms, stiffness_terms) = (terms(damping), terms(stiffness));
+    let [damping, stiffness] = [damping[0], stiffness[0]];
     let friction = values.number("frictionloss", log).filter(|_| !flags.no_friction);
     let armature = values.number("armature", log);
     if stiffness.is_some_and(|k| k != 0.0) && values.number("springyield", log).is_some_and(|most| most > 0.0) {
@@ -639,7 +643,8 @@ fn dynamics(values: &Values<'_>, kind: Kind, flags: Flags, angle: &dyn Fn(f64) -
     if kind != Kind::Free {
         // A ball joint is relaxed at the identity.
         let rest = if kind == Kind::Ball { None } else { values.number("springref", log).map(angle) };
-        return JointDynamics { damping, friction, armature, stiffness, rest: rest.filter(|_| stiffness.is_some()) };
+        let rest = rest.filter(|_| stiffness.is_some());
+        return JointDynamics { damping, damping_terms, friction, armature, stiffness, stiffness_terms, rest };
     }
     let lost = [
         ("frictionloss", friction, "none, or functions with constraints, which alone keep it"),

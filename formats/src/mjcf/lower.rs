@@ -73,7 +73,12 @@ pub(crate) const KEPT: &str = "kept for scenes that turn on such forces; no part
 /// Reports the numbers of a joint that only effects use, under the effects' names for them.
 fn keep_dynamics(joint: &bodies::Joint<'_>, name: &str, log: &mut Diagnostics) {
     let own = joint.dynamics;
+    let [damping, stiffness] = [own.damping_terms, own.stiffness_terms].map(|terms| [0, 1].map(|k| terms.map(|own| own[k])));
     let numbers = [
+        ("joint damping, quadratic", "damping", damping[0]),
+        ("joint damping, cubic", "damping", damping[1]),
+        ("joint stiffness, quadratic", "stiffness", stiffness[0]),
+        ("joint stiffness, cubic", "stiffness", stiffness[1]),
         ("dynamics damping", "damping", own.damping),
         ("dynamics friction", "frictionloss", own.friction),
         ("joint armature", "armature", own.armature),

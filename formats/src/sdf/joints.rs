@@ -329,7 +329,7 @@ fn dynamics(axis: &Element, about: &Subject, log: &mut Diagnostics) -> JointDyna
             tag.warning((about, name), Code::Negative, found, "zero or more; used as written", log);
         }
     }
-    JointDynamics { damping, friction, armature: None, stiffness, rest: rest.filter(|_| stiffness.is_some()) }
+    JointDynamics { damping, friction, stiffness, rest: rest.filter(|_| stiffness.is_some()), ..JointDynamics::default() }
 }
 
 fn mimic<'a>(axis: &'a Element, scope: usize, about: &Subject, log: &mut Diagnostics) -> Option<Mimic<'a>> {

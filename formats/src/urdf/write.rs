@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use articulated_core::description::{Description, Inertial, Joint, JointKind, LinkId, Origin};
 
-/// The robot as a URDF, without collision geometry and appearance. Every number is printed so that
+/// The robot as a URDF, without collision geometry, appearance, and dampings and stiffnesses of
+/// higher degree, which a URDF does not have. Every number is printed so that
 /// the same double is read again.
 #[must_use]
 pub fn write(description: &Description) -> String {

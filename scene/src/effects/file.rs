@@ -1,7 +1,7 @@
 //! Numbers of effects in a robot's file: in a URDF, `<dynamics>` and `<limit>`.
 
 use articulated_core::description::{ById, Joint, JointId, JointKind};
-use articulated_core::effect::{Effect, EffectId, effects};
+use articulated_core::effect::{Effect, EffectId, Zeros, effects};
 use articulated_formats::world::World;
 
 use super::collision;
@@ -12,7 +12,8 @@ const ON_LINKS: [(EffectId, &str); 3] =
     [(EffectId::gravity_compensation, "gravcomp"), (EffectId::box_drag, "medium"), (EffectId::added_mass, "armature of the free joint")];
 
 /// Effects on joints that `effects."*" = "file"` requests too.
-const ON_JOINTS: [EffectId; 3] = [EffectId::damping, EffectId::spring, EffectId::armature];
+const ON_JOINTS: [EffectId; 5] =
+    [EffectId::damping, EffectId::polynomial_damping, EffectId::spring, EffectId::polynomial_spring, EffectId::armature];
 
 /// Whether a file's numbers for this effect are of a smooth force, or of an inertia.
 pub(super) fn is_smooth(effect: EffectId) -> bool {
@@ -22,9 +23,10 @@ pub(super) fn is_smooth(effect: EffectId) -> bool {
 /// The effects that `effects."*" = "file"` turns on, of those that the file has.
 pub fn smooth_in_file(joints: &ById<JointId, Joint>, world: &World) -> impl Iterator<Item = &'static Effect> {
     effects().iter().filter(|row| is_smooth(row.id)).filter(|row| {
-        // The first field is the strength of each.
-        let strength = row.fields.first().and_then(|field| tag(row.id, field.name));
-        let of_joint = |joint: &Joint| strength.and_then(|tag| number(joint, tag)).is_some_and(|number| number != 0.0);
+        // Fields without which it vanishes are the strength of each.
+        let strengths = row.fields.iter().filter(|field| field.zeros != Zeros::Count).filter_map(|field| tag(row.id, field.name));
+        let tags: Vec<&str> = strengths.collect();
+        let of_joint = |joint: &Joint| tags.iter().filter_map(|tag| number(joint, tag)).any(|number| number != 0.0);
         joints.iter().any(of_joint) || world.effects.iter().any(|(own, _)| own.effect == row.id)
     })
 }
@@ -55,10 +57,14 @@ pub(crate) fn sources(row: &Effect) -> impl Iterator<Item = &'static str> {
 pub(crate) fn tag(effect: EffectId, field: &str) -> Option<&'static str> {
     match (effect, field) {
         (EffectId::damping, "damping") => Some("dynamics damping"),
+        (EffectId::polynomial_damping, "quadratic") => Some("joint damping, quadratic"),
+        (EffectId::polynomial_damping, "cubic") => Some("joint damping, cubic"),
         (EffectId::friction, "friction") => Some("dynamics friction"),
         (EffectId::armature, "inertia") => Some("joint armature"),
         (EffectId::spring, "stiffness") => Some("joint stiffness"),
-        (EffectId::spring, "rest") => Some("joint springref"),
+        (EffectId::spring | EffectId::polynomial_spring, "rest") => Some("joint springref"),
+        (EffectId::polynomial_spring, "quadratic") => Some("joint stiffness, quadratic"),
+        (EffectId::polynomial_spring, "cubic") => Some("joint stiffness, cubic"),
         (EffectId::limit, "lower") => Some("limit lower"),
         (EffectId::limit, "upper") => Some("limit upper"),
         (EffectId::motor, "torque") => Some("limit effort"),
@@ -80,6 +86,10 @@ pub(super) fn before_the_gear(effect: EffectId, filled: &mut [Filled]) {
 pub(crate) fn number(joint: &Joint, tag: &str) -> Option<f64> {
     let number = match tag {
         "dynamics damping" => joint.dynamics.damping?,
+        "joint damping, quadratic" => joint.dynamics.damping_terms?[0],
+        "joint damping, cubic" => joint.dynamics.damping_terms?[1],
+        "joint stiffness, quadratic" => joint.dynamics.stiffness_terms?[0],
+        "joint stiffness, cubic" => joint.dynamics.stiffness_terms?[1],
         "dynamics friction" => joint.dynamics.friction?,
         "joint armature" => joint.dynamics.armature?,
         "joint stiffness" => joint.dynamics.stiffness?,

@@ -252,7 +252,15 @@ impl Editing<'_> {
         let tags = |e: &Applied| {
             let dynamics = description.joints[*joints.get(e.on.as_str())?].dynamics;
             // Numbers of the file by their index among those of the effect.
+            let [damping, stiffness] =
+                [dynamics.damping_terms, dynamics.stiffness_terms].map(|terms| [0, 1].map(|k| terms.map(|own| own[k])));
             let numbers: &[(usize, &str, Option<f64>)] = match e.effect {
+                EffectId::polynomial_damping => &[(0, "joint damping, quadratic", damping[0]), (1, "joint damping, cubic", damping[1])],
+                EffectId::polynomial_spring => &[
+                    (0, "joint stiffness, quadratic", stiffness[0]),
+                    (1, "joint stiffness, cubic", stiffness[1]),
+                    (2, "joint springref", dynamics.rest),
+                ],
                 EffectId::damping => &[(0, "dynamics damping", dynamics.damping)],
                 EffectId::friction => &[(0, "dynamics friction", dynamics.friction)],
                 EffectId::armature => &[(0, "joint armature", dynamics.armature)],

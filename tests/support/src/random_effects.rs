@@ -52,6 +52,7 @@ fn can_have(model: &Model<f64>, effect: EffectId, i: BodyId) -> bool {
 /// Numbers that make the effect felt on a ball joint.
 fn on_ball(random: &mut Random, effect: EffectId) -> Vec<f64> {
     match effect {
+        EffectId::polynomial_spring => (0..6).map(|_| random.within(0.2, 2.0)).collect(),
         EffectId::spring => (0..5).map(|_| random.within(0.2, 2.0)).collect(),
         // Most bounds are passed.
         EffectId::limit => vec![0.4, random.within(0.2, 2.0), random.within(0.2, 2.0)],

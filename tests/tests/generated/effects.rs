@@ -120,12 +120,18 @@ const ON_JOINTS: [(EffectId, &[f64]); 6] = [
     (EffectId::motor, &[0.8, 300.0, 100.0, 0.9, 1e-3]),
 ];
 
+/// Those of higher degree, which are with all others and in no subset: they double the subsets.
+const OF_HIGHER_DEGREE: [(EffectId, &[f64]); 2] =
+    [(EffectId::polynomial_damping, &[0.2, -0.1]), (EffectId::polynomial_spring, &[3.0, 5.0, 0.1])];
+
 const JOINTS: [&str; 3] = ["yaw", "elbow", "wrist"];
 
-/// All subsets of the effects on joints.
+/// A subset of the effects on joints, by the bits of `k`; the one after the last has those of
+/// higher degree.
 fn subset(k: usize) -> Robot {
     let on = ON_JOINTS.iter().enumerate().filter(|(bit, _)| k >> bit & 1 == 1);
-    let effects = on.flat_map(|(_, (effect, parameters))| all_of(*effect, &JOINTS, parameters)).collect();
+    let more = OF_HIGHER_DEGREE.iter().filter(|_| k == 1 << ON_JOINTS.len());
+    let effects = on.map(|(_, one)| one).chain(more).flat_map(|(effect, parameters)| all_of(*effect, &JOINTS, parameters)).collect();
     let options = Options { robot: RobotOptions { effects, ..RobotOptions::default() }, ..Options::default() };
     with(format!("subset_{k}"), ARM, Base::Fixed, false, options, |f| matches!(f, "inverse_dynamics" | "forward_dynamics" | "mass_matrix"))
 }
@@ -133,7 +139,8 @@ fn subset(k: usize) -> Robot {
 #[test]
 fn every_subset_of_effects_builds_and_costs_what_the_ledger_says() {
     let on_joints = effects().iter().filter(|e| e.on == On::Joint).map(|e| e.id);
-    assert!(on_joints.eq(ON_JOINTS.iter().map(|(effect, _)| *effect)), "each has its parameters");
+    let higher = OF_HIGHER_DEGREE.map(|(effect, _)| effect);
+    assert!(on_joints.filter(|id| !higher.contains(id)).eq(ON_JOINTS.iter().map(|(effect, _)| *effect)), "each has its parameters");
     let subsets: Vec<Robot> = (0..1 << ON_JOINTS.len()).map(subset).collect();
     let mut out = String::from(
         "# Operations of an arm with three joints subject to each subset of the effects on joints: mul+add of each function.\n",
@@ -169,6 +176,7 @@ fn every_subset_of_effects_builds_and_costs_what_the_ledger_says() {
     );
     assert_eq!(cost(forces, "mass_matrix"), (0, 0), "forces do not change the mass matrix");
     assert_eq!(cost(motor, "inverse_dynamics"), (0, 0), "motors do not change inverse dynamics");
+    let subsets: Vec<Robot> = subsets.into_iter().chain([subset(1 << ON_JOINTS.len())]).collect();
     let named: Vec<(&str, &Generated)> = subsets.iter().map(|r| (r.name.as_str(), &r.generated)).collect();
     let program = Program::build(&named, &[]);
     println!("compiled in {:.1?}", program.time);

@@ -329,13 +329,19 @@ impl Limit {
 pub struct JointDynamics {
     /// Viscous damping, N·m·s/rad or N·s/m.
     pub damping: Option<f64>,
+    /// Damping per square and per cube of the rate, N·m·s²/rad² or N·s²/m², and N·m·s³/rad³ or
+    /// N·s³/m³.
+    pub damping_terms: Option<[f64; 2]>,
     /// Coulomb friction, N·m or N.
     pub friction: Option<f64>,
     /// Inertia of the rotor, seen behind the gear, kg·m² or kg.
     pub armature: Option<f64>,
     /// Stiffness of a spring, N·m/rad or N/m.
     pub stiffness: Option<f64>,
-    /// The coordinate at which the spring is slack, rad or m; `None` with a stiffness: zero.
+    /// Stiffness per square and per cube of the distance from rest, N·m/rad² or N/m², and N·m/rad³
+    /// or N/m³.
+    pub stiffness_terms: Option<[f64; 2]>,
+    /// The coordinate at which the springs are slack, rad or m; `None` with a stiffness: zero.
     pub rest: Option<f64>,
 }
 

@@ -20,6 +20,8 @@ mod gravity_compensation;
 mod limit;
 mod motor;
 mod places;
+mod polynomial_damping;
+mod polynomial_spring;
 mod range;
 mod spring;
 mod station;
@@ -456,8 +458,11 @@ macro_rules! effects {
 effects! {
     Inertia armature true "M_ii += I n²: a rotor of inertia I behind a gear n, that rotates about the joint's axis alone" "Featherstone 2008, §9.6";
     ForceOfRate damping false "−d v" "Rayleigh 1873";
+    ForceOfRate polynomial_damping false "−d₂ |v| v − d₃ v³, beside `damping`" "MuJoCo documentation, damping of joints";
     ForceOfRate friction false "−μ v/√(v² + s²): Coulomb friction, smooth for rates below s" "Coulomb 1781; smoothed as in Hairer & Wanner 1996";
     ForceOfCoordinate spring true "−k (q − q₀); on a ball −k log(q₀⁻¹ q), the rotation vector in axes of the child" "Hooke 1678";
+    ForceOfCoordinate polynomial_spring true "x = q − q₀: −k₂ x² − k₃ x³, beside `spring`; on a ball −(k₂ |φ| + k₃ |φ|²) φ, φ = log(q₀⁻¹ q)"
+        "MuJoCo documentation, stiffness of joints";
     ForceOfCoordinate limit false "∓k x max(0, 1 + c ẋ) beyond a bound, x the depth: a stop that pushes and never pulls; on a ball for the angle of the rotation"
         "Hunt & Crossley, J. Appl. Mech. 42, 1975";
     Drive motor false "τ clipped to the torque–speed line of a motor behind a gear, less (1 − η) |τ| v/√(v² + s²)"
