@@ -70,7 +70,6 @@ arm() { # where there is an emulator, which only an administrator can install, a
 browser() { # where there is Chromium, which only an administrator can install
     python3 tests/browser/pages.py --install
     python3 tests/browser/book.py --install
-    python3 tests/browser/site.py --install
 }
 
 python_package() {
@@ -118,6 +117,8 @@ step python3 tests/shipped/shipped.py --sample
 step python_package
 step browser
 rejoin
+# It installs packages where the oracles do.
+step python3 tests/browser/site.py --install
 step python3 tests/command_lines.py
 step readme_command
 printf '\nall checks passed in %d s\n' $SECONDS
