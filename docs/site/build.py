@@ -11,7 +11,7 @@
 The start page is README.md. The other pages are docs/*.md, all Markdown pages and sources that they
 link to, the Python package, and the gallery of robots: files of pinned Python packages, with what
 `articulated check` and `generate` say about them, the verdicts of docs/site/data, the times of
-docs/site/times.json, and a picture (picture.py). If docs/book/build.py is there, it writes the
+docs/site/times.json, and a picture (picture.py). Where there is Node.js, docs/book/build.py writes the
 book.
 
 The command comes from ARTICULATED_COMMAND, or cargo builds it. Python packages go into
@@ -91,7 +91,8 @@ def emptied(site):
 def book(site):
     """The book by its own program, or a page that says how to get it."""
     program = REPOSITORY / "docs" / "book" / "build.py"
-    if not program.exists():
+    if not (shutil.which("node") and shutil.which("npm") and sys.version_info >= (3, 11)):
+        say("the book is left out: it needs Node.js with npm (Debian: nodejs, npm) and Python 3.11")
         return False
     say("the book")
     if subprocess.run([sys.executable, str(program), "-o", str(site / "book")]).returncode:
@@ -167,7 +168,7 @@ def build(arguments):
     parts += [("Python", "python/reference.html")] + ([("Rust", "rust/index.html")] if arguments.reference else [])
     pages = Pages(REPOSITORY, site, parts)
     if not has_book:
-        text = "<h1>The book</h1><p>This site is built without the book. Its text is in <code>docs/book/src</code>; <code>mdbook serve docs/book</code> shows it.</p>"
+        text = "<h1>The book</h1><p>This site is built without the book. Its text is in <code>docs/book/src</code>; <code>python3 docs/book/build.py</code> writes its pages.</p>"
         write(site / "book" / "index.html", pages.page("book/index.html", "The book", text))
     say("pages")
     try:

@@ -27,7 +27,7 @@ def rows(robot, kinds, functions):
     for function in functions:
         for kind in kinds if function.name not in WITHOUT else ():
             one = Derivative(robot, by_all(kind, function.name, function.takes))
-            found[kind, function.name] = (f"{kind}_of_{function.name}", one.request, *one.sizes())
+            found[kind, function.name] = (f"{kind}_of_{function.name}", one.request, *one._sizes())
     return found
 
 
@@ -66,13 +66,13 @@ class Derivative:
         Raises:
             RuntimeError: There is no C compiler, or it refuses the code.
         """
-        one = [("derivative", self.request, *self.sizes())]
+        one = [("derivative", self.request, *self._sizes())]
         path = library(self._robot, [], tuple(as_names("flags", flags)), bool(batch), one)
         compiled = copy.copy(self)
         (compiled._native,) = load_derivatives(path, one)
         return compiled
 
-    def sizes(self):
+    def _sizes(self):
         """How many numbers each argument has, and each result."""
         return [[math.prod(shape) for _, shape, _ in ports] for ports in (self.takes, self.gives)]
 

@@ -294,7 +294,8 @@ def main():
     if options.install and not devtools.find():
         install()
     path = devtools.find()
-    missing = [name for name, there in [("Chromium (Debian: chromium)", path), ("Node.js (Debian: nodejs, npm)", shutil.which("npm"))] if not there]
+    needs = {"Chromium (Debian: chromium)": path, "Node.js (Debian: nodejs, npm)": shutil.which("npm"), "Python 3.11": sys.version_info >= (3, 11)}
+    missing = [name for name, there in needs.items() if not there]
     if missing:
         print(f"not run: the book in a browser, which needs {' and '.join(missing)}")
         return

@@ -313,7 +313,7 @@ def check_live(browser, folder):
         look("without", lambda: show([0.0] * 7, lines=[]))
         changes = [differing(a, b) for a, b in zip(seen, seen[1:])]
         assert changes[0] == 0 and min(changes[1:]) > 100, changes
-        # The same configuration has the same picture, whoever sends it.
+        # A configuration has the same picture from the program and from a POST.
         assert differing(seen[0], seen[5]) == 0 and differing(seen[2], seen[6]) == 0
         assert differing(seen[0], seen[7]) > 100 and differing(seen[0], seen[8]) == 0
         assert drawn_in(seen[4], (123, 63, 160)) > 50 and drawn_in(seen[3], (123, 63, 160)) == 0

@@ -636,7 +636,8 @@ fn dynamics(values: &Values<'_>, kind: Kind, flags: Flags, angle: &dyn Fn(f64) -
     let [damping, stiffness] = [damping[0], stiffness[0]];
     let friction = values.number("frictionloss", log).filter(|_| !flags.no_friction);
     let armature = values.number("armature", log);
-    if stiffness.is_some_and(|k| k != 0.0) && values.number("springyield", log).is_some_and(|most| most > 0.0) {
+    let has_spring = stiffness.is_some_and(|k| k != 0.0) || stiffness_terms.is_some();
+    if has_spring && values.number("springyield", log).is_some_and(|most| most > 0.0) {
         let expected = "a spring that does not: it is elastic";
         values.element.warning((&values.subject, "springyield"), Code::LostDynamics, "a spring that yields", expected, log);
     }
