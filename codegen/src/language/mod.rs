@@ -11,6 +11,7 @@ use articulated_core::lanes::Real;
 use articulated_core::model::Model;
 
 use crate::capabilities::Capabilities;
+use crate::lir::{Column, Stored, Temp};
 use crate::lir::function::Function;
 use crate::size::Bytes;
 use crate::{FunctionSpec, Options, Parameter, Request};
@@ -161,3 +162,28 @@ impl Target {
         }
     }
 }
+/// A column of a table in a turn, in Rust and in C. `argument`: numbers of an argument, by their
+/// place.
+fn in_turn(column: &Column, turn: &str, name: fn(Temp) -> String, argument: impl Fn(u32, &str) -> String) -> String {
+    let at = |first: usize, stride: usize, is_backward: bool| {
+        let moved = if stride == 1 { turn.to_owned() } else { format!("{turn} * {stride}") };
+        match (first, is_backward) {
+            (0, false) => moved,
+            (_, false) => format!("{first} + {moved}"),
+            (_, true) => format!("{first} - {moved}"),
+        }
+    };
+    match *column {
+        Column::Named(column) => format!("{}_column[{turn}]", name(column)),
+        Column::Results { region, number, first, is_backward } => {
+            format!("x{region}_results[{}][{number}]", at(first, 1, is_backward))
+        }
+        Column::Argument { argument: of, first, stride, is_backward } => argument(of, &at(first, stride, is_backward)),
+    }
+}
+
+/// The number of the turn whose results are stored in a turn.
+fn stored_turn(stored: Stored, turn: &str, turns: usize) -> String {
+    if stored.is_backward { format!("({} - {turn})", turns - 1) } else { turn.to_owned() }
+}
+

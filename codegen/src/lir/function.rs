@@ -8,7 +8,7 @@ use crate::capabilities::Capabilities;
 use crate::function_spec::{FunctionSpec, Output};
 use crate::graph::Graph;
 use crate::ledger::Entry;
-use crate::lir::lower::{Lowering, SinCosGrouping};
+use crate::lir::lower::{Lowering, SinCosGrouping, read_in_place};
 use crate::lir::pass::alias_barrier;
 use crate::lir::pass::outline::outline;
 use crate::lir::pass::pair_stores::pair_stores;
@@ -350,6 +350,7 @@ impl Plan<'_> {
         if ending == Ending::Filled && !outlined && ty == Ty::Vector(2) {
             pieces = pieces.into_iter().map(|piece| pair_stores(piece, &results)).collect();
         }
+        pieces.iter_mut().for_each(|piece| read_in_place(piece, &[]));
         let mut slots = None;
         if spills && let [piece] = pieces.as_mut_slice() {
             let (statements, found) = spill(std::mem::take(piece), ty);
@@ -375,7 +376,8 @@ impl Plan<'_> {
         let sines = SinCosGrouping { together: 1, are_powers_of_two: true, from: 0 };
         let statements = Lowering { graph, ty: Ty::States, sines, results: &results, first: 0, arguments: &self.lengths() };
         let statements = statements.stores_as_made(|_| true, false);
-        let (pieces, kept) = outline(statements, length);
+        let (mut pieces, kept) = outline(statements, length);
+        pieces.iter_mut().for_each(|piece| read_in_place(piece, &[]));
         let body = |pieces: Vec<Vec<Stmt>>, slots| {
             let (lanes, results) = (graph.lanes().clone(), results.clone());
             verified(Body { ty: Ty::States, lanes, results, pieces, kept, slots, barrier: false, is_partial: false })

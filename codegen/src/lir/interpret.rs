@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{Body, Carried, Expr, Number, Operand, Region, Slot, Stmt, Store, Table, Temp, Turns};
+use super::{Body, Carried, Column, Expr, Number, Operand, Region, Slot, Stmt, Store, Table, Temp, Turns};
 use crate::graph::{MOST, Op, Value, operation};
 
 /// The numbers of the result, and NaN where a partial body stores none; `input(argument, index)`
@@ -19,6 +19,7 @@ pub fn interpret(body: &Body, input: impl Fn(usize, usize) -> f64) -> Vec<f64> {
         out: vec![f64::NAN; numbers],
         values: HashMap::new(),
         columns: HashMap::new(),
+        results: HashMap::new(),
         slots: HashMap::new(),
         kept: vec![[f64::NAN; MOST]; body.kept],
     };
@@ -36,6 +37,8 @@ struct Machine<'a, F> {
     out: Vec<f64>,
     values: HashMap<Temp, Value>,
     columns: HashMap<Temp, Vec<Value>>,
+    /// The results of regions, turn by turn.
+    results: HashMap<u32, Vec<Vec<Value>>>,
     slots: HashMap<Slot, Value>,
     kept: Vec<Value>,
 }
@@ -103,10 +106,17 @@ impl<F: Fn(usize, usize) -> f64> Machine<'_, F> {
                     self.turn(region);
                 }
             }
-            Turns::Each { table, row, fixed, results, turns, read, stored, .. } => {
+            Turns::Each { name, table, row, fixed, results, turns, read, stored, .. } => {
+                self.results.insert(*name, Vec::new());
                 for turn in 0..*turns {
                     for (temp, column) in fixed {
-                        self.values.insert(*temp, self.columns[column][turn]);
+                        let place = column.place(turn);
+                        let value = match *column {
+                            Column::Named(name) => self.columns[&name][place],
+                            Column::Results { region, number, .. } => self.results[&region][place][number],
+                            Column::Argument { argument, .. } => [(self.input)(argument as usize, place); MOST],
+                        };
+                        self.values.insert(*temp, value);
                     }
                     for (k, temp) in row.iter().enumerate() {
                         let place = turn * row.len() + k;
@@ -118,12 +128,14 @@ impl<F: Fn(usize, usize) -> f64> Machine<'_, F> {
                     }
                     let found = self.turn(region);
                     debug_assert_eq!(found.len(), region.carried.len() + results.len());
-                    for (k, value) in found[region.carried.len()..].iter().enumerate().filter(|_| stored.is_some()) {
-                        self.out[stored.unwrap_or_default() + turn * results.len() + k] = value[0];
+                    if let Some(stored) = stored {
+                        let first = stored.of_turn(turn, (*turns, results.len()));
+                        found[region.carried.len()..].iter().enumerate().for_each(|(k, value)| self.out[first + k] = value[0]);
                     }
                     for (_, k, temp) in read.iter().filter(|(at, ..)| *at == turn) {
                         self.values.insert(*temp, found[region.carried.len() + k]);
                     }
+                    self.results.entry(*name).or_default().push(found[region.carried.len()..].to_vec());
                 }
             }
         }

@@ -1,5 +1,6 @@
 //! A graph as statements.
 
+mod in_place;
 mod regions;
 mod tables;
 
@@ -10,6 +11,8 @@ use crate::lir::order::{Step, order};
 use crate::lir::pass::rows::{Cell, Column, Group, WIDTH, groups};
 use crate::lir::pass::zeros::zeros;
 use crate::lir::{Angle, Array, Expr, Number, Operand, Rows, Stmt, Store, Temp, Ty};
+
+pub(crate) use in_place::read_in_place;
 
 /// How sines are computed.
 #[derive(Clone, Copy, Debug)]

@@ -258,18 +258,76 @@ pub enum Turns {
         table: Table,
         /// The values of a row in a turn.
         row: Vec<Temp>,
-        /// More values of a row: each with the value of [`Region::columns`] that names its column.
-        fixed: Vec<(Temp, Temp)>,
+        /// More values of a row, each with its column.
+        fixed: Vec<(Temp, Column)>,
         /// The results of a turn, operands of the body.
         results: Vec<Operand>,
         /// The number of turns.
         turns: usize,
         /// The results that are read after the region: turn, number of the result, value.
         read: Vec<(usize, usize, Temp)>,
-        /// The first place of the function's result to which all results of all turns go, one after
-        /// the other.
-        stored: Option<usize>,
+        /// The places of the function's result to which all results of all turns go.
+        stored: Option<Stored>,
+        /// Whether regions after it read its results where they are.
+        is_kept: bool,
     },
+}
+
+/// Where a region stores its results: those of a turn side by side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stored {
+    /// The first place.
+    pub first: usize,
+    /// Whether the results of the last turn are first.
+    pub is_backward: bool,
+}
+
+/// A column of a table that is not copied into it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Column {
+    /// One of [`Region::columns`], by its name.
+    Named(Temp),
+    /// A result of an earlier region: in turn k that of its turn `first` + k, or `first` − k.
+    Results {
+        /// The name of that region.
+        region: u32,
+        /// The number of the result.
+        number: usize,
+        /// Its turn for turn 0 of this region.
+        first: usize,
+        /// Whether turns go back.
+        is_backward: bool,
+    },
+    /// Numbers of an argument: in turn k number `first` + k · `stride`, or `first` − k · `stride`.
+    Argument {
+        /// Which one.
+        argument: u32,
+        /// The number of turn 0.
+        first: usize,
+        /// From turn to turn.
+        stride: usize,
+        /// Whether turns go back.
+        is_backward: bool,
+    },
+}
+
+impl Column {
+    /// The place in a turn, of results and of numbers of an argument.
+    pub(crate) fn place(self, turn: usize) -> usize {
+        let (first, step, is_backward) = match self {
+            Self::Named(_) => (0, 1, false),
+            Self::Results { first, is_backward, .. } => (first, 1, is_backward),
+            Self::Argument { first, stride, is_backward, .. } => (first, stride, is_backward),
+        };
+        if is_backward { first - turn * step } else { first + turn * step }
+    }
+}
+
+impl Stored {
+    /// The first place of a turn with so many results.
+    pub(crate) fn of_turn(self, turn: usize, (turns, results): (usize, usize)) -> usize {
+        self.first + results * if self.is_backward { turns - 1 - turn } else { turn }
+    }
 }
 
 /// Statements that run several times, once, or not at all.
@@ -505,7 +563,7 @@ impl Region {
     /// The places of the function's result that it writes.
     pub(crate) fn stores(&self) -> std::ops::Range<usize> {
         match &self.turns {
-            Turns::Each { stored: Some(first), turns, results, .. } => *first..first + turns * results.len(),
+            Turns::Each { stored: Some(stored), turns, results, .. } => stored.first..stored.first + turns * results.len(),
             _ => 0..0,
         }
     }

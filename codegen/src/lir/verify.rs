@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::{Body, Expr, Operand, Region, Stmt, Table, Temp, Turns};
+use super::{Body, Column, Expr, Operand, Region, Stmt, Table, Temp, Turns};
 use crate::graph::Op;
 
 /// Checks that every operand is defined before its use and once, that comparisons return masks and
@@ -42,6 +42,8 @@ struct Known {
     masks: HashSet<Temp>,
     /// Columns of tables, each with its length.
     columns: HashMap<Temp, usize>,
+    /// Regions whose results are read where they are: their turns, and the results of each.
+    results: HashMap<u32, [usize; 2]>,
     slots: HashSet<super::Slot>,
     kept: HashSet<usize>,
 }
@@ -83,7 +85,7 @@ impl Known {
         let is_where = matches!(region.turns, Turns::Where(_));
         let given: Vec<&Operand> = region.given().collect();
         given[..given.len() - usize::from(is_where)].iter().try_for_each(|operand| self.value(operand))?;
-        let mut known = Self { columns: self.columns.clone(), ..Self::default() };
+        let mut known = Self { columns: self.columns.clone(), results: self.results.clone(), ..Self::default() };
         known.columns.extend(region.columns.iter().map(|(name, values)| (*name, values.len())));
         let mut define = |temp: Temp| if known.values.insert(temp) { Ok(()) } else { Err(format!("{temp:?} is defined twice")) };
         region.carried.iter().map(|c| c.temp).chain(region.captured.iter().map(|(temp, _)| *temp)).try_for_each(&mut define)?;
@@ -91,7 +93,7 @@ impl Known {
             Turns::Where(mask) if !self.is_mask(mask) => return Err("it runs where no mask holds".to_owned()),
             Turns::Each { row, fixed, table, turns, .. } => {
                 row.iter().copied().chain(fixed.iter().map(|(temp, _)| *temp)).try_for_each(&mut define)?;
-                if let Some((_, column)) = fixed.iter().find(|(_, column)| self.columns.get(column) != Some(turns)) {
+                if let Some((_, column)) = fixed.iter().find(|(_, column)| !self.has(column, *turns)) {
                     return Err(format!("no column {column:?} for {turns} rows"));
                 }
                 if let Table::Values(values) = table
@@ -109,9 +111,23 @@ impl Known {
             }
         }
         region.ends().try_for_each(|operand| known.value(operand))?;
+        if let Turns::Each { name, turns, results, is_kept: true, .. } = &region.turns {
+            self.results.insert(*name, [*turns, results.len()]);
+        }
         match &region.turns {
             Turns::Until { mask: Operand::Temp(mask), .. } if !known.masks.contains(mask) => Err("it ends where no mask holds".to_owned()),
             _ => Ok(()),
+        }
+    }
+
+    fn has(&self, column: &Column, turns: usize) -> bool {
+        match *column {
+            Column::Named(name) => self.columns.get(&name) == Some(&turns),
+            Column::Results { region, number, first, is_backward } => self.results.get(&region).is_some_and(|[all, own]| {
+                let last = if is_backward { first.checked_sub(turns - 1).map(|_| first) } else { Some(first + turns - 1) };
+                number < *own && last.is_some_and(|last| last < *all)
+            }),
+            Column::Argument { first, stride, is_backward, .. } => !is_backward || first >= (turns - 1) * stride,
         }
     }
 

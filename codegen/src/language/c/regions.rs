@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::statements::{Lanes, Printer, name};
+use crate::language::{in_turn, stored_turn};
 use crate::lir::{Carried, Operand, Region, Table, Temp, Turns};
 
 impl Printer<'_> {
@@ -57,10 +58,10 @@ impl Printer<'_> {
                 let condition = if is_states { self.call("any", &mask) } else { mask.clone() };
                 let _ = writeln!(out, "    if ({condition}) {{");
             }
-            Turns::Each { name: number, table, row, fixed, results, turns, read, stored } => {
-                let (turn, is_read) = (format!("x{number}_turn"), !read.is_empty());
+            Turns::Each { name: number, table, row, fixed, results, turns, read, stored, is_kept } => {
+                let (turn, is_read) = (format!("x{number}_turn"), !read.is_empty() || *is_kept);
                 for (temp, column) in fixed {
-                    let _ = writeln!(inside, "    const {real} {} = {}_column[{turn}];", name(*temp), name(*column));
+                    let _ = writeln!(inside, "    const {real} {} = {};", name(*temp), in_turn(column, &turn, name, |argument, at| self.number_of(argument, at)));
                 }
                 if !row.is_empty() {
                     inside = self.rows(out, (table, row), (*number, &turn), *turns) + &inside;
@@ -72,8 +73,9 @@ impl Printer<'_> {
                 for (k, value) in results.iter().enumerate().filter(|_| is_read) {
                     let _ = writeln!(inside, "    x{number}_results[{turn}][{k}] = {};", self.vector(value));
                 }
-                if let Some(first) = stored {
-                    let ((array, index), width) = ((self.places)(*first), results.len());
+                if let Some(stored) = stored {
+                    let ((array, index), width) = ((self.places)(stored.first), results.len());
+                    let turn = stored_turn(*stored, &turn, *turns);
                     for (k, value) in results.iter().enumerate() {
                         let (at, value) = (format!("{} + {turn} * {width}", index + k), self.vector(value));
                         let _ = match &self.numbers.lanes {
@@ -105,12 +107,9 @@ impl Printer<'_> {
         let (real, width) = (&self.numbers.computed, row.len());
         let read = |(k, temp): (usize, &Temp)| {
             let at = format!("{turn} * {width} + {k}");
-            let value = match (table, &self.numbers.lanes) {
-                (Table::Values(_), _) => format!("x{number}_rows[{turn}][{k}]"),
-                (Table::Argument(argument), Some(Lanes { prefix, stride })) => {
-                    format!("{prefix}_load({} + ({at}) * {stride})", self.arguments[*argument as usize].name)
-                }
-                (Table::Argument(argument), None) => format!("{}[{at}]", self.arguments[*argument as usize].name),
+            let value = match table {
+                Table::Values(_) => format!("x{number}_rows[{turn}][{k}]"),
+                Table::Argument(argument) => self.number_of(*argument, &at),
             };
             format!("    const {real} {} = {value};\n", name(*temp))
         };
@@ -123,6 +122,15 @@ impl Printer<'_> {
             let _ = writeln!(out, "    }};");
         }
         row.iter().enumerate().map(read).collect()
+    }
+
+    /// A number of an argument.
+    fn number_of(&self, argument: u32, at: &str) -> String {
+        let name = &self.arguments[argument as usize].name;
+        match &self.numbers.lanes {
+            Some(Lanes { prefix, stride }) => format!("{prefix}_load({name} + ({at}) * {stride})"),
+            None => format!("{name}[{at}]"),
+        }
     }
 
     /// All carried values change at once.

@@ -5,8 +5,10 @@
 
 use std::fmt::Write;
 
+use crate::language::{in_turn, stored_turn};
 use crate::language::rust::literal::bare;
 use crate::language::rust::statements::{Printer, name, ty};
+use crate::lir::function::Argument;
 use crate::lir::{Carried, Operand, Region, Table, Temp, Turns, Ty};
 
 impl Printer<'_> {
@@ -67,10 +69,10 @@ impl Printer<'_> {
                     let _ = writeln!(out, "    if {mask} {{\n{}    }}", indented(&inside));
                 }
             }
-            Turns::Each { name: number, table, row, fixed, results, turns, read, stored } => {
-                let (turn, is_read) = (format!("x{number}_turn"), !read.is_empty());
+            Turns::Each { name: number, table, row, fixed, results, turns, read, stored, is_kept } => {
+                let (turn, is_read) = (format!("x{number}_turn"), !read.is_empty() || *is_kept);
                 for (temp, column) in fixed {
-                    let _ = writeln!(inside, "    let {} = {}_column[{turn}];", name(*temp), name(*column));
+                    let _ = writeln!(inside, "    let {} = {};", name(*temp), in_turn(column, &turn, name, |argument, at| self.number_of(argument, at)));
                 }
                 if !row.is_empty() {
                     inside = self.rows(out, (table, row), (*number, &turn)) + &inside;
@@ -85,8 +87,8 @@ impl Printer<'_> {
                     let list: Vec<String> = results.iter().map(|value| self.operand(value)).collect();
                     let _ = writeln!(inside, "    x{number}_results[{turn}] = [{}];", list.join(", "));
                 }
-                if let Some(first) = stored {
-                    self.store_turn(&mut inside, *first, results, &turn);
+                if let Some(stored) = stored {
+                    self.store_turn(&mut inside, stored.first, results, &stored_turn(*stored, &turn, *turns));
                 }
                 self.end_of_turn(&mut inside, region, |_, new| new.to_owned());
                 let turn = if is_read || stored.is_some() || !row.is_empty() || !fixed.is_empty() { &turn } else { "_" };
@@ -121,9 +123,18 @@ impl Printer<'_> {
             let read = |(k, name): (usize, &String)| format!("    let {name} = at(&{}[{turn} * {width} + {k}], part);\n", argument.name);
             return names.iter().enumerate().map(read).collect();
         }
-        let slice = ".as_flattened()".repeat(argument.lengths.len().saturating_sub(1));
+        let slice = flattened(argument);
         let _ = writeln!(out, "    let x{number}_rows = {}{slice}.as_chunks::<{width}>().0;", argument.name);
         format!("    let [{}] = x{number}_rows[{turn}];\n", names.join(", "))
+    }
+
+    /// A number of an argument.
+    fn number_of(&self, argument: u32, at: &str) -> String {
+        let argument = &self.arguments[argument as usize];
+        match self.body.ty {
+            Ty::States => format!("at(&{}[{at}], part)", argument.name),
+            _ => format!("{}{}[{at}]", argument.name, flattened(argument)),
+        }
     }
 
     /// Stores the results of a turn behind those of the turns before it.
@@ -157,6 +168,10 @@ impl Printer<'_> {
             _ => writeln!(out, "    ({}) = ({});", names.join(", "), values.join(", ")),
         };
     }
+}
+
+fn flattened(argument: &Argument) -> String {
+    ".as_flattened()".repeat(argument.lengths.len().saturating_sub(1))
 }
 
 /// The lines of a block.

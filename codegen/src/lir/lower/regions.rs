@@ -1,8 +1,9 @@
 //! Regions of a graph as statements.
 
 use super::Lowering;
+use super::in_place::read_in_place;
 use crate::graph::{CAPTURED, CARRIED, Graph, Kind, Node, NodeId, Op, ROW};
-use crate::lir::{Carried, Expr, Region, Stmt, Table, Temp, Turns};
+use crate::lir::{Array, Carried, Column, Expr, Operand, Region, Stmt, Stored, Table, Temp, Turns};
 
 impl Lowering<'_> {
     /// The number of the first value of the body of a region.
@@ -43,19 +44,24 @@ impl Lowering<'_> {
             Kind::When => Turns::Where(self.operand(rest[0])),
             Kind::ForEach { turns, row, results } => Turns::Each {
                 name: first as u32,
-                table: self.table(rest, row),
+                table: Table::Values(Vec::new()),
                 row: (0..row).map(|k| input(ROW, k)).collect(),
                 fixed: Vec::new(),
                 results: (0..results).map(|j| end(region.carried + j)).collect(),
                 turns,
                 read: Vec::new(),
                 stored: self.stored(k, region.carried, turns, results),
+                is_kept: false,
             },
         };
         let is_input = |statement: &Stmt| matches!(statement, Stmt::Let(_, Expr::Input { .. }));
+        let turns = self.with_table(turns, rest);
         let body = inner.definitions().into_iter().flatten().filter(|statement| !is_input(statement)).collect();
         let mut made = Region { turns, carried, captured, columns: Vec::new(), body, after: Vec::new() };
         made.lift_columns();
+        let ends: Vec<Operand> = made.ends().copied().collect();
+        read_in_place(&mut made.body, &ends);
+        made.forget_unread();
         for (value, node) in self.graph.nodes().iter().enumerate() {
             if node.op != Op::RegionValue || node.args[0] as usize != k {
                 continue;
@@ -77,30 +83,60 @@ impl Lowering<'_> {
 }
 
 impl Lowering<'_> {
-    /// The rows of a table: those of a whole argument, or values.
-    fn table(&self, values: &[NodeId], row: usize) -> Table {
+    /// The turns with the rows of their table: those of a whole argument, or values and columns of
+    /// arguments.
+    fn with_table(&self, mut turns: Turns, values: &[NodeId]) -> Turns {
+        let Turns::Each { table, row, fixed, .. } = &mut turns else { return turns };
         let input = |k: usize| Some(self.graph.node(values[k])).filter(|node| node.op == Op::Input).map(|node| node.args);
+        let width = row.len();
         let argument = values.first().and_then(|_| input(0)).map_or(0, |args| args[0]);
-        let is_whole = row > 0
+        let is_whole = width > 0
             && self.arguments.get(argument as usize) == Some(&values.len())
             && (0..values.len()).all(|k| input(k) == Some([argument, k as u32, 0]));
-        if is_whole { Table::Argument(argument) } else { Table::Values(values.iter().map(|id| self.operand(*id)).collect()) }
+        if is_whole {
+            *table = Table::Argument(argument);
+            return turns;
+        }
+        let column = |k: usize| self.column_of_argument(&values.iter().skip(k).step_by(width).copied().collect::<Vec<_>>());
+        let found: Vec<Option<Column>> = (0..width).map(column).collect();
+        fixed.extend(row.iter().zip(&found).filter_map(|(temp, column)| Some((*temp, (*column)?))));
+        let mut stays = found.iter().map(Option::is_none);
+        row.retain(|_| stays.next().unwrap_or(true));
+        let stays = values.iter().enumerate().filter(|(k, _)| found[k % width].is_none());
+        *table = Table::Values(stays.map(|(_, id)| self.operand(*id)).collect());
+        turns
     }
 
-    /// The first place of an array of the result that has all results of region `k`, one after the
-    /// other, which nothing else reads.
-    fn stored(&self, k: usize, carried: usize, turns: usize, results: usize) -> Option<usize> {
+    /// The numbers of one argument that these values are, at equal distances.
+    fn column_of_argument(&self, values: &[NodeId]) -> Option<Column> {
+        let input = |id: &NodeId| Some(self.graph.node(*id)).filter(|node| node.op == Op::Input).map(|node| (node.args[0], node.args[1] as usize));
+        let ((argument, first), (_, second)) = (input(values.first()?)?, input(values.get(1)?)?);
+        let is_backward = second < first;
+        let column = Column::Argument { argument, first, stride: first.abs_diff(second), is_backward };
+        let reaches = !is_backward || first >= (values.len() - 1) * (first - second);
+        let is_known = self.arguments.get(argument as usize).is_some_and(|length| *length > 1);
+        let fits = is_known && reaches && values.iter().enumerate().all(|(k, id)| input(id) == Some((argument, column.place(k))));
+        fits.then_some(column)
+    }
+
+    /// Where an array of the result has all results of region `k`, turn by turn or from the last
+    /// turn to the first, which nothing else reads.
+    fn stored(&self, k: usize, carried: usize, turns: usize, results: usize) -> Option<Stored> {
         let count = turns * results;
         if self.arguments.is_empty() || count == 0 {
             return None;
         }
         let value = |id: NodeId| Some(self.graph.node(id)).filter(|node| node.op == Op::RegionValue && node.args[0] as usize == k);
-        let is_result = |at: usize, j: usize| value(self.graph.outputs[at + j]).is_some_and(|node| node.args[1] as usize == carried + j);
-        let array = self.results.iter().find(|array| {
-            let rows = array.lengths.len() < 2 || array.lengths == [turns, results];
-            rows && array.numbers() == count && (0..count).all(|j| is_result(array.start, j))
-        })?;
-        let own = array.start..array.start + count;
+        let has = |stored: Stored| {
+            (0..count).all(|j| {
+                let place = stored.of_turn(j / results, (turns, results)) + j % results;
+                value(self.graph.outputs[place]).is_some_and(|node| node.args[1] as usize == carried + j)
+            })
+        };
+        let fits = |array: &Array| array.numbers() == count && (array.lengths.len() < 2 || array.lengths == [turns, results]);
+        let both = |array: &Array| [false, true].map(|is_backward| Stored { first: array.start, is_backward });
+        let stored = self.results.iter().filter(|array| fits(array)).flat_map(both).find(|stored| has(*stored))?;
+        let own = stored.first..stored.first + count;
         let is_used =
             self.graph.nodes().iter().flat_map(Node::operands).any(|id| value(id).is_some_and(|node| node.args[1] as usize >= carried));
         let again = self
@@ -109,7 +145,7 @@ impl Lowering<'_> {
             .iter()
             .enumerate()
             .any(|(at, id)| !own.contains(&at) && value(*id).is_some_and(|node| node.args[1] as usize >= carried));
-        (!is_used && !again).then_some(array.start)
+        (!is_used && !again).then_some(stored)
     }
 }
 

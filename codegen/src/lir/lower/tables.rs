@@ -8,11 +8,11 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::lir::{Operand, Region, Stmt, Table, Temp, Turns};
+use crate::lir::{Column, Operand, Region, Stmt, Table, Temp, Turns};
 
 impl Region {
     /// Moves the columns of tables in its body out of it, as far as their values are known before
-    /// it, and forgets captured values that are then not read.
+    /// it.
     pub(super) fn lift_columns(&mut self) {
         let outside: HashMap<Temp, Operand> = self.captured.iter().copied().collect();
         let known = |values: &[Operand]| -> Option<Vec<Operand>> {
@@ -43,7 +43,7 @@ impl Region {
                     self.columns.push((*temp, before));
                     *temp
                 });
-                fixed.push((*temp, name));
+                fixed.push((*temp, Column::Named(name)));
             }
             *values = values.iter().enumerate().filter(|(k, _)| stays[k % width]).map(|(_, value)| *value).collect();
             let mut stays = stays.iter();
@@ -52,6 +52,10 @@ impl Region {
         if !renamed.is_empty() {
             self.body.iter_mut().for_each(|statement| rename(statement, &renamed));
         }
+    }
+
+    /// Forgets captured values that its body does not read.
+    pub(super) fn forget_unread(&mut self) {
         let mut read: HashSet<Temp> = HashSet::new();
         let mut see = |operand: &Operand| _ = operand.temp().map(|temp| read.insert(temp));
         self.body.iter().for_each(|statement| statement.operands(&mut see));
@@ -60,7 +64,7 @@ impl Region {
     }
 }
 
-fn of_region(statement: &mut Stmt) -> Option<&mut Region> {
+pub(super) fn of_region(statement: &mut Stmt) -> Option<&mut Region> {
     if let Stmt::Region(region) = statement { Some(region) } else { None }
 }
 
@@ -69,7 +73,9 @@ fn rename(statement: &mut Stmt, names: &HashMap<Temp, Temp>) {
     let Some(region) = of_region(statement) else { return };
     if let Turns::Each { fixed, .. } = &mut region.turns {
         for (_, column) in fixed {
-            *column = names.get(column).copied().unwrap_or(*column);
+            if let Column::Named(name) = column {
+                *name = names.get(name).copied().unwrap_or(*name);
+            }
         }
     }
     region.body.iter_mut().for_each(|statement| rename(statement, names));

@@ -153,3 +153,37 @@ fn columns_that_do_not_change_are_built_before_the_iteration() {
     let input = |_: usize, k: usize| [0.7, -0.4, 1.3][k];
     assert_eq!(interpret(&body, input), graph.evaluate(input));
 }
+
+/// A motion x ← x + u · y, with the state of each turn, and its gradient: the way back reads the
+/// states where they are, and the text of both does not grow with the number of turns.
+#[test]
+fn the_way_back_of_a_gradient_reads_the_states_in_place() {
+    let length = |turns: usize| {
+        let mut graph = crate::sym::trace(|| {
+            let controls: Vec<Sym> = (0..turns).map(|k| Sym::input(1, k)).collect();
+            let mut state = [Sym::input(0, 0), Sym::input(0, 1)];
+            Sym::for_each(turns, &controls, &mut state, &mut [], |u, state, _| {
+                let [x, y] = [state[0], state[1]];
+                (state[0], state[1]) = (x + u[0] * y, y - u[0] * x * x);
+            });
+            state.to_vec()
+        });
+        let (count, output) = (graph.nodes().len(), graph.outputs[0]);
+        let wrt: Vec<(usize, usize)> = (0..turns).map(|k| (1, k)).chain([(0, 0), (0, 1)]).collect();
+        graph.outputs = crate::pass::gradients(&mut graph, &[output], count, &wrt, |graph, _| graph.constant(1.0));
+        let graph = crate::pass::dce(&graph);
+        let (mut results, arguments) = (vec![Array { start: 0, lengths: vec![turns] }], [2, turns]);
+        results.push(Array { start: turns, lengths: vec![2] });
+        let lowering = Lowering { arguments: &arguments, ..lowering(&graph, &results) };
+        let (mut pieces, kept) = crate::lir::pass::outline::outline(lowering.stores_as_made(|_| true, false), usize::MAX);
+        pieces.iter_mut().for_each(|piece| read_in_place(piece, &[]));
+        let statements = pieces[0].clone();
+        let body = Body { ty: Ty::F64, lanes: graph.lanes().clone(), results: results.clone(), pieces, kept, slots: None, barrier: false, is_partial: false };
+        assert_eq!(verify(&body), Ok(()));
+        let input = |argument: usize, k: usize| if argument == 0 { [0.7, -0.4][k] } else { 0.01 + 1e-4 * k as f64 };
+        assert_eq!(interpret(&body, input), graph.evaluate(input));
+        format!("{statements:?}").len()
+    };
+    // Names have more digits.
+    assert!(length(90).abs_diff(length(10)) < 60, "{} {}", length(10), length(90));
+}

@@ -162,14 +162,14 @@ impl<S: Scalar> Contact<S> {
         (0..self.dimension()).map(of).collect()
     }
 
-    /// B V − r at a relative twist.
-    pub(super) fn residual(&self, twist: &Twist<S>) -> Vec<S> {
-        self.rates(twist).iter().zip(&self.reference).map(|(rate, reference)| *rate - *reference).collect()
+    /// B V − r at these rates B V.
+    pub(super) fn beyond(&self, rates: &[S]) -> Vec<S> {
+        rates.iter().zip(&self.reference).map(|(rate, reference)| *rate - *reference).collect()
     }
 
-    /// s at u.
-    pub(super) fn cost(&self, cone: Cone, u: &[S]) -> Cost<S> {
-        self.law.cost(cone, u)
+    /// s at these rates B V.
+    pub(super) fn cost(&self, cone: Cone, rates: &[S]) -> Cost<S> {
+        self.law.cost(cone, &self.beyond(rates))
     }
 
     /// K = Bᵀ s″ B, its upper triangle row by row.

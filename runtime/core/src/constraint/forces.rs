@@ -12,7 +12,7 @@ use crate::Scalar;
 use crate::algorithm::{Placed as Bodies, Workspace};
 use crate::collision::Form;
 use crate::model::Model;
-use crate::spatial::{Twist, Vector3};
+use crate::spatial::Twist;
 
 /// How many numbers a place of contact has: whether it acts, its point, its normal, force and
 /// moment.
@@ -83,9 +83,8 @@ pub(crate) fn contact_forces<S: Scalar>(
             S::when(row[0].positive(), out, |out| {
                 let (row, relative) = row.split_at(contact::length(dimension));
                 let contact = Contact::of(row, dimension);
-                let three = |k: usize| Vector3::new(relative[k], relative[k + 1], relative[k + 2]);
-                let twist = Twist { angular: three(0), linear: three(3) };
-                let cost = contact.cost(constraints.cone, &contact.residual(&twist));
+                let twist = Twist::from_array(core::array::from_fn(|k| relative[k]));
+                let cost = contact.cost(constraints.cone, &contact.rates(&twist));
                 let pushed: Vec<S> = cost.slope[..dimension].iter().map(|slope| -*slope).collect();
                 let [force, moment] = contact.acting(&pushed);
                 out[0] = S::one();

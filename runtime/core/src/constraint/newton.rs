@@ -28,7 +28,7 @@ use crate::algorithm::{Placed as Bodies, Workspace, mass_matrix};
 use crate::index::{BodyId, ById};
 use crate::model::Model;
 use crate::scalar::{flag, greater, of_precision};
-use crate::spatial::{ArticulatedInertia, Matrix3, Twist, Vector3, Wrench};
+use crate::spatial::{ArticulatedInertia, Matrix3, Wrench};
 
 /// Largest number of steps of Newton's method.
 const MOST: usize = 50;
@@ -90,24 +90,32 @@ pub(crate) fn certified<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, smoo
     Problem::new(model, ws, smooth).certificate(smooth.warm)
 }
 
-/// Contacts of one dimension of two bodies, of which the first may be the base.
+/// Contacts of one dimension: those of one body with the world, or of pairs of bodies that much the
+/// same columns move. They are rows of one table: generated code has each loop over them once.
 struct Group<S> {
-    bodies: [BodyId; 2],
     dimension: usize,
+    /// The body that touches the world.
+    body: Option<BodyId>,
+    /// The columns that move one of the two bodies of a pair, by their places in
+    /// [`Problem::columns`].
+    columns: BTreeSet<usize>,
+    /// The two bodies of each contact, of which the first may be the base.
+    bodies: Vec<[BodyId; 2]>,
     /// A row of numbers for each contact.
     rows: Vec<S>,
     /// Positive where one of them acts.
     acts: S,
 }
 
-impl<S> Group<S> {
-    fn is_of_world(&self) -> bool {
-        self.bodies[0].is_base()
-    }
+/// A pair joins a group of pairs if it has at least this part of its columns: each row of J has the
+/// columns of its group.
+const SHARED: [usize; 2] = [1, 2];
 
-    fn count(&self) -> usize {
-        self.rows.len() / contact::length(self.dimension)
-    }
+/// A motion of all joints.
+struct Motion<'a, S> {
+    x: &'a [S],
+    /// The twists of all bodies about the origin.
+    twists: Twists<S>,
 }
 
 struct Problem<'a, S: 'static> {
@@ -115,6 +123,8 @@ struct Problem<'a, S: 'static> {
     cone: Cone,
     /// The way to the base of each degree of freedom, in H.
     parents: Vec<usize>,
+    /// The same while no two bodies touch.
+    apart: Vec<usize>,
     /// The same in M.
     branches: Vec<usize>,
     mass: Vec<S>,
@@ -137,7 +147,8 @@ impl<'a, S: Scalar> Problem<'a, S> {
         let mut problem = Self {
             model,
             cone: constraints.cone,
-            parents: branches.clone(),
+            parents: Vec::new(),
+            apart: Vec::new(),
             branches,
             mass,
             start: smooth.a,
@@ -145,47 +156,73 @@ impl<'a, S: Scalar> Problem<'a, S> {
             rows: constraints.joint_rows(smooth.q, smooth.v),
             groups: Vec::new(),
         };
-        let twists = problem.motion(smooth.v);
+        let twists = problem.motion(smooth.v).twists;
         let moving = Moving { model, placed: &placed, columns: &problem.columns, origin, twists: &twists };
         sums::rows(&constraints.sums, &placed, (smooth.q, smooth.v), &mut problem.rows);
         anchors::rows(&constraints.anchors, &moving, &mut problem.rows);
-        for Found { bodies, dimension, rows, .. } in pairs::contacts(constraints, &placed, (origin, &twists), smooth.given) {
-            problem.add(bodies, dimension, &rows);
-        }
+        let mut found = pairs::contacts(constraints, &placed, (origin, &twists), smooth.given);
+        // Pairs of many columns begin groups.
+        found.sort_by_key(|found| core::cmp::Reverse(problem.moving(found.bodies).len()));
+        found.iter().for_each(|found| problem.add(found));
         for group in &mut problem.groups {
             group.acts = group.rows.chunks(contact::length(group.dimension)).fold(S::zero(), |sum, row| sum + row[0]);
         }
-        problem.parents = problem.ways();
+        problem.parents = problem.ways(true);
+        problem.apart = problem.ways(false);
         problem
     }
 
-    fn add(&mut self, bodies: [BodyId; 2], dimension: usize, rows: &[S]) {
-        match self.groups.iter_mut().find(|group| group.bodies == bodies && group.dimension == dimension) {
-            Some(group) => group.rows.extend_from_slice(rows),
-            None => self.groups.push(Group { bodies, dimension, rows: rows.to_vec(), acts: S::zero() }),
-        }
+    fn add(&mut self, found: &Found<S>) {
+        let Found { bodies, dimension, ref rows, .. } = *found;
+        let body = bodies[0].is_base().then_some(bodies[1]);
+        let columns = if body.is_some() { BTreeSet::new() } else { self.moving(bodies) };
+        let fits = |group: &Group<S>| {
+            let is_part = columns.is_subset(&group.columns) && SHARED[1] * columns.len() >= SHARED[0] * group.columns.len();
+            group.dimension == dimension && group.body == body && is_part
+        };
+        let at = self.groups.iter().position(fits).unwrap_or_else(|| {
+            self.groups.push(Group { dimension, body, columns, bodies: Vec::new(), rows: Vec::new(), acts: S::zero() });
+            self.groups.len() - 1
+        });
+        let count = rows.len() / contact::length(dimension);
+        self.groups[at].bodies.extend(core::iter::repeat_n(bodies, count));
+        self.groups[at].rows.extend_from_slice(rows);
     }
 
-    /// The columns that move a contact of a group, each with whether it moves the first body.
-    fn moving(&self, group: &Group<S>) -> Vec<(&Column<S>, bool)> {
-        let moves = |column: &Column<S>, body: BodyId| !body.is_base() && self.model.is_on_the_way(column.body, body);
-        let both = self.columns.iter().map(|column| (column, group.bodies.map(|body| moves(column, body))));
-        both.filter(|(_, [first, second])| first != second).map(|(column, [first, _])| (column, first)).collect()
+    /// By how much a column moves the second body and not the first: 1, −1 if it moves the first
+    /// alone, and 0 if it moves both or none.
+    fn moves(&self, column: &Column<S>, bodies: [BodyId; 2]) -> f64 {
+        let [first, second] = bodies.map(|body| !body.is_base() && self.model.is_on_the_way(column.body, body));
+        f64::from(u8::from(second)) - f64::from(u8::from(first))
     }
 
-    /// Entries of H, on and below its diagonal, to which the contacts of a group add.
+    /// The columns that move one of two bodies, by their places.
+    fn moving(&self, bodies: [BodyId; 2]) -> BTreeSet<usize> {
+        self.columns.iter().enumerate().filter(|(_, column)| self.moves(column, bodies) != 0.0).map(|(k, _)| k).collect()
+    }
+
+    /// The columns of a group.
+    fn columns(&self, group: &Group<S>) -> Vec<&Column<S>> {
+        group.columns.iter().map(|k| &self.columns[*k]).collect()
+    }
+
+    /// Entries of H, on and below its diagonal, to which contacts of two bodies add.
     fn entries(&self, group: &Group<S>) -> Vec<[usize; 2]> {
-        let own: BTreeSet<usize> = self.moving(group).iter().map(|(column, _)| column.at).collect();
-        own.iter().flat_map(|i| own.range(..=*i).map(|j| [*i, *j])).collect()
+        let mut all = BTreeSet::new();
+        for bodies in group.bodies.iter().collect::<BTreeSet<_>>() {
+            let own: BTreeSet<usize> = self.moving(*bodies).iter().map(|k| self.columns[*k].at).collect();
+            all.extend(own.iter().flat_map(|i| own.range(..=*i).map(|j| [*i, *j])));
+        }
+        all.into_iter().collect()
     }
 
     /// The way to the base of each degree of freedom in H: contacts of two bodies couple branches,
-    /// and so do rows of several joints.
+    /// and so do rows of several joints. `with_pairs`: with contacts of two bodies.
     /// A factorisation from the last row up leaves zeros off these ways.
-    fn ways(&self) -> Vec<usize> {
+    fn ways(&self, with_pairs: bool) -> Vec<usize> {
         let n = self.branches.len();
         let mut before: Vec<BTreeSet<usize>> = (0..n).map(|i| path_to_root(&self.branches, i).collect()).collect();
-        let of_pairs = self.groups.iter().filter(|group| !group.is_of_world()).flat_map(|group| self.entries(group));
+        let of_pairs = self.groups.iter().filter(|group| with_pairs && group.body.is_none()).flat_map(|group| self.entries(group));
         let of_row = |row: &JointRow<S>| {
             let own: Vec<usize> = row.entries.iter().map(|(k, _)| *k).collect();
             own.iter().flat_map(|i| own.iter().map(|j| [*i, *j])).collect::<Vec<_>>()
@@ -206,33 +243,50 @@ impl<'a, S: Scalar> Problem<'a, S> {
         parents
     }
 
-    /// The twists of all bodies about the origin at these rates.
-    fn motion(&self, x: &[S]) -> Twists<S> {
-        motion::twists(self.model, &self.columns, x)
+    /// The motion of all bodies at these rates.
+    fn motion<'b>(&self, x: &'b [S]) -> Motion<'b, S> {
+        Motion { x, twists: motion::twists(self.model, &self.columns, x) }
     }
 
-    /// Visits the contacts of a group that act, with the relative twists of N motions:
-    /// `visit(contact, twists, state)` has its results behind the state, zeros elsewhere.
+    /// Visits the contacts of a group that act, after which `visit(contact, rows, rates, state)` has
+    /// its results behind the state, zeros elsewhere. `rates`: B V of N motions. `rows`: those of J,
+    /// for each of [`Self::columns`]; none for contacts with the world.
     fn each<const N: usize>(
+        &self,
         group: &Group<S>,
-        motions: [&Twists<S>; N],
+        motions: [&Motion<'_, S>; N],
         [carried, results]: [&mut [S]; 2],
-        visit: impl Fn(&Contact<S>, [Twist<S>; N], &mut [S]),
+        visit: impl Fn(&Contact<S>, &[Vec<S>], [Vec<S>; N], &mut [S]),
     ) {
-        let [first, second] = group.bodies;
+        let length = contact::length(group.dimension);
+        let columns = self.columns(group);
+        let mut table = Vec::new();
+        for (row, bodies) in group.rows.chunks(length).zip(&group.bodies) {
+            table.extend_from_slice(row);
+            table.extend(columns.iter().map(|column| S::from_f64(self.moves(column, *bodies))));
+        }
+        let turn = |row: &[S], state: &mut [S]| {
+            let (row, moves) = row.split_at(length);
+            let contact = Contact::of(row, group.dimension);
+            if let Some(body) = group.body {
+                return visit(&contact, &[], motions.map(|motion| contact.rates(&motion.twists[body])), state);
+            }
+            let of = |(column, moves): (&&Column<S>, &S)| contact.rates(&column.axis).iter().map(|rate| *moves * *rate).collect();
+            let rows: Vec<Vec<S>> = columns.iter().zip(moves).map(of).collect();
+            let rate = |x: &[S], k: usize| columns.iter().zip(&rows).fold(S::zero(), |sum, (column, row)| sum + row[k] * x[column.at]);
+            let rates = motions.map(|motion| (0..group.dimension).map(|k| rate(motion.x, k)).collect());
+            visit(&contact, &rows, rates, state);
+        };
         let all = |carried: &mut [S], results: &mut [S]| {
-            S::for_each(group.count(), &group.rows, carried, results, |row, carried, results| {
+            S::for_each(group.bodies.len(), &table, carried, results, |row, carried, results| {
                 let mut state = [&*carried, &*results].concat();
-                S::when(row[0].positive(), &mut state, |state| {
-                    let relative = motions.map(|twists| twists[second] - twists[first]);
-                    visit(&Contact::of(row, group.dimension), relative, state);
-                });
+                S::when(row[0].positive(), &mut state, |state| turn(row, state));
                 let (before, after) = state.split_at(carried.len());
                 carried.copy_from_slice(before);
                 results.copy_from_slice(after);
             });
         };
-        if group.count() < 2 {
+        if group.bodies.len() < 2 {
             return all(carried, results);
         }
         // Most groups of a robot with many have none that acts.
@@ -255,27 +309,29 @@ impl<'a, S: Scalar> Problem<'a, S> {
             row.entries.iter().for_each(|(k, entry)| forces[*k] += *entry * slope);
         }
         let motion = self.motion(x);
-        let mut wrenches: ById<BodyId, [S; 6]> = vec![[S::zero(); 6]; self.model.bodies.len()].into();
+        let mut wrenches: ById<BodyId, Wrench<S>> = vec![Wrench::zero(); self.model.bodies.len()].into();
         for group in &self.groups {
-            let [first, second] = group.bodies;
-            let mut sums = wrenches[second].to_vec();
-            sums.extend(wrenches[first].iter().filter(|_| !group.is_of_world()));
-            Self::each(group, [&motion], [&mut sums, &mut []], |contact, [twist], sums| {
-                let cost = contact.cost(self.cone, &contact.residual(&twist));
-                let wrench = contact.wrench(&cost.slope[..group.dimension]).to_array();
-                let (on_second, on_first) = sums.split_at_mut(6);
-                on_second.iter_mut().zip(wrench).for_each(|(sum, x)| *sum += x);
-                on_first.iter_mut().zip(wrench).for_each(|(sum, x)| *sum -= x);
-            });
-            let (on_second, on_first) = sums.split_at(6);
-            wrenches[second].copy_from_slice(on_second);
-            if !group.is_of_world() {
-                wrenches[first].copy_from_slice(on_first);
+            let slope = |contact: &Contact<S>, rates: &[S]| contact.cost(self.cone, rates).slope;
+            if let Some(body) = group.body {
+                let mut sum = wrenches[body].to_array();
+                self.each(group, [&motion], [&mut sum, &mut []], |contact, _, [rates], sum| {
+                    let slope = slope(contact, &rates);
+                    let wrench = contact.wrench(&slope[..group.dimension]).to_array();
+                    sum.iter_mut().zip(wrench).for_each(|(sum, x)| *sum += x);
+                });
+                wrenches[body] = Wrench::from_array(sum);
+                continue;
             }
+            let columns = self.columns(group);
+            let mut sums: Vec<S> = columns.iter().map(|_| S::zero()).collect();
+            self.each(group, [&motion], [&mut sums, &mut []], |contact, rows, [rates], sums| {
+                let slope = slope(contact, &rates);
+                for (sum, row) in sums.iter_mut().zip(rows) {
+                    *sum += row.iter().zip(slope).fold(S::zero(), |sum, (entry, slope)| sum + *entry * slope);
+                }
+            });
+            columns.iter().zip(sums).for_each(|(column, sum)| forces[column.at] += sum);
         }
-        let three = |x: &[S]| Vector3::new(x[0], x[1], x[2]);
-        let of = |six: [S; 6]| Wrench { moment: three(&six[..3]), force: three(&six[3..]) };
-        let mut wrenches: ById<BodyId, Wrench<S>> = wrenches.iter().map(|six| of(*six)).collect::<Vec<_>>().into();
         for body in self.model.inward() {
             let own = wrenches[body];
             self.columns.iter().filter(|column| column.body == body).for_each(|column| forces[column.at] += own.power(&column.axis));
@@ -299,32 +355,30 @@ impl<'a, S: Scalar> Problem<'a, S> {
         let motion = self.motion(x);
         let mut inertias: ById<BodyId, Option<ArticulatedInertia<S>>> = vec![None; self.model.bodies.len()].into();
         for group in &self.groups {
-            if !group.is_of_world() {
+            let Some(body) = group.body else {
                 self.add_pairs(group, &motion, &mut hessian);
                 continue;
-            }
+            };
             let mut sum = [S::zero(); 21];
-            Self::each(group, [&motion], [&mut sum, &mut []], |contact, [twist], sum| {
-                let cost = contact.cost(self.cone, &contact.residual(&twist));
+            self.each(group, [&motion], [&mut sum, &mut []], |contact, _, [rates], sum| {
+                let cost = contact.cost(self.cone, &rates);
                 sum.iter_mut().zip(contact.inertia(&cost.curvature)).for_each(|(sum, x)| *sum += x);
             });
-            *inertias[group.bodies[1]].get_or_insert(ArticulatedInertia::zero()) += of_triangle(&sum);
+            *inertias[body].get_or_insert(ArticulatedInertia::zero()) += of_triangle(&sum);
         }
         self.project(&mut inertias, &mut hessian);
         hessian
     }
 
     /// Adds Jᵀ s″ J of contacts of two bodies.
-    fn add_pairs(&self, group: &Group<S>, motion: &Twists<S>, hessian: &mut [S]) {
-        let (n, d, entries, moving) = (self.start.len(), group.dimension, self.entries(group), self.moving(group));
+    fn add_pairs(&self, group: &Group<S>, motion: &Motion<'_, S>, hessian: &mut [S]) {
+        let (n, d, entries, columns) = (self.start.len(), group.dimension, self.entries(group), self.columns(group));
         let mut state: Vec<S> = entries.iter().map(|[i, j]| hessian[i * n + j]).collect();
-        Self::each(group, [motion], [&mut state, &mut []], |contact, [twist], state| {
-            let s = contact.cost(self.cone, &contact.residual(&twist)).curvature;
+        self.each(group, [motion], [&mut state, &mut []], |contact, own, [rates], state| {
+            let s = contact.cost(self.cone, &rates).curvature;
             let mut rows = vec![vec![S::zero(); n]; d];
-            for (Column { at, axis, .. }, is_first) in &moving {
-                for (row, entry) in rows.iter_mut().zip(contact.rates(axis)) {
-                    row[*at] += if *is_first { -entry } else { entry };
-                }
+            for (column, own) in columns.iter().zip(own) {
+                rows.iter_mut().zip(own).for_each(|(row, entry)| row[column.at] += *entry);
             }
             let pushed = |k: usize, j: usize| (0..d).fold(S::zero(), |sum, l| sum + s[k][l] * rows[l][j]);
             let pushed: Vec<Vec<S>> = (0..d).map(|k| (0..n).map(|j| pushed(k, j)).collect()).collect();
@@ -367,8 +421,8 @@ impl<'a, S: Scalar> Problem<'a, S> {
         let motion = self.motion(x);
         let mut state = [cost];
         for group in &self.groups {
-            Self::each(group, [&motion], [&mut state, &mut []], |contact, [twist], state| {
-                state[0] += contact.cost(self.cone, &contact.residual(&twist)).value;
+            self.each(group, [&motion], [&mut state, &mut []], |contact, _, [rates], state| {
+                state[0] += contact.cost(self.cone, &rates).value;
             });
         }
         state[0]
@@ -383,18 +437,19 @@ impl<'a, S: Scalar> Problem<'a, S> {
         let dot = |a: &[S], b: &[S]| a.iter().zip(b).fold(zero, |sum, (a, b)| sum + *a * *b);
         let smooth = [dot(&pushed, &self.beyond(x)), dot(&pushed, dx)];
         // Each contact along the line: those with the world together, if they have one dimension
-        let mut tables: BTreeMap<(usize, Option<usize>), Vec<S>> = BTreeMap::new();
+        let mut tables: BTreeMap<(usize, Option<usize>), (Vec<S>, S)> = BTreeMap::new();
         for (number, group) in self.groups.iter().enumerate() {
             let d = group.dimension;
-            let mut found = vec![zero; 2 * d * group.count()];
-            Self::each(group, [&at, &by], [&mut [], &mut found], |contact, [twist, dx], state| {
-                state[..d].copy_from_slice(&contact.residual(&twist));
-                state[d..].copy_from_slice(&contact.rates(&dx));
+            let mut found = vec![zero; 2 * d * group.bodies.len()];
+            self.each(group, [&at, &by], [&mut [], &mut found], |contact, _, [rates, along], state| {
+                state[..d].copy_from_slice(&contact.beyond(&rates));
+                state[d..].copy_from_slice(&along);
             });
-            let table = tables.entry((d, (!group.is_of_world()).then_some(number))).or_default();
+            let (table, acts) = tables.entry((d, group.body.is_none().then_some(number))).or_insert((Vec::new(), zero));
             for (row, found) in group.rows.chunks(contact::length(d)).zip(found.chunks(2 * d)) {
                 table.extend(row[..contact::of_law(d)].iter().chain(found));
             }
+            *acts += group.acts;
         }
         let along = |alpha: S| {
             let [slope, curvature] = smooth;
@@ -404,13 +459,15 @@ impl<'a, S: Scalar> Problem<'a, S> {
                 state[0] += cost.slope * *along;
                 state[1] += cost.curvature * *along * *along;
             }
-            for (&(d, _), table) in &tables {
-                let law = contact::of_law(d);
-                S::for_each(table.len() / (law + 2 * d), table, &mut state, &mut [], |row, state, _| {
-                    S::when(row[0].positive(), state, |state| {
-                        let [slope, curvature] = Law::of(row, d).along(self.cone, &row[law..][..d], &row[law + d..], alpha);
-                        state[0] += slope;
-                        state[1] += curvature;
+            for ((d, _), (table, acts)) in &tables {
+                let (d, law) = (*d, contact::of_law(*d));
+                S::when(acts.positive(), &mut state, |state| {
+                    S::for_each(table.len() / (law + 2 * d), table, state, &mut [], |row, state, _| {
+                        S::when(row[0].positive(), state, |state| {
+                            let [slope, curvature] = Law::of(row, d).along(self.cone, &row[law..][..d], &row[law + d..], alpha);
+                            state[0] += slope;
+                            state[1] += curvature;
+                        });
                     });
                 });
             }
@@ -490,6 +547,21 @@ impl<'a, S: Scalar> Problem<'a, S> {
         x
     }
 
+    /// H⁻¹ b in the place of b. Branches that no contact couples stay apart in the factors.
+    fn solve(&self, hessian: &[S], b: &mut [S]) {
+        let by = |parents: &[usize], b: &mut [S]| {
+            let mut matrix = hessian.to_vec();
+            factor(&mut matrix, parents);
+            solve(&matrix, parents, b);
+        };
+        if self.apart == self.parents {
+            return by(&self.parents, b);
+        }
+        let touch = self.groups.iter().filter(|group| group.body.is_none()).fold(S::zero(), |sum, group| sum + group.acts);
+        S::when(touch.positive(), b, |b| by(&self.parents, b));
+        S::when((S::one() - flag::<S>(touch.positive())).positive(), b, |b| by(&self.apart, b));
+    }
+
     /// How far x is from the optimum.
     fn certificate(&self, x: &[S]) -> Certificate<S> {
         let mut matrix = self.mass.clone();
@@ -531,9 +603,7 @@ impl<'a, S: Scalar> Problem<'a, S> {
             S::when((one - is_done).positive(), &mut moved, |moved| {
                 let (x, short) = moved.split_at_mut(nv);
                 let mut dx: Vec<S> = slope.0.iter().map(|g| -*g).collect();
-                let mut hessian = self.curvature(x);
-                factor(&mut hessian, &self.parents);
-                solve(&hessian, &self.parents, &mut dx);
+                self.solve(&self.curvature(x), &mut dx);
                 let alpha = self.line(x, &dx, &slope.0);
                 let before = self.size(x);
                 dx.iter_mut().for_each(|dx| *dx *= alpha);

@@ -62,6 +62,11 @@ impl<S: Scalar> Twist<S> {
         Self { angular: self.angular * x, linear: self.linear * x }
     }
 
+    /// The inverse of [`Self::to_array`].
+    pub fn from_array([a, b, c, d, e, f]: [S; 6]) -> Self {
+        Self { angular: Vector3::new(a, b, c), linear: Vector3::new(d, e, f) }
+    }
+
     /// The six numbers.
     pub fn to_array(&self) -> [S; 6] {
         let (w, v) = (&self.angular, &self.linear);

@@ -66,6 +66,11 @@ impl<S: Scalar> Wrench<S> {
         if k < 3 { &mut self.moment[k] } else { &mut self.force[k - 3] }
     }
 
+    /// The inverse of [`Self::to_array`].
+    pub fn from_array([a, b, c, d, e, f]: [S; 6]) -> Self {
+        Self { moment: Vector3::new(a, b, c), force: Vector3::new(d, e, f) }
+    }
+
     /// The six numbers.
     pub fn to_array(&self) -> [S; 6] {
         let (m, f) = (&self.moment, &self.force);
