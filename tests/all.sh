@@ -94,7 +94,7 @@ oracles() {
     step python3 tests/ipopt/run.py
     step python3 tests/mjcf/oracle.py --sample
     step python3 tests/mjcf/coming_from.py
-    step python3 tests/mjcf/steps.py --file tests/mjcf/models/{steps,actuated,surroundings,drone,spatial}.xml
+    step python3 tests/mjcf/steps.py --file tests/mjcf/models/{steps,actuated,surroundings,fluid,drone,spatial}.xml
     step python3 tests/mjcf/speed.py --check
     step python3 tests/mjcf/contact.py --check
     step python3 tests/mjcf/pairs.py --check

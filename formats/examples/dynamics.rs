@@ -143,8 +143,9 @@ fn world(world: &World) -> String {
                 }
                 None => {}
             }
+            let terms = own.terms.as_ref().map_or("null".to_owned(), |own| format!("{:?}", [own.rest, own.stiffness, own.damping]));
             format!(
-                "{{\"name\": {name:?}, \"site\": {site}, \"path\": {path}, \"activation\": {activation}, \"drives\": {drives}, \"gain\": {gain:?}, \"bias\": {bias:?}, \"control_range\": {control}, \"force_range\": {force}}}"
+                "{{\"name\": {name:?}, \"terms\": {terms}, \"site\": {site}, \"path\": {path}, \"activation\": {activation}, \"drives\": {drives}, \"gain\": {gain:?}, \"bias\": {bias:?}, \"control_range\": {control}, \"force_range\": {force}}}"
             )
         })
     };

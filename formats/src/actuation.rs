@@ -1,6 +1,6 @@
 //! The actuators of a file on a model of its robot.
 
-use articulated_core::actuator::{ActuatorLaw, Actuators, Follower, FrameDrive, SiteDrive, SiteFrame, Strand, Transmission};
+use articulated_core::actuator::{ActuatorLaw, Actuators, Follower, FrameDrive, SiteDrive, SiteFrame, Strand, Terms, Transmission};
 use articulated_core::description::Origin;
 use articulated_core::model::Model;
 use articulated_core::spatial::{Vector3, Wrench};
@@ -80,6 +80,7 @@ fn law(
         frames: actuator.frames.as_ref().and_then(|frames| drive(model, frames)),
         gain: from(actuator.gain),
         bias: from(actuator.bias),
+        terms: actuator.terms.clone().map(|own| Terms { rest: own.rest.map(|length| length - constant), ..own }),
         control_range: actuator.control_range,
         force_range: actuator.force_range,
         activation: actuator.activation.clone(),

@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use articulated_core::actuator::Activation;
+use articulated_core::actuator::{Activation, Terms};
 use articulated_core::collision::Form;
 use articulated_core::constraint::Cone;
 use articulated_core::description::{Coupling, Description, Origin};
@@ -356,6 +356,8 @@ pub struct Actuator {
     pub gain: [f64; 3],
     /// b₀, b₁, b₂: force without control.
     pub bias: [f64; 3],
+    /// Forces of higher degree beside these, of springs and dampers of tendons.
+    pub terms: Option<Terms>,
     /// Bounds of the control u.
     pub control_range: Option<[f64; 2]>,
     /// Bounds of the force f.

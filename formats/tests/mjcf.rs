@@ -193,14 +193,10 @@ fn dynamics_that_are_not_read_are_warnings() {
     let option = |attributes: &str| body("").replace("<worldbody>", &format!("<option {attributes}/><worldbody>"));
     let joint = |attributes: &str| body("").replace("name=\"j\"", attributes);
     let texts = [
-        option("density=\"1000\" wind=\"1 0 0\""),
-        option("viscosity=\"1\"").replace("size=\"1\"", "size=\"1\" fluidshape=\"ellipsoid\""),
-        joint("type=\"free\" springdamper=\"1 1\""),
         joint("type=\"free\" damping=\"1 2\""),
         joint("stiffness=\"1\" springyield=\"0.1\""),
         joint("type=\"free\" frictionloss=\"1\""),
         joint("actuatorgravcomp=\"true\" actuatorfrcrange=\"-1 1\""),
-        joint("type=\"free\" stiffness=\"1\""),
     ];
     for text in texts {
         let codes: Vec<Code> = accepted(&text).warnings.iter().map(|warning| warning.code).collect();
@@ -246,10 +242,76 @@ fn what_acts_on_links_is_kept() {
     let diameter = (x + y + z) / 3.0;
     let about = |own: f64, one: f64, other: f64| 2.0 * own * (one.powi(4) + other.powi(4)) / 64.0;
     let viscous = [3.0 * std::f64::consts::PI * diameter * 5.0, std::f64::consts::PI * diameter.powi(3) * 5.0];
-    let expected = [y * z, z * x, x * y, about(x, y, z), about(y, z, x), about(z, x, y), viscous[0], viscous[1]];
+    let expected = [y * z, z * x, x * y, about(x, y, z), about(y, z, x), about(z, x, y), viscous[0], viscous[1], 0.0, 0.0, 0.0];
     let (effect, at, drag) = &found[2];
     assert_eq!((*effect, *at, found.len()), (box_drag, [0.0, 0.0, 1.0], 3));
-    assert!(drag.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-13 * b), "{drag:?} {expected:?}");
+    assert!(drag.iter().zip(expected).all(|(a, b)| (a - b).abs() <= 1e-13 * b), "{drag:?} {expected:?}");
+}
+
+/// One ellipsoid turns off the box of its body, and the wind is that of all effects.
+#[test]
+fn a_medium_acts_on_ellipsoids() {
+    use articulated_core::effect::EffectId::{box_drag, ellipsoid_drag};
+    let of = |geom: &str| {
+        let body = format!("<body name=\"a\"><joint name=\"j\"/><geom pos=\"1 0 0\" {geom}/><geom size=\"1\"/></body>");
+        let option = "<option density=\"2\" viscosity=\"5\" wind=\"1 2 -3\"/><worldbody>";
+        let reading = accepted(&world(&body).replace("<worldbody>", option));
+        assert!(reading.warnings.is_empty(), "{:?}", reading.warnings);
+        let effects = reading.world.effects.into_iter();
+        effects.map(|(own, _)| (own.effect, own.at.xyz, own.parameters)).collect::<Vec<_>>()
+    };
+    let boxes = of("size=\"1\"");
+    assert_eq!((boxes.len(), boxes[0].0, &boxes[0].2[8..]), (1, box_drag, &[1.0, 2.0, -3.0][..]));
+    let shape = "fluidshape=\"ellipsoid\"";
+    let own = |geom: &str| {
+        let found = of(&format!("{geom} {shape}"));
+        assert_eq!((found.len(), found[0].0, found[0].1), (1, ellipsoid_drag, [1.0, 0.0, 0.0]));
+        found[0].2.clone()
+    };
+    let ball = own("size=\"2\" fluidcoef=\"0.7 0.1\"");
+    assert_eq!(ball[..10], [2.0, 2.0, 2.0, 2.0, 5.0, 0.7, 0.1, 1.5, 1.0, 1.0]);
+    assert_eq!(ball[16..], [1.0, 2.0, -3.0]);
+    let semi_axes = |geom: &str| own(geom)[..3].to_vec();
+    assert_eq!(semi_axes("type=\"capsule\" size=\"1 2\""), [1.0, 1.0, 3.0]);
+    assert_eq!(semi_axes("type=\"cylinder\" size=\"1 2\""), [1.0, 1.0, 2.0]);
+    assert_eq!(semi_axes("type=\"box\" size=\"1 2 3\""), [1.0, 2.0, 3.0]);
+    // As MuJoCo 4.0.0 computes `geom_fluid`
+    let masses = own("type=\"ellipsoid\" size=\"0.2 0.07 0.11\"");
+    let expected = [
+        0.0011177547622650073,
+        0.007275573809294669,
+        0.0030673997292870736,
+        3.7887574756163986e-6,
+        9.323879657358633e-6,
+        3.3892035685152316e-5,
+    ];
+    assert!(masses[10..16].iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-13 * b), "{masses:?}");
+}
+
+/// The stiffness of a free joint is a spring to the pose in the file.
+#[test]
+fn a_free_joint_has_a_tether() {
+    use articulated_core::effect::EffectId::tether;
+    let of = |attributes: &str, option: &str| {
+        let inertial = "<inertial pos=\"0 0 0\" mass=\"6\" diaginertia=\"3 3 3\"/>";
+        let body =
+            format!("<body name=\"a\" pos=\"1 2 3\" quat=\"1 0 0 2\"><joint name=\"j\" type=\"free\" {attributes}/>{inertial}</body>");
+        let reading = accepted(&world(&body).replace("<worldbody>", &format!("<option>{option}</option><worldbody>")));
+        assert!(reading.warnings.is_empty(), "{:?}", reading.warnings);
+        let damping = reading.description.joints[JointId(0)].dynamics.damping;
+        (reading.world.effects.into_iter().map(|(own, _)| (own.effect, own.parameters)).collect::<Vec<_>>(), damping)
+    };
+    let (found, _) = of("stiffness=\"5 6 7\"", "");
+    assert_eq!((found.len(), found[0].0, &found[0].1[..9]), (1, tether, &[5.0, 6.0, 7.0, 5.0, 6.0, 7.0, 1.0, 2.0, 3.0][..]));
+    let [x, y, z, w] = found[0].1[9..] else { panic!("a quaternion") };
+    assert!(x == 0.0 && y == 0.0 && (z - 2.0 * w).abs() < 1e-15);
+    assert!(of("stiffness=\"5\"", "<flag spring=\"disable\"/>").0.is_empty());
+    assert!(of("stiffness=\"0\"", "").0.is_empty());
+    // The mean of the inverse masses is (3/6 + 3/3)/6 = 1/4.
+    let (found, damping) = of("springdamper=\"0.5 2\"", "");
+    let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-13 * expected, "{found} {expected}");
+    near(found[0].1[0], 4.0 / (0.5_f64 * 2.0).powi(2));
+    near(damping.unwrap(), 2.0 * 4.0 / 0.5);
 }
 
 #[test]

@@ -6,6 +6,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 use std::io::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
 
+use articulated_core::actuator::Terms;
 use articulated_core::diagnostic::{At, Code};
 use articulated_formats::world::{Actuator, OnFrames, TouchingLaw, TouchingLength, World};
 use articulated_formats::{Options, Reading, Sources, read, read_with};
@@ -233,6 +234,11 @@ fn springs_of_tendons_are_actuators_without_gain() {
     let laws: Vec<_> = found.iter().map(|law| (law.bias, law.force_range)).collect();
     let (push, pull) = (Some([0.0, f64::INFINITY]), Some([f64::NEG_INFINITY, 0.0]));
     assert_eq!(laws, [([0.0, 0.0, -0.5], None), ([1.2, -4.0, 0.0], push), ([2.8, -4.0, 0.0], pull)]);
+    // Terms of higher degree are a law of their own.
+    let found = tendon("stiffness=\"4 5 6\" damping=\"0.5 0 2\" springlength=\"0.3 0.7\"");
+    let terms = Terms { rest: [0.3, 0.7], stiffness: [5.0, 6.0], damping: [0.0, 2.0] };
+    assert_eq!((found.len(), found[3].bias, &found[3].terms), (4, [0.0; 3], &Some(terms)));
+    assert_eq!(tendon("damping=\"0 1\"")[0].terms, Some(Terms { rest: [-FRAC_PI_2 * 0.5; 2], stiffness: [0.0; 2], damping: [1.0, 0.0] }));
     // The damping of an actuator acts on its target.
     let found = world("<actuator><motor name=\"m\" joint=\"x\" gear=\"3\" damping=\"0.2\"/></actuator>").passive;
     assert_eq!((&found[0].drives, found[0].bias), (&vec![drive("x", &[3.0])], [0.0, 0.0, -0.2]));
@@ -391,7 +397,6 @@ fn what_gives_no_force_is_a_warning_with_its_line() {
         tendon("range=\"0 1\"", "fixed"),
         tendon("frictionloss=\"1\"", "fixed"),
         tendon("armature=\"1\"", "fixed"),
-        tendon("damping=\"1 2\"", "fixed"),
         tendon("actuatorfrcrange=\"-1 1\"", "fixed"),
         tendon("stiffness=\"1\"", "spatial"),
         "<actuator>\n<motor joint=\"b\" armature=\"1\"/></actuator>".to_owned(),

@@ -147,7 +147,7 @@ impl<'a> RobotInWorld<'a> {
         // A motion has no activations, and torques of joints alone: see `warnings`.
         actuators.passive.retain(|law| law.frames.is_none());
         for law in actuators.laws.iter_mut().filter(|law| law.activation.is_some() || law.frames.is_some()) {
-            (law.gain, law.bias, law.activation, law.frames) = ([0.0; 3], [0.0; 3], None, None);
+            (law.gain, law.bias, law.terms, law.activation, law.frames) = ([0.0; 3], [0.0; 3], None, None, None);
         }
         actuators
     }

@@ -51,6 +51,17 @@ fn constraints_of_an_appended_file_are_reported() {
     assert!(found[0].what.contains("the appended robot \"g_\""), "{}", found[0].what);
 }
 
+/// The pose in the world of its own file would be another one here.
+#[test]
+fn stiffness_of_a_free_joint_of_an_appended_file_is_a_warning() {
+    const BALL: &str = "<mujoco><worldbody><body name='ball' pos='1 0 0'><joint type='free' stiffness='3' damping='1'/><geom size='0.1'/>
+      </body></worldbody></mujoco>";
+    let robot = opened(APPEND, ARM, &[BALL]).build().unwrap_or_else(|e| panic!("{e}"));
+    assert!(robot.reading.world.effects.is_empty());
+    let warned: Vec<_> = robot.reading.warnings.iter().filter(|warning| warning.field == "stiffness").map(|warning| warning.code).collect();
+    assert_eq!(warned, [Code::LostDynamics]);
+}
+
 #[test]
 fn equations_of_an_appended_file_couple_its_joints() {
     let (free, coupled) = (built(APPEND), built(&format!("{APPEND}coupling = \"file\"")));

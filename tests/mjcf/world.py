@@ -313,29 +313,15 @@ def reduce(model, read, warned):
         model.actuator_gainprm[one] = 0
         model.actuator_forcelimited[one] = 0
     no_spring, no_damper = disabled(model, "SPRING"), disabled(model, "DAMPER")
-    has_passive = not (no_spring and no_damper)
     for joint in np.flatnonzero(model.jnt_actgravcomp & model.jnt_actfrclimited):
         warned.demand("actuatorgravcomp of the joint", name_of(model, "JOINT", joint), "actuatorgravcomp beside bounds")
     model.jnt_actgravcomp[:] = 0
-    if has_passive and (model.opt.density or model.opt.viscosity):
-        if model.opt.wind.any():
-            warned.demand("the wind", "", "a medium that moves")
-        # What the medium does on ellipsoids is not read: on no body of the model then.
-        ellipsoids = [geom for geom in range(model.ngeom) if model.geom_fluid[geom, 0] > 0]
-        for body in {model.geom_bodyid[geom] for geom in ellipsoids}:
-            if moves(model, body):
-                warned.demand("the ellipsoid in the medium", name_of(model, "BODY", body), "an ellipsoid in the medium")
-        if ellipsoids:
-            model.opt.density = model.opt.viscosity = 0
-    model.opt.wind[:] = 0
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
     for joint in range(model.njnt):
         name, first = name_of(model, "JOINT", joint), model.jnt_dofadr[joint]
         size = {0: 6, BALL: 3}.get(int(model.jnt_type[joint]), 1)
         dofs = slice(first, first + size)
         if model.jnt_type[joint] == 0:
-            if model.jnt_stiffness[joint] and not no_spring:
-                warned.demand("stiffness of the free joint", name, "stiffness of a free joint", "a springdamper of a free joint")
             if model.dof_dampingpoly[dofs].any() and not no_damper:
                 warned.demand("damping of higher degree of the free joint", name, "a damping of higher degree")
             # Damping of free joints is compared below.
@@ -347,22 +333,24 @@ def reduce(model, read, warned):
         if size == 3:
             model.jnt_stiffness[joint] = 0
             model.dof_damping[dofs] = 0
-    model.dof_dampingpoly[:] = model.jnt_stiffnesspoly[:] = 0
+        # Stiffness of free joints is compared below.
+        if size < 6:
+            model.jnt_stiffnesspoly[joint] = 0
+    model.dof_dampingpoly[:] = 0
     for tendon in range(model.ntendon):
         name, is_lost = name_of(model, "TENDON", tendon), goes_around(model, tendon)
-        phrase = AROUND if is_lost else "stiffness or damping of higher degree"
         linear = (model.tendon_stiffness[tendon] if not no_spring else 0, model.tendon_damping[tendon] if not no_damper else 0)
         higher = (model.tendon_stiffnesspoly[tendon].any() and not no_spring) or (model.tendon_dampingpoly[tendon].any() and not no_damper)
-        if higher or (is_lost and any(linear)):
-            warned.demand("forces of the tendon", name, phrase)
+        if is_lost and (higher or any(linear)):
+            warned.demand("forces of the tendon", name, AROUND)
         if model.tendon_springyield[tendon] > 0 and linear[0]:
             warned.demand("the spring that yields of the tendon", name, AROUND if is_lost else "a spring that yields")
         if model.tendon_actfrclimited[tendon] and not is_lost:
             warned.demand("bounds of the forces on the tendon", name, "limits of the forces on a tendon")
         if is_lost:
             model.tendon_stiffness[tendon] = model.tendon_damping[tendon] = 0
+            model.tendon_stiffnesspoly[tendon] = model.tendon_dampingpoly[tendon] = 0
     if model.ntendon:
-        model.tendon_stiffnesspoly[:] = model.tendon_dampingpoly[:] = 0
         model.tendon_actfrclimited[:] = 0
     for one in range(model.nactuator):
         name, target, kind = name_of(model, "ACTUATOR", one), model.actuator_trnid[one, 0], model.actuator_trntype[one]
@@ -484,6 +472,10 @@ def law(one, u, model, data, by_name):
     parts = np.array([1, at, rate])
     force = np.dot(one["gain"], parts) * u + np.dot(one["bias"], parts)
     size = np.dot(np.abs(one["gain"]), np.abs(parts)) * abs(u) + np.dot(np.abs(one["bias"]), np.abs(parts))
+    if one["terms"]:
+        (lower, upper), stiffness, damping = one["terms"]
+        away = max(at - upper, 0) + min(at - lower, 0)
+        force -= np.polyval([*stiffness[::-1], 0, 0], away) + np.polyval([*damping[::-1], 0, 0], abs(rate)) * np.sign(rate)
     # MuJoCo takes a target of a ball joint modulo whole turns.
     period = 2 * np.pi * np.linalg.norm([g for name, gear in one["drives"] if by_name[name].kind == BALL for g in gear])
     winds = period > 0 and one["gain"][0] == -one["bias"][1] and abs(u - at) > period / 2
@@ -556,12 +548,46 @@ def on_link(effect, model, data):
     force, moment = np.zeros(3), np.zeros(3)
     if effect["effect"] == "gravity_compensation":
         force = -numbers[0] * model.opt.gravity
-    elif effect["effect"] == "box_drag" and (model.opt.density or model.opt.viscosity):
-        v, w = axes.T @ along @ data.qvel, axes.T @ about @ data.qvel
+    elif effect["effect"] == "box_drag":
+        v, w = axes.T @ (along @ data.qvel - numbers[8:11]), axes.T @ about @ data.qvel
         force = axes @ -((numbers[:3] * np.abs(v) + numbers[6]) * v)
         moment = axes @ -((numbers[3:6] * np.abs(w) + numbers[7]) * w)
+    elif effect["effect"] == "ellipsoid_drag":
+        v, w = axes.T @ (along @ data.qvel - numbers[16:19]), axes.T @ about @ data.qvel
+        moment, force = (axes @ own for own in on_ellipsoid(numbers, v, w))
+    elif effect["effect"] == "tether":
+        here, there, apart = np.zeros(4), np.array([numbers[12], *numbers[9:12]]), np.zeros(3)
+        mujoco.mju_mat2Quat(here, axes.flatten())
+        mujoco.mju_normalize4(there)
+        mujoco.mju_subQuat(apart, here, there)
+        away = point - numbers[6:9]
+        force, moment = -(numbers[:3] @ powers(away)) * away, -(numbers[3:6] @ powers(apart)) * (axes @ apart)
     torques = along.T @ force + about.T @ moment
     return torques, np.abs(torques).max(initial=0.0)
+
+
+def powers(x):
+    size = np.linalg.norm(x)
+    return np.array([1, size, size**2])
+
+
+def on_ellipsoid(numbers, v, w):
+    """Moment and force of a medium on an ellipsoid that moves by v and turns by w, in its axes."""
+    axes, (density, viscosity, blunt, slender, angular, kutta, magnus) = numbers[:3], numbers[3:10]
+    least, middle, most = sorted(axes)
+    others = [(1, 2), (2, 0), (0, 1)]
+    normal = np.array([(axes[j] * axes[k]) ** 2 for j, k in others]) * v
+    speed, size = np.linalg.norm(v), np.linalg.norm(normal)
+    area = np.pi * size / np.sqrt(normal @ v)
+    inertia = np.array([axes[i] * max(axes[j], axes[k]) ** 4 for i, (j, k) in enumerate(others)])
+    turns = 8 / 15 * np.pi * (angular * inertia + slender * (middle * most**4 - inertia)) * w
+    diameter = 2 * np.mean(axes)
+    drag = 3 * np.pi * viscosity * diameter + density * speed * (blunt * area + slender * (np.pi * middle * most - area))
+    turning = np.pi * viscosity * diameter**3 + density * np.linalg.norm(turns)
+    lift = kutta * density * area * (normal @ v) / (speed * size**2) * np.cross(np.cross(normal, v), v)
+    momentum, spin = density * numbers[10:13] * v, density * numbers[13:16] * w
+    force = lift + magnus * density * 4 / 3 * np.pi * np.prod(axes) * np.cross(w, v) - drag * v + np.cross(momentum, w)
+    return np.cross(momentum, v) + np.cross(spin, w) - turning * w, force
 
 
 def equations(model, world, joints, q, differ, count):

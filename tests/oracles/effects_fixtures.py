@@ -28,13 +28,13 @@ def box(mass, inertia):
 
 
 def drag(mass, inertia):
-    """Coefficients along and about the axes of a box: quadratic, then viscous (MuJoCo's documentation, Computation, Fluid forces)."""
+    """Coefficients along and about the axes of a box: quadratic, then viscous, and no wind (MuJoCo's documentation, Computation, Fluid forces)."""
     r = box(mass, inertia)
     pairs = [(1, 2), (0, 2), (0, 1)]
     linear = [2 * DENSITY * r[j] * r[k] for j, k in pairs]
     angular = [0.5 * DENSITY * r[i] * (r[j] ** 4 + r[k] ** 4) for i, (j, k) in enumerate(pairs)]
     mean = float(sum(r)) / 3
-    return [*linear, *angular, 6 * VISCOSITY * np.pi * mean, 8 * VISCOSITY * np.pi * mean ** 3]
+    return [*linear, *angular, 6 * VISCOSITY * np.pi * mean, 8 * VISCOSITY * np.pi * mean ** 3, 0, 0, 0]
 
 
 def rpy(quaternion):

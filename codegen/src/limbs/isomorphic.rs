@@ -145,6 +145,7 @@ struct Shape {
     freedoms: usize,
     has_no_torque: bool,
     has_bounds: (bool, bool),
+    has_terms: bool,
     activation: Option<(Discriminant<Filter<f64>>, bool, bool)>,
 }
 
@@ -156,6 +157,7 @@ impl Shape {
             freedoms: drive.gear.len(),
             has_no_torque: drive.has_no_torque,
             has_bounds: (law.control_range.is_some(), law.force_range.is_some()),
+            has_terms: law.terms.is_some(),
             activation,
         }
     }

@@ -554,6 +554,7 @@ pub(crate) fn actuators(
                         frames: target.frames(&general, links, scope),
                         gain,
                         bias,
+                        terms: None,
                         control_range: control_range.filter(|_| !simulation.flags().no_clamp),
                         force_range,
                         activation: general.activation(activation_range),

@@ -80,6 +80,8 @@ pub(crate) struct Joint<'a> {
     /// `springdamper`: time constant, s, and damping ratio, which define stiffness and damping if
     /// both are above zero.
     pub(crate) spring_damper: [f64; 2],
+    /// Stiffness of a free joint, and that per distance and per square of the distance.
+    pub(crate) tether: [f64; 3],
     pub(crate) armature: f64,
     /// Its numbers of the law of constraints.
     pub(crate) soft: contact::SoftJoint,
@@ -330,6 +332,7 @@ impl<'a> Build<'a> {
                         dynamics: JointDynamics::default(),
                         rest: 0.0,
                         spring_damper: [0.0; 2],
+                        tether: [0.0; 3],
                         armature: 0.0,
                         soft: contact::SoftJoint::default(),
                         part: context.part,
@@ -528,8 +531,9 @@ fn joint<'a>(name: Option<String>, values: &Values<'a>, context: &Context<'a>, f
         let expected = "none: the bounds are those of the actuators alone, without the weight that is compensated";
         values.element.warning((&values.subject, "actuatorgravcomp"), Code::LostDynamics, "actuatorgravcomp beside bounds", expected, log);
     }
-    // Errors in these are reported above and below.
+    // Errors in these are reported here and below.
     let mut reported = log.apart();
+    let (dynamics, tether) = dynamics(values, kind, flags, &angle, log);
     Some(Joint {
         name,
         element: values.element,
@@ -545,7 +549,8 @@ fn joint<'a>(name: Option<String>, values: &Values<'a>, context: &Context<'a>, f
         spring_damper: values.exactly("springdamper", log).unwrap_or_default(),
         armature: values.number("armature", &mut reported).unwrap_or(0.0),
         soft: contact::SoftJoint::of(values, flags, log),
-        dynamics: dynamics(values, kind, flags, &angle, log),
+        dynamics,
+        tether,
         part: context.part,
     })
 }
@@ -618,21 +623,23 @@ fn limits(
     (is_limited, (limit != Limit::NONE).then_some(limit), is_force_limited.then_some(force))
 }
 
-fn dynamics(values: &Values<'_>, kind: Kind, flags: Flags, angle: &dyn Fn(f64) -> f64, log: &mut Diagnostics) -> JointDynamics {
+/// The numbers of a joint's forces, and the stiffnesses of a free joint.
+fn dynamics(values: &Values<'_>, kind: Kind, flags: Flags, angle: &dyn Fn(f64) -> f64, log: &mut Diagnostics) -> (JointDynamics, [f64; 3]) {
     let [damping, stiffness] = [("damping", flags.no_damper), ("stiffness", flags.no_spring)].map(|(name, is_off)| {
         if !values.has_numbers(name) {
             return [None; 3];
         }
         let numbers @ [_, second, third] = values.at_most(name, [0.0; 3], log);
         let has_terms = (second != 0.0 || third != 0.0) && !is_off;
-        if has_terms && kind == Kind::Free {
-            let expected = format!("one coefficient: the {name} of a free joint is linear, and the others are not used");
-            values.element.warning((&values.subject, name), Code::LostDynamics, format!("a {name} of higher degree"), expected, log);
+        if has_terms && kind == Kind::Free && name == "damping" {
+            let expected = "one coefficient: the damping of a free joint is linear, and the others are not used";
+            values.element.warning((&values.subject, name), Code::LostDynamics, "a damping of higher degree", expected, log);
         }
         numbers.map(|number| Some(number).filter(|_| !is_off))
     });
     let terms = |[_, second, third]: [Option<f64>; 3]| Some([second?, third?]).filter(|terms| *terms != [0.0; 2]);
     let (damping_terms, stiffness_terms) = (terms(damping), terms(stiffness));
+    let tether = if kind == Kind::Free { stiffness.map(|own| own.unwrap_or(0.0)) } else { [0.0; 3] };
     let [damping, stiffness] = [damping[0], stiffness[0]];
     let friction = values.number("frictionloss", log).filter(|_| !flags.no_friction);
     let armature = values.number("armature", log);
@@ -645,17 +652,14 @@ fn dynamics(values: &Values<'_>, kind: Kind, flags: Flags, angle: &dyn Fn(f64) -
         // A ball joint is relaxed at the identity.
         let rest = if kind == Kind::Ball { None } else { values.number("springref", log).map(angle) };
         let rest = rest.filter(|_| stiffness.is_some());
-        return JointDynamics { damping, damping_terms, friction, armature, stiffness, stiffness_terms, rest };
+        return (JointDynamics { damping, damping_terms, friction, armature, stiffness, stiffness_terms, rest }, tether);
     }
-    let lost = [
-        ("frictionloss", friction, "none, or functions with constraints, which alone keep it"),
-        ("stiffness", stiffness, "none: a free joint keeps no such number"),
-    ];
-    for (name, _, expected) in lost.into_iter().filter(|(_, number, _)| number.is_some_and(|number| number != 0.0)) {
-        values.element.warning((&values.subject, name), Code::LostDynamics, format!("{name} of a free joint"), expected, log);
+    if friction.is_some_and(|number| number != 0.0) {
+        let expected = "none, or functions with constraints, which alone keep it";
+        values.element.warning((&values.subject, "frictionloss"), Code::LostDynamics, "frictionloss of a free joint", expected, log);
     }
-    // Armature of a free joint is an effect on its body: see `surroundings`.
-    JointDynamics { damping, ..JointDynamics::default() }
+    // Armature and stiffness of a free joint are effects on its body: see `surroundings`.
+    (JointDynamics { damping, ..JointDynamics::default() }, tether)
 }
 
 /// The pose of a joint in the body's frame, turned or moved back by its reference, so that the

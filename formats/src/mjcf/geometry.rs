@@ -59,8 +59,9 @@ pub(crate) struct Geom<'a> {
     /// `contype` and `conaffinity`.
     pub(crate) mask: ContactMask,
     pub(crate) color: Option<[f64; 4]>,
-    /// Whether the medium acts on it as on an ellipsoid.
-    pub(crate) is_ellipsoid_in_fluid: bool,
+    /// The coefficients of the medium, if it acts as on an ellipsoid: blunt and slender drag, drag
+    /// of turns, Kutta and Magnus lift.
+    pub(crate) in_fluid: Option<[f64; 5]>,
     /// Its numbers of the law of contact.
     pub(crate) surface: Surface,
 }
@@ -166,8 +167,13 @@ pub(crate) fn geom<'a>(
         mask,
         color: values.exactly::<4>("rgba", log),
         surface: Surface::of(values, log),
-        is_ellipsoid_in_fluid: values.word("fluidshape", &[("none", false), ("ellipsoid", true)], log).unwrap_or(false),
+        in_fluid: in_fluid(values, log),
     })
+}
+
+fn in_fluid(values: &Values<'_>, log: &mut Diagnostics) -> Option<[f64; 5]> {
+    let is_ellipsoid = values.word("fluidshape", &[("none", false), ("ellipsoid", true)], log)?;
+    is_ellipsoid.then(|| values.at_most("fluidcoef", [0.5, 0.25, 1.5, 1.0, 1.0], log))
 }
 
 /// The tag of `<asset>` that an attribute names; an error, and `None`, if there is no such tag.
@@ -271,6 +277,37 @@ impl Geom<'_> {
         }
         let mass = self.mass.unwrap_or(self.density * volume);
         (mass > TINY).then(|| Mass { mass, pose, inertia: inertia.map(|x| mass * x), axes: Some(axes) })
+    }
+
+    /// The ellipsoid that the medium acts on: its frame in the body, and its semi-axes, m. `None`:
+    /// it has no extent along an axis, or after an error.
+    pub(crate) fn ellipsoid(&self, meshes: &mut Meshes<'_>, log: &mut Diagnostics) -> Option<(Pose, Vector)> {
+        let (pose, [a, b, c]) = match self.mesh {
+            None => (self.pose, self.size),
+            Some(mesh) => {
+                let body = meshes.body(mesh, &self.settings, log)?;
+                let principal = body.principal();
+                let (size, center) = match self.kind {
+                    Kind::Mesh | Kind::Sdf => {
+                        let [least, most] = principal.corners;
+                        ([0, 1, 2].map(|k| least[k].abs().max(most[k].abs())), [0.0; 3])
+                    }
+                    kind => {
+                        let (size, center) = fitted(&body, kind, self.fit_corners);
+                        (scale(size, self.fit_scale), center)
+                    }
+                };
+                let position = add(body.center, rotate(principal.axes, center));
+                (self.pose.then(&Pose { position, rotation: principal.axes }), size)
+            }
+        };
+        let semi_axes = match self.kind {
+            Kind::Sphere => [a; 3],
+            Kind::Capsule => [a, a, a + b],
+            Kind::Cylinder => [a, a, b],
+            _ => [a, b, c],
+        };
+        semi_axes.iter().all(|own| *own > 0.0).then_some((pose, semi_axes))
     }
 
     /// Moves it when the frame of its body moves the other way.

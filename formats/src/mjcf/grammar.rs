@@ -36,7 +36,6 @@ const PLUGIN: &str = "plugins of MuJoCo are not read";
 const ACTUATOR: &str = "controls are given by the scene";
 const UNREAD_ACTUATOR: &str = "actuators of this kind are not read";
 const HEIGHTS: &str = "contact with height fields is not computed: they give mass alone";
-const FLUID: &str = "forces of the medium on ellipsoids are given by the scene";
 
 const BODY_TAGS: Names = "body frame replicate attach inertial joint freejoint geom site";
 const BODY_UNUSED_TAGS: &[(Names, &str)] =
@@ -215,12 +214,11 @@ const ROWS: &[Row] = &[
         name: "geom",
         within: IN_BODIES,
         attributes: "name class type contype conaffinity group size mass density shellinertia fromto pos quat axisangle xyaxes zaxis euler \
-                     mesh hfield fitscale rgba fluidshape",
+                     mesh hfield fitscale rgba fluidshape fluidcoef",
         unused_attributes: &[
             ("condim priority friction solmix solref solimp margin gap", CONTACT),
             ("surfacevel adhesion", NO_CONTACT),
             ("material", APPEARANCE),
-            ("fluidcoef", FLUID),
             ("user", USER),
         ],
         tags: "",

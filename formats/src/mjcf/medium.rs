@@ -1,4 +1,6 @@
-//! The medium around bodies, as it acts on the boxes of their inertias.
+//! The medium around bodies, as it acts on the boxes of their inertias or on ellipsoids.
+//!
+//! On ellipsoids it acts as the effect `ellipsoid_drag` says. On boxes:
 //!
 //! ```text
 //! sides of the box:   s_i² = 6 (I_j + I_k − I_i)/m,   d = (s₁ + s₂ + s₃)/3
@@ -6,21 +8,24 @@
 //! viscous:            b = 3 π d β,   B = π d³ β
 //! ```
 //!
-//! Source: MuJoCo documentation, Fluid forces, Inertia model.
+//! Source: MuJoCo documentation, Fluid forces.
 
 use core::f64::consts::PI;
 
 use super::axes::{in_axes, principal};
+use super::ellipsoid::virtual_masses;
 use super::mass::Mass;
-use crate::pose::{IDENTITY, Pose, conjugate, multiply, turned};
+use crate::pose::{IDENTITY, Pose, Vector, conjugate, multiply, turned};
 
-/// A medium at rest.
+/// A medium, at rest or in motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Medium {
     /// ρ, kg/m³.
     pub(crate) density: f64,
     /// β, Pa·s.
     pub(crate) viscosity: f64,
+    /// Its velocity, m/s.
+    pub(crate) wind: Vector,
 }
 
 impl Medium {
@@ -42,7 +47,13 @@ impl Medium {
             self.density * own * (one.powi(4) + other.powi(4)) / 64.0
         });
         let viscous = [3.0 * PI * diameter * self.viscosity, PI * diameter.powi(3) * self.viscosity];
-        (frame, [&along[..], &about, &viscous].concat())
+        (frame, [&along[..], &about, &viscous, &self.wind].concat())
+    }
+
+    /// The parameters of the drag on an ellipsoid with these semi-axes and coefficients.
+    pub(crate) fn ellipsoid(&self, semi_axes: Vector, coefficients: [f64; 5]) -> Vec<f64> {
+        let [mass, inertia] = virtual_masses(semi_axes);
+        [&semi_axes[..], &[self.density, self.viscosity], &coefficients, &mass, &inertia, &self.wind].concat()
     }
 }
 

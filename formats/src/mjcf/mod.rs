@@ -31,6 +31,7 @@ mod bodies;
 mod contact;
 mod documents;
 mod element;
+mod ellipsoid;
 mod equalities;
 mod geometry;
 mod grammar;
@@ -94,7 +95,8 @@ impl Format for Mjcf {
         let mut inertials = inertia::of_bodies(&tree.bodies, &mut meshes, diagnostics);
         align::align(&mut tree.bodies, &mut inertials);
         let mut lowered = lower::lower(name, &tree.bodies, &inertials, input.options, diagnostics);
-        let world = world::world(&documents, (&tree, &inertials), &simulation, (&mut lowered, &input.options.leave_out), diagnostics);
+        let world =
+            world::world(&documents, (&tree, &inertials, &mut meshes), &simulation, (&mut lowered, &input.options.leave_out), diagnostics);
         Some(Document { description: lowered.description, world })
     }
 }

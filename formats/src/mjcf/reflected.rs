@@ -1,5 +1,7 @@
 //! The mass that an actuator or a spring feels at the reference state.
 
+use std::collections::BTreeMap;
+
 use articulated_core::algorithm::{Workspace, function};
 use articulated_core::description::{Base, Description};
 use articulated_core::diagnostic::{Code, Diagnostics, Subject};
@@ -141,13 +143,21 @@ fn is_one_branch(scope: &Scope<'_>, one: usize, other: usize) -> bool {
 
 /// Sets the stiffness and the damping of joints with `springdamper`: k = m/(T ζ)² and d = 2 m/T,
 /// with the mass m of the joint at the reference state, the time constant T and the ratio ζ.
-pub(crate) fn spring_dampers(scope: &Scope<'_>, flags: Flags, description: &mut Description, rotors: &[Rotor], log: &mut Diagnostics) {
+/// Returns the stiffnesses of free joints, by their indices.
+pub(crate) fn spring_dampers(
+    scope: &Scope<'_>,
+    flags: Flags,
+    description: &mut Description,
+    rotors: &[Rotor],
+    log: &mut Diagnostics,
+) -> BTreeMap<usize, f64> {
+    let mut free = BTreeMap::new();
     let has_one = |(_, known): &(usize, &Known<'_>)| known.joint.spring_damper.iter().all(|x| *x > 0.0);
     let all: Vec<usize> = scope.joints.iter().enumerate().filter(has_one).map(|(index, _)| index).collect();
     if all.is_empty() || flags.no_passive_force() {
-        return;
+        return free;
     }
-    let inertia = Inertia::at_reference(3 * all.len(), description, scope, rotors, log);
+    let inertia = Inertia::at_reference(6 * all.len(), description, scope, rotors, log);
     for index in all {
         let Known { joint, name, .. } = scope.joints[index];
         let count = freedoms(joint.kind);
@@ -159,7 +169,6 @@ pub(crate) fn spring_dampers(scope: &Scope<'_>, flags: Flags, description: &mut 
         });
         let about = Subject::Joint(name.to_owned());
         let found = match mass {
-            _ if joint.kind == Kind::Free => Err("a springdamper of a free joint".to_owned()),
             Ok(mass) => Ok(mass),
             // These errors are already reported.
             Err(Unknown::Mistakes) => continue,
@@ -169,7 +178,7 @@ pub(crate) fn spring_dampers(scope: &Scope<'_>, flags: Flags, description: &mut 
             (Ok(mass), Some(own)) => (mass, own),
             (Ok(_), None) => continue,
             (Err(found), _) => {
-                let expected = "a hinge, slide or ball that moves a known mass: else it is not used";
+                let expected = "a joint that moves a known mass: else it is not used";
                 joint.element.warning((&about, "springdamper"), Code::LostDynamics, found, expected, log);
                 continue;
             }
@@ -179,17 +188,22 @@ pub(crate) fn spring_dampers(scope: &Scope<'_>, flags: Flags, description: &mut 
         if !flags.no_damper {
             dynamics.damping = Some(2.0 * mass / time);
         }
-        if !flags.no_spring {
-            dynamics.stiffness = Some(mass / (time * ratio).powi(2));
+        let stiffness = mass / (time * ratio).powi(2);
+        let is_free = joint.kind == Kind::Free;
+        if is_free && !flags.no_spring {
+            free.insert(index, stiffness);
+        } else if !flags.no_spring {
+            dynamics.stiffness = Some(stiffness);
             if joint.kind != Kind::Ball {
                 dynamics.rest = Some(joint.rest);
             }
         }
-        let tags = [("joint stiffness", flags.no_spring), ("dynamics damping", flags.no_damper)];
+        let tags = [("joint stiffness", flags.no_spring || is_free), ("dynamics damping", flags.no_damper)];
         for (tag, _) in tags.into_iter().filter(|(_, is_off)| !is_off) {
             joint.element.unused_part(&about, (joint.element.attribute("springdamper"), tag.to_owned()), KEPT, log);
         }
     }
+    free
 }
 
 fn entries(drives: &Drives, starts: &[usize]) -> Vec<(usize, f64)> {

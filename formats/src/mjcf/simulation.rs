@@ -112,7 +112,7 @@ pub(crate) struct Simulation<'a> {
 }
 
 impl<'a> Simulation<'a> {
-    /// For the main document, with the changes by attached models. A medium is a warning.
+    /// For the main document, with the changes by attached models.
     pub(crate) fn of(documents: &'a Documents, log: &mut Diagnostics) -> Self {
         let mut all = Self::with_attached(0, documents, &mut BTreeSet::new(), log);
         for (flag, why) in FLAGS.iter().filter(|(flag, why)| !why.is_empty() && all.is_off(flag)) {
@@ -120,13 +120,9 @@ impl<'a> Simulation<'a> {
                 place.unused(&Subject::Document, place.attribute(flag), why, log);
             }
         }
-        let medium = Medium { density: all.density.unwrap_or(0.0), viscosity: all.viscosity.unwrap_or(0.0) };
+        let wind = all.wind.unwrap_or_default();
+        let medium = Medium { density: all.density.unwrap_or(0.0), viscosity: all.viscosity.unwrap_or(0.0), wind };
         all.medium = Some(medium).filter(|medium| medium.density > 0.0 || medium.viscosity > 0.0);
-        let is_blown = all.medium.is_some() && !all.flags().no_passive_force() && all.wind.is_some_and(|wind| wind != [0.0; 3]);
-        if let Some(place) = all.places.get("wind").filter(|_| is_blown) {
-            let expected = "a medium at rest: the wind is not read";
-            place.warning((&Subject::Document, "wind"), Code::LostDynamics, "a medium that moves", expected, log);
-        }
         all
     }
 

@@ -1,4 +1,6 @@
-//! Effects on bodies: compensated weight, the medium, and armature of free joints.
+//! Effects on bodies: compensated weight, the medium, and armature and stiffness of free joints.
+
+use std::collections::BTreeMap;
 
 use articulated_core::description::Origin;
 use articulated_core::diagnostic::{At, Code, Diagnostics, Subject};
@@ -6,13 +8,14 @@ use articulated_core::effect::{Applied, EffectId};
 
 use super::bodies::{Kind, Tree};
 use super::mass::Mass;
-use super::scope::Scope;
+use super::mesh::Meshes;
+use super::scope::{Scope, reference};
 use super::simulation::Simulation;
 
 /// The effects of all bodies, with their places. `links`: the name of the link of each body.
 pub(crate) fn effects(
     scope: &Scope<'_>,
-    (tree, inertials): (&Tree<'_>, &[Option<Mass>]),
+    (tree, inertials, meshes): (&Tree<'_>, &[Option<Mass>], &mut Meshes<'_>),
     links: &[&str],
     simulation: &Simulation<'_>,
     log: &mut Diagnostics,
@@ -34,14 +37,39 @@ pub(crate) fn effects(
             put(EffectId::gravity_compensation, own.pose.origin(), vec![body.compensated * own.mass]);
         }
         let Some(medium) = medium else { continue };
-        if let Some(geom) = body.geoms.iter().find(|geom| geom.is_ellipsoid_in_fluid) {
-            let expected = "`fluidshape` none: the forces of the medium on this body are not read";
-            let found = "an ellipsoid in the medium";
-            geom.element.warning((&Subject::Link((*link).to_owned()), "fluidshape"), Code::LostDynamics, found, expected, log);
+        // One ellipsoid turns off the box of the whole body, as in MuJoCo.
+        if body.geoms.iter().all(|geom| geom.in_fluid.is_none()) {
+            let (frame, drag) = medium.drag(&own);
+            put(EffectId::box_drag, frame.origin(), drag);
+        }
+        for (geom, coefficients) in body.geoms.iter().filter_map(|geom| Some((geom, geom.in_fluid?))) {
+            match geom.ellipsoid(meshes, log) {
+                Some((frame, semi_axes)) => put(EffectId::ellipsoid_drag, frame.origin(), medium.ellipsoid(semi_axes, coefficients)),
+                None => {
+                    let expected = "a shape with an extent along each axis: the medium does not act on this one";
+                    let about = Subject::Link((*link).to_owned());
+                    geom.element.warning((&about, "fluidshape"), Code::LostDynamics, "a flat ellipsoid in the medium", expected, log);
+                }
+            }
+        }
+    }
+    all
+}
+
+/// Springs of free joints, between the reference pose and the body. `stiffnesses`: those of
+/// `springdamper`, by the index of the joint.
+pub(crate) fn tethers(scope: &Scope<'_>, stiffnesses: &BTreeMap<usize, f64>, links: &[String]) -> Vec<(Applied, At)> {
+    let mut all = Vec::new();
+    for (index, known) in scope.joints.iter().enumerate().filter(|(_, known)| known.joint.kind == Kind::Free) {
+        let [first, second, third] = known.joint.tether;
+        let stiffness = [stiffnesses.get(&index).copied().unwrap_or(first), second, third];
+        if stiffness == [0.0; 3] {
             continue;
         }
-        let (frame, drag) = medium.drag(&own);
-        put(EffectId::box_drag, frame.origin(), drag);
+        // The same for translation and rotation, as in MuJoCo
+        let parameters = [&stiffness[..], &stiffness, &reference(scope, known)].concat();
+        let on = links[known.body].clone();
+        all.push((Applied { effect: EffectId::tether, on, at: Origin::default(), parameters }, scope.place(known.joint.element)));
     }
     all
 }

@@ -1,6 +1,7 @@
 //! The section `<tendon>`: sums of coordinates and paths over sites, with springs and dampers on
 //! them.
 
+use articulated_core::actuator::Terms;
 use articulated_core::description::Description;
 use articulated_core::diagnostic::{Code, Diagnostics, Subject};
 
@@ -80,7 +81,6 @@ pub(crate) fn length_of(terms: &[(usize, f64)], scope: &Scope<'_>) -> (TouchingL
 }
 
 const LIMITED: &str = "functions with constraints: its limits do not bound other motions";
-const ONE: &str = "one coefficient: the others are not used";
 
 /// All tendons. Their springs and dampers become `passive`.
 pub(crate) fn tendons(
@@ -243,7 +243,7 @@ impl<'a> Own<'a> {
     }
 
     /// f = −k (l − l₀) − d l̇. A spring between two lengths l₁ < l₂ is two: one pulls where l > l₂,
-    /// one pushes where l < l₁.
+    /// one pushes where l < l₁. Terms of higher degree are a force of their own.
     fn force(&self, tendon: &Tendon, scope: &mut Scope<'_>, passive: &mut Vec<Actuator>, log: &mut Diagnostics) {
         let element = self.element;
         let has_force = [self.stiffness, self.damping, self.friction, self.armature] != [0.0; 4] || self.has_higher_terms();
@@ -258,7 +258,6 @@ impl<'a> Own<'a> {
             (self.is_force_limited, "actuatorfrcrange", ("limits of the forces on a tendon", "those of its actuators and joints")),
             (self.friction != 0.0, "frictionloss", ("friction of a tendon", "functions with constraints: it acts in these alone")),
             (self.armature != 0.0, "armature", ("armature of a tendon", "armature of the joints: that of tendons is not read")),
-            (self.has_higher_terms(), "stiffness", ("stiffness or damping of higher degree", ONE)),
             (self.yields, "springyield", ("a spring that yields", "a spring that does not: it is elastic")),
         ];
         for (_, field, lost) in losses.iter().filter(|(is_lost, ..)| *is_lost) {
@@ -272,22 +271,26 @@ impl<'a> Own<'a> {
         let drives: Vec<_> = tendon.terms().iter().map(|(joint, factor)| (scope.joints[*joint].name.to_owned(), vec![*factor])).collect();
         let frames = if let Course::Path(path) = &tendon.course { Some(OnFrames::Path(path.strands.clone())) } else { None };
         let place = scope.place(element);
-        let mut push = |bias: [f64; 3], force_range: Option<[f64; 2]>| {
-            if bias != [0.0; 3] {
+        let mut push = |bias: [f64; 3], force_range: Option<[f64; 2]>, terms: Option<Terms>| {
+            if bias != [0.0; 3] || terms.is_some() {
                 let (name, drives, frames) = (tendon.name.clone(), drives.clone(), frames.clone());
-                passive.push(Actuator { name, drives, frames, bias, force_range, place, ..Actuator::default() });
+                passive.push(Actuator { name, drives, frames, bias, terms, force_range, place, ..Actuator::default() });
             }
         };
         if stiffness == 0.0 || lower == upper {
-            push([stiffness * lower, -stiffness, -self.damping], None);
+            push([stiffness * lower, -stiffness, -self.damping], None, None);
         } else {
-            push([0.0, 0.0, -self.damping], None);
+            push([0.0, 0.0, -self.damping], None, None);
             let (mut below, mut above) = ([0.0, f64::INFINITY], [f64::NEG_INFINITY, 0.0]);
             if stiffness < 0.0 {
                 std::mem::swap(&mut below, &mut above);
             }
-            push([stiffness * lower, -stiffness, 0.0], Some(below));
-            push([stiffness * upper, -stiffness, 0.0], Some(above));
+            push([stiffness * lower, -stiffness, 0.0], Some(below), None);
+            push([stiffness * upper, -stiffness, 0.0], Some(above), None);
+        }
+        if self.has_higher_terms() {
+            let (stiffness, damping) = (self.higher_stiffness, self.higher_damping);
+            push([0.0; 3], None, Some(Terms { rest: [lower, upper], stiffness, damping }));
         }
     }
 }

@@ -13,6 +13,7 @@ use super::equalities::equalities;
 use super::grammar::subject;
 use super::lower::Lowered;
 use super::mass::Mass;
+use super::mesh::Meshes;
 use super::reflected::{Rotor, spring_dampers};
 use super::scope::Scope;
 use super::simulation::Simulation;
@@ -27,7 +28,7 @@ use crate::world::{Plane, World};
 /// Reads the rest of a model.
 pub(crate) fn world(
     documents: &Documents,
-    (tree, inertials): (&Tree<'_>, &[Option<Mass>]),
+    (tree, inertials, meshes): (&Tree<'_>, &[Option<Mass>], &mut Meshes<'_>),
     simulation: &Simulation<'_>,
     (lowered, leave_out): (&mut Lowered, &BTreeSet<LeaveOut>),
     log: &mut Diagnostics,
@@ -51,9 +52,10 @@ pub(crate) fn world(
     let tendons = tendons(&mut scope, flags, (&lowered.description, &lowered.links), &mut world.passive, log);
     let (controls, armatures) = actuators(&mut scope, &tendons, simulation, (&lowered.description, &lowered.links), &mut world, log);
     let links: Vec<&str> = lowered.links.iter().map(String::as_str).collect();
-    world.effects = surroundings::effects(&scope, (tree, inertials), &links, simulation, log);
+    world.effects = surroundings::effects(&scope, (tree, inertials, meshes), &links, simulation, log);
     world.contact_masks = std::mem::take(&mut lowered.masks);
-    spring_dampers(&scope, flags, &mut lowered.description, &armatures, log);
+    let stiffnesses = spring_dampers(&scope, flags, &mut lowered.description, &armatures, log);
+    world.effects.extend(surroundings::tethers(&scope, &stiffnesses, &lowered.links));
     add_armatures(&scope, &mut lowered.description, &armatures);
     let (equations, anchors) = equalities(&mut scope, (&tendons, &links), flags.no_equality, &mut world, log);
     let mut touching = touching::touching(&mut scope, inertials, &links, (simulation, &tendons), log);

@@ -8,8 +8,13 @@ use super::collision;
 use super::resolve::Filled;
 
 /// Effects on links that a file may have, whole, with what has them there.
-const ON_LINKS: [(EffectId, &str); 3] =
-    [(EffectId::gravity_compensation, "gravcomp"), (EffectId::box_drag, "medium"), (EffectId::added_mass, "armature of the free joint")];
+const ON_LINKS: [(EffectId, &str); 5] = [
+    (EffectId::gravity_compensation, "gravcomp"),
+    (EffectId::box_drag, "medium"),
+    (EffectId::ellipsoid_drag, "medium"),
+    (EffectId::tether, "stiffness of the free joint"),
+    (EffectId::added_mass, "armature of the free joint"),
+];
 
 /// Effects on joints that `effects."*" = "file"` requests too.
 const ON_JOINTS: [EffectId; 5] =

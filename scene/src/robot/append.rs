@@ -10,7 +10,7 @@ use std::collections::HashSet;
 use articulated_core::description::{Base, Coupling, EditError, Editor};
 use articulated_core::diagnostic::{At, Code, Diagnostic, Place, Subject, Unused};
 use articulated_core::diagnostic::{Diagnostics, quote};
-use articulated_core::effect::Applied;
+use articulated_core::effect::{Applied, EffectId};
 use articulated_formats::world::{Actuator, Keyframe, Loop, Unread, World};
 use articulated_formats::{LeaveOut, Options, read_with};
 
@@ -90,8 +90,14 @@ impl Joining<'_> {
         world.joint_forces.extend(self.all_named(other.joint_forces));
         world.couplings.extend(other.couplings.into_iter().map(|(coupling, at)| (self.coupling(coupling), at)));
         world.contact_masks.extend(self.all_named(other.contact_masks));
+        let (tethers, effects): (Vec<_>, Vec<_>) = other.effects.into_iter().partition(|(effect, _)| effect.effect == EffectId::tether);
         let on_link = |(effect, _): (Applied, At)| (Applied { on: self.named(&effect.on), ..effect }, At::Nowhere);
-        world.effects.extend(other.effects.into_iter().map(on_link));
+        world.effects.extend(effects.into_iter().map(on_link));
+        for (effect, at) in tethers {
+            let place = Place { at, subject: &Subject::Link(self.named(&effect.on)), field: "stiffness" };
+            let expected = "effects.tether of the scene: the spring of this free joint is to a pose in the world of its own file";
+            self.warn(&place, Code::LostDynamics, "stiffness of a free joint of an appended robot".to_owned(), expected);
+        }
         for plane in &other.planes {
             let place = Place { at: plane.place, subject: &Subject::Document, field: "plane" };
             let found = format!("the plane {} in a robot that is appended", quote(&plane.name));

@@ -23,7 +23,7 @@ fn an_unknown_key_is_told_with_the_nearest() {
                     forbid_unsafe, max_code_size, effects, simulation, initial, control, impact; did you mean \"gravity\"?";
     assert_eq!(one("gravty = [0, 0, -9.81]"), expected);
     let expected = "s.toml:2: effects.dampign: found a key that is not known, expected one of armature, damping, polynomial_damping, friction, spring, polynomial_spring, limit, motor, \
-                    drag, box_drag, buoyancy, gravity_compensation, added_mass, contact, shaft, *; did you mean \"damping\"?";
+                    drag, box_drag, ellipsoid_drag, buoyancy, gravity_compensation, tether, added_mass, contact, shaft, *; did you mean \"damping\"?";
     assert_eq!(one("\n[effects.dampign]\nelbow = 1"), expected);
     let expected = "s.toml:3: effects.spring.elbow.stifness: found a key that is not known, expected one of stiffness, rest, from; did you mean \"stiffness\"?";
     assert_eq!(one("[effects.spring]\n\nelbow = { stifness = 1 }"), expected);

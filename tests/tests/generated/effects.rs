@@ -63,7 +63,7 @@ fn robots() -> Vec<Robot> {
         all_of(EffectId::armature, &joints, &[1e-3, 6.0]),
         all_of(EffectId::friction, &joints, &[0.3, 0.05]),
         all_of(EffectId::contact, &links, &[0.05, 800.0, 0.4, 0.6, 0.05, 0.0, 0.0, 1.0, 0.0, 0.03]),
-        all_of(EffectId::box_drag, &links, &[1.0, 2.0, 3.0, 0.1, 0.2, 0.3, 0.5, 0.05]),
+        all_of(EffectId::box_drag, &links, &[1.0, 2.0, 3.0, 0.1, 0.2, 0.3, 0.5, 0.05, 0.0, 0.0, 0.0]),
         all_of(EffectId::buoyancy, &links, &[1e-3, 1000.0]),
         all_of(EffectId::gravity_compensation, &links, &[0.6]),
     ]

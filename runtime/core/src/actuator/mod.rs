@@ -13,6 +13,7 @@ mod activation;
 mod frames;
 mod path;
 mod site;
+mod terms;
 mod torques;
 
 use alloc::string::String;
@@ -24,6 +25,7 @@ pub(crate) use frames::FrameRow;
 pub(crate) use path::row as path_row;
 pub use path::{Strand, path_at};
 pub use site::{SiteDrive, SiteFrame};
+pub use terms::Terms;
 
 use crate::Scalar;
 
@@ -54,6 +56,8 @@ pub struct ActuatorLaw<S = f64> {
     pub gain: [S; 3],
     /// b₀, b₁, b₂: force without control.
     pub bias: [S; 3],
+    /// Forces of higher degree beside these, of springs and dampers.
+    pub terms: Option<Terms<S>>,
     /// Bounds of the control u.
     pub control_range: Option<[S; 2]>,
     /// Bounds of the force f.
@@ -102,6 +106,7 @@ impl<S: Scalar> Default for ActuatorLaw<S> {
             frames: None,
             gain: zero,
             bias: zero,
+            terms: None,
             control_range: None,
             force_range: None,
             activation: None,
@@ -158,6 +163,7 @@ impl<S: Scalar> ActuatorLaw<S> {
             frames: self.frames.as_ref().map(|frames| frames.map(f)),
             gain: self.gain.map(f),
             bias: self.bias.map(f),
+            terms: self.terms.as_ref().map(|terms| terms.map(f)),
             control_range: self.control_range.map(|range| range.map(f)),
             force_range: self.force_range.map(|range| range.map(f)),
             activation: self.activation.as_ref().map(|activation| activation.map(f)),

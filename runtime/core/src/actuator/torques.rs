@@ -46,12 +46,13 @@ impl<S: Scalar> ActuatorLaw<S> {
 
     /// The force at a length and a rate.
     pub(super) fn bounded(&self, input: S, length: S, rate: S) -> S {
-        clamp(self.affine(input, length, rate), self.force_range)
+        clamp(self.unbounded(input, length, rate), self.force_range)
     }
 
-    fn affine(&self, input: S, length: S, rate: S) -> S {
+    fn unbounded(&self, input: S, length: S, rate: S) -> S {
         let affine = |[at_rest, of_length, of_rate]: [S; 3]| at_rest + of_length * length + of_rate * rate;
-        affine(self.gain) * input + affine(self.bias)
+        let force = affine(self.gain) * input + affine(self.bias);
+        self.terms.as_ref().map_or(force, |terms| force + terms.force(length, rate))
     }
 
     /// Its length and the rate of that, by the joints that it drives.
@@ -63,7 +64,8 @@ impl<S: Scalar> ActuatorLaw<S> {
     /// −∂f/∂l̇, zero at a bound of the force.
     fn damping(&self, input: S, (length, rate): (S, S)) -> S {
         let slope = -(self.gain[2] * input + self.bias[2]);
-        within(self.affine(input, length, rate), self.force_range, slope)
+        let slope = self.terms.as_ref().map_or(slope, |terms| slope + terms.slope(rate));
+        within(self.unbounded(input, length, rate), self.force_range, slope)
     }
 
     /// The degree of freedom, if it drives one joint of one degree.
@@ -86,8 +88,8 @@ impl<S: Scalar> ActuatorLaw<S> {
     }
 
     /// Whether it depends on a rate.
-    fn has_damping(&self, is_zero: impl Fn(S) -> bool) -> bool {
-        !is_zero(self.gain[2]) || !is_zero(self.bias[2])
+    fn has_damping(&self, is_zero: impl Fn(S) -> bool + Copy) -> bool {
+        !is_zero(self.gain[2]) || !is_zero(self.bias[2]) || self.terms.as_ref().is_some_and(|terms| terms.has_damping(is_zero))
     }
 }
 
@@ -166,7 +168,7 @@ impl<S: Scalar> Actuators<S> {
     /// Whether a torque depends on q or v.
     pub fn depend_on_state(&self) -> bool {
         let depends = |[_, of_length, of_rate]: [S; 3]| of_length != S::zero() || of_rate != S::zero();
-        self.all().any(|law| depends(law.gain) || depends(law.bias))
+        self.all().any(|law| depends(law.gain) || depends(law.bias) || law.terms.is_some())
     }
 }
 
@@ -184,6 +186,7 @@ mod tests {
             frames: None,
             gain: [10.0, 1.0, 0.5],
             bias: [1.0, -10.0, -2.0],
+            terms: None,
             control_range: Some([-1.0, 1.0]),
             force_range: Some([-15.0, 15.0]),
             activation: None,

@@ -15,6 +15,7 @@ mod buoyancy;
 mod contact;
 mod damping;
 mod drag;
+mod ellipsoid_drag;
 mod friction;
 mod gravity_compensation;
 mod limit;
@@ -25,6 +26,7 @@ mod polynomial_spring;
 mod range;
 mod spring;
 mod station;
+mod tether;
 mod unit;
 
 use alloc::string::String;
@@ -320,13 +322,41 @@ trait FrameForce {
         S::zero()
     }
 
-    /// Whether the slopes of the wrench in the twist are diagonal: steps implicit in velocity use
-    /// [`FrameForce::damping`] then.
+    /// Whether steps implicit in velocity use the slopes of the wrench in the twist.
     const HAS_DAMPING: bool = false;
 
-    /// −∂m_i/∂ω_i, N·m·s, and −∂f_i/∂v_i, N·s/m, along the axes.
-    fn damping<S: Scalar>(_p: &[S], _at: &Station<S>) -> [S; 6] {
-        [S::zero(); 6]
+    /// −∂(m, f)/∂(ω, v) in the axes of the frame.
+    fn damping<S: Scalar>(_p: &[S], _at: &Station<S>) -> Slopes<S> {
+        Slopes::Diagonal([S::zero(); 6])
+    }
+}
+
+/// −∂(m, f)/∂(ω, v) of a wrench, N·m·s, N·s and N·s/m.
+#[derive(Clone, Copy)]
+pub(crate) enum Slopes<S> {
+    /// Along and about the axes alone.
+    Diagonal([S; 6]),
+    /// Row by row.
+    All([[S; 6]; 6]),
+}
+
+impl<S: Scalar> Slopes<S> {
+    /// The moment and the force for a twist, by the part of the slopes that is symmetric.
+    pub(crate) fn symmetric(&self, twist: &[S; 6]) -> [S; 6] {
+        match self {
+            Self::Diagonal(own) => core::array::from_fn(|k| own[k] * twist[k]),
+            Self::All(own) => {
+                let half = S::from_f64(0.5);
+                core::array::from_fn(|i| (0..6).fold(S::zero(), |sum, j| sum + half * (own[i][j] + own[j][i]) * twist[j]))
+            }
+        }
+    }
+
+    /// The same by the part that is antisymmetric; `None`: there is none.
+    pub(crate) fn antisymmetric(&self, twist: &[S; 6]) -> Option<[S; 6]> {
+        let Self::All(own) = self else { return None };
+        let half = S::from_f64(0.5);
+        Some(core::array::from_fn(|i| (0..6).fold(S::zero(), |sum, j| sum + half * (own[i][j] - own[j][i]) * twist[j])))
     }
 }
 
@@ -350,7 +380,7 @@ pub(crate) enum Law<S: 'static> {
         slope: AtStation<Dual<S>, Wrench<Dual<S>>>,
         energy: AtStation<S, S>,
         rise: AtStation<Dual<S>, Dual<S>>,
-        damping: Option<AtStation<S, [S; 6]>>,
+        damping: Option<AtStation<S, Slopes<S>>>,
     },
     /// Inertia in a frame, of something that gravity does not act on.
     Added(fn(&[S]) -> ArticulatedInertia<S>),
@@ -469,8 +499,12 @@ effects! {
         "Hughes & Drury, Electric Motors and Drives, 2013, ch. 3";
     Wrench drag false "−c |v| v at a point" "Newton 1687; Batchelor 1967, §5.11";
     Wrench box_drag false "for each axis −c_i |v_i| v_i − b v_i and −C_i |ω_i| ω_i − B ω_i" "Batchelor 1967, §5.11, §4.9";
+    Wrench ellipsoid_drag false "an ellipsoid in a fluid that moves past it: drag along and about its axes, Magnus and Kutta lift, and the momentum of added mass"
+        "MuJoCo documentation, Fluid forces, Ellipsoid model; virtual masses: Lamb 1932, ch. V";
     Wrench buoyancy true "−ρ V g at the centre of the displaced volume" "Archimedes; Fossen 2011, §4.1";
     Wrench gravity_compensation true "−m g at a centre of mass: the weight of a mass m is carried" "MuJoCo documentation, gravcomp";
+    Wrench tether true "x of the frame from a place in the world: −(k₁ + k₂ |x| + k₃ |x|²) x; the same with the rotation vector from an orientation"
+        "Hooke 1678; MuJoCo documentation, stiffness of free joints";
     Added added_mass true "[m; f] += G V̇ + V ×* G V: fluid that is at rest without the link, moved along" "Fossen 2011, §6.3; Lamb 1932, §124";
     Wrench contact false "a sphere on the plane nᵀx = h: k x max(0, 1 + c ẋ + T ẋ/√(x² + T²ẋ²)) along n, and −μ F v_t/√(v_t² + s²)"
         "Hunt & Crossley, J. Appl. Mech. 42, 1975; with T it rests as Kelvin and Voigt's spring and damper";

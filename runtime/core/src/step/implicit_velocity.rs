@@ -58,9 +58,9 @@ fn alone<S: Scalar>(model: &Model<S>) -> Vec<BodyId> {
     model.outward().filter(floats).filter(|i| !carries(*i)).collect()
 }
 
-/// Accelerations x of a body alone with the slope of its gyroscopic forces b(ω):
-/// (M + h D + h ∂b/∂ω) x = (M + h D) x₀.
-fn gyroscopic<S: Scalar>(start: &Start<'_, S>, ws: &Workspace<S>, body: BodyId, a: &mut [S]) {
+/// Accelerations x of a body alone with the slope of its gyroscopic forces b(ω), and with the
+/// antisymmetric slopes of the medium: (M + h D + h ∂b/∂ω) x = (M + h D) x₀.
+fn gyroscopic<S: Scalar>(start: &Start<'_, S>, ws: &mut Workspace<S>, body: BodyId, a: &mut [S]) {
     let (own, zero) = (&start.model.bodies[body], S::zero());
     let at = own.coordinates.v;
     let omega = Vector3::new(start.v[at], start.v[at + 1], start.v[at + 2]);
@@ -93,6 +93,7 @@ fn gyroscopic<S: Scalar>(start: &Start<'_, S>, ws: &Workspace<S>, body: BodyId, 
         let slope = six(own.inertia.wrench(Vector3::zeros(), &turned));
         implicit.iter_mut().zip(slope).for_each(|(row, x)| row[k] += start.h * x);
     }
+    effects::body_turning(start.model, ws, (start.q, start.v), body, |i, j, x| implicit[i - at][j - at] += start.h * x);
     eliminate(&mut implicit, &mut right);
     a[at..at + 6].copy_from_slice(&right);
 }

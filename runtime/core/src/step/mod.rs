@@ -239,7 +239,7 @@ steps! { ROWS, Steps, TAKES, GIVES, [];
         "as step_semi_implicit_euler with (M + h D) a = τ − h(q, v), D the slopes of joint forces in the rates: MuJoCo's Euler",
         "Todorov, Erez & Tassa, IEEE/RSJ IROS 2012; MuJoCo documentation, Numerical integration";
     step_implicit_velocity: implicit_velocity::implicit_velocity, solved_at_once, [forward_dynamics_with_wrenches],
-        "as step_implicit_damping, D with the slopes of box_drag too, and gyroscopic forces of bodies that float alone: MuJoCo's implicitfast",
+        "as step_implicit_damping, D with the slopes of box_drag and ellipsoid_drag too, and gyroscopic forces of bodies that float alone: MuJoCo's implicitfast",
         "MuJoCo documentation, Numerical integration";
     step_lie_midpoint: lie_midpoint::lie_midpoint, untied, [forward_dynamics_with_wrenches, forward_dynamics_with_wrenches],
         "the implicit midpoint rule on the manifold: symmetric, keeps the momentum of a free body; error of order 2",

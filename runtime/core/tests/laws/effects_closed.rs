@@ -144,12 +144,40 @@ fn drag_is_the_square_of_the_speed() {
 #[test]
 fn drag_of_a_box_is_along_its_axes() {
     let v = [0.5, -2.0, 0.0, 3.0, 0.0, -4.0];
-    let found = moves(&[on(EffectId::box_drag, "ball", &[1.0, 2.0, 3.0, 0.1, 0.2, 0.3, 0.7, 0.05])], 1.0, v);
+    let found = moves(&[on(EffectId::box_drag, "ball", &[1.0, 2.0, 3.0, 0.1, 0.2, 0.3, 0.7, 0.05, 0.0, 0.0, 0.0])], 1.0, v);
     let w = turned(v);
     let linear = |c: f64, v: f64| -(c * v.abs() + 0.7) * v / MASS;
     let angular = |c: f64, v: f64| -(c * v.abs() + 0.05) * v / INERTIA;
     let expected = [angular(0.1, 0.5), angular(0.2, -2.0), 0.0, linear(1.0, 3.0) - w[0], -w[1], linear(3.0, -4.0) - w[2] - G];
     assert_all_near(&found, &expected);
+}
+
+/// Of a ball of radius r with the virtual mass m: drag c_b ρ π r² |v| v, and (c_m ρ V − ρ m) ω × v
+/// of Magnus lift and added momentum; turns are dragged by c_a ρ (8/15 π r⁵) |ω| ω.
+#[test]
+fn a_ball_in_a_fluid_is_dragged_and_lifted() {
+    use std::f64::consts::PI;
+    let v = [0.5, -2.0, 0.0, 3.0, 0.0, -4.0];
+    let [r, density, mass] = [0.2, 5.0, 0.01];
+    let parameters = [&[r, r, r, density, 0.0, 0.4, 0.1, 1.5, 1.0, 0.7], &[mass; 3][..], &[0.0; 6]].concat();
+    let found = moves(&[on(EffectId::ellipsoid_drag, "ball", &parameters)], 1.0, v);
+    let lift = density * (0.7 * 4.0 / 3.0 * PI * r.powi(3) - mass);
+    let (drag, turning) = (0.4 * density * PI * r * r * 5.0, 1.5 * density * 8.0 / 15.0 * PI * r.powi(5) * 4.25_f64.sqrt());
+    // ω × v
+    let w = turned(v);
+    let linear = |k: usize| (lift * w[k] - drag * v[3 + k]) / MASS - w[k] - if k == 2 { G } else { 0.0 };
+    let angular = |k: usize| -turning * v[k] / INERTIA;
+    assert_all_near(&found, &[angular(0), angular(1), angular(2), linear(0), linear(1), linear(2)]);
+}
+
+/// A spring pulls a body back to a place and an orientation in the world.
+#[test]
+fn a_tether_pulls_to_a_pose() {
+    let parameters = [3.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.1, 0.0, 1.0, 0.0, 0.0, 0.0, 2.0];
+    let model = ball().with_effects(&[on(EffectId::tether, "ball", &parameters)]).expect("an effect");
+    let q = [0.1, 0.0, 1.5, (0.3_f64).sin(), 0.0, 0.0, (0.3_f64).cos()];
+    let energy = call(&model, "potential_energy", &[&q])[0] - MASS * G * 1.5;
+    assert_near(energy, 0.5 * 3.0 * 0.25 + 0.25 * 0.0625 + 0.5 * 2.0 * 0.36);
 }
 
 #[test]

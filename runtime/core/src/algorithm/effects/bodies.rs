@@ -7,7 +7,7 @@ use crate::Scalar;
 use crate::algorithm::Workspace;
 use crate::algorithm::common::{Axes, on_the_way, positions};
 use crate::algorithm::wrenches::place_bodies;
-use crate::effect::{BodyEffect, Law};
+use crate::effect::{BodyEffect, EffectId, Law, Slopes};
 use crate::index::BodyId;
 use crate::joint::with_pose;
 use crate::joint::{JointLaw, Mount};
@@ -143,8 +143,8 @@ pub(crate) fn has_body_damping<S: Scalar>(model: &Model<S>) -> bool {
     model.bodies.iter().any(|body| body.effects.body.iter().any(has_damping))
 }
 
-/// Visits D_ij of D = Σ Jᵀ B J, i ≥ j, for the diagonal slopes B = −∂w/∂V of effects in the twists
-/// of their frames.
+/// Visits D_ij of D = Σ Jᵀ B J, i ≥ j, for the symmetric part of the slopes B = −∂w/∂V of effects
+/// in the twists of their frames.
 pub(crate) fn body_damping<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,
@@ -156,22 +156,58 @@ pub(crate) fn body_damping<S: Scalar>(
     }
     places(model, ws, q, v);
     for i in model.outward() {
-        for effect in &model.bodies[i].effects.body {
-            let Law::Wrench { damping: Some(damping), .. } = effect.effect.law::<S>() else { continue };
-            let slopes = damping(&effect.parameters, &station_in_base(model, ws, i, effect));
-            let turn = ws.common[i].rotation;
-            let (axes, offset) = (turn * effect.placement.rotation, rotate(&turn, effect.placement.position));
-            let mut own: Vec<(usize, [S; 6])> = Vec::new();
-            on_the_way(model, ws, i, Vector3::zeros(), |column, d| {
-                let Twist { angular: w, linear: v } = column.axis.at(d).at(offset).turned_back(&axes);
-                own.push((column.at, [w[0], w[1], w[2], v[0], v[1], v[2]]));
-            });
-            for (i, one) in &own {
+        each_damping(model, ws, i, |slopes, own| {
+            for (i, one) in own {
+                let w = slopes.symmetric(one);
                 for (j, other) in own.iter().filter(|(j, _)| j <= i) {
-                    visit(*i, *j, (0..6).fold(S::zero(), |sum, k| sum + slopes[k] * one[k] * other[k]));
+                    visit(*i, *j, dot(&w, other));
                 }
             }
+        });
+    }
+}
+
+/// Visits all entries of Jᵀ B J for the antisymmetric part of the slopes B of effects on one body.
+pub(crate) fn body_turning<S: Scalar>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    (q, v): (&[S], &[S]),
+    body: BodyId,
+    mut visit: impl FnMut(usize, usize, S),
+) {
+    let is_of_all = |own: &BodyEffect<S>| own.effect == EffectId::ellipsoid_drag;
+    if !model.bodies[body].effects.body.iter().any(is_of_all) {
+        return;
+    }
+    places(model, ws, q, v);
+    each_damping(model, ws, body, |slopes, own| {
+        for (j, other) in own {
+            let Some(w) = slopes.antisymmetric(other) else { return };
+            own.iter().for_each(|(i, one)| visit(*i, *j, dot(&w, one)));
         }
+    });
+}
+
+fn dot<S: Scalar>(a: &[S; 6], b: &[S; 6]) -> S {
+    (0..6).fold(S::zero(), |sum, k| sum + a[k] * b[k])
+}
+
+/// The twist of a frame for a unit of each rate, in its axes, with the place of the rate in v.
+type Columns<S> = [(usize, [S; 6])];
+
+/// Visits the slopes of each effect on body `i` that has them, after [`places`].
+fn each_damping<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: BodyId, mut visit: impl FnMut(&Slopes<S>, &Columns<S>)) {
+    for effect in &model.bodies[i].effects.body {
+        let Law::Wrench { damping: Some(damping), .. } = effect.effect.law::<S>() else { continue };
+        let slopes = damping(&effect.parameters, &station_in_base(model, ws, i, effect));
+        let turn = ws.common[i].rotation;
+        let (axes, offset) = (turn * effect.placement.rotation, rotate(&turn, effect.placement.position));
+        let mut own: Vec<(usize, [S; 6])> = Vec::new();
+        on_the_way(model, ws, i, Vector3::zeros(), |column, d| {
+            let Twist { angular: w, linear: v } = column.axis.at(d).at(offset).turned_back(&axes);
+            own.push((column.at, [w[0], w[1], w[2], v[0], v[1], v[2]]));
+        });
+        visit(&slopes, &own);
     }
 }
 

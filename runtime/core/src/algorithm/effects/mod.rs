@@ -15,7 +15,7 @@ use crate::model::Model;
 use crate::spatial::{Placement, Twist, Vector3, Wrench};
 
 pub(super) use bodies::{add_inertia, apply_body_wrenches, articulate_body_effects};
-pub(crate) use bodies::{body_damping, has_body_damping};
+pub(crate) use bodies::{body_damping, body_turning, has_body_damping};
 pub(crate) use joints::damping;
 pub(super) use joints::{apply_joint_forces, armature, armature_matrix, driven_slopes, input_torque, motor_torque, rotor};
 pub(super) use slopes::{on_bodies as body_slopes, on_joints as joint_slopes};
