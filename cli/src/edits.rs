@@ -166,7 +166,7 @@ mod tests {
     #[test]
     fn a_coupling_is_a_name_and_leaders_with_coefficients() {
         let leaders = vec![("m1".to_owned(), 0.5), ("m:2".to_owned(), -0.5)];
-        let expected = Coupling { joint: "pitch".into(), leaders, offset: 0.1 };
+        let expected = Coupling { joint: "pitch".into(), leaders, offset: 0.1, ..Coupling::default() };
         assert_eq!(coupling("pitch=m1:0.5,m:2:-0.5,0.1"), Ok(CouplingArgument::Joint(expected.clone())));
         assert_eq!(coupling("pitch=m1:0.5,m:2:-0.5"), Ok(CouplingArgument::Joint(Coupling { offset: 0.0, ..expected })));
         assert_eq!(coupling("file"), Ok(CouplingArgument::File));

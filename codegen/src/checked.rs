@@ -45,7 +45,7 @@ fn traced(view: &View<Sym>, follows: bool, looks: bool) -> Vec<Sym> {
     let mut smallest: Option<Sym> = None;
     let see = |_: usize, left: Sym| smallest = Some(smallest.map_or(left, |s| Sym::select((s - left).positive(), left, s)));
     if follows {
-        factored_pivots(model, &mut ws, see);
+        factored_pivots(model, &mut ws, &q, see);
     } else {
         articulated_body_pivots(model, &mut ws, see);
     }

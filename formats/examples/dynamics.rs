@@ -156,7 +156,7 @@ fn world(world: &World) -> String {
     };
     let couplings = list(&world.couplings, |(own, _)| {
         let leaders = list(&own.leaders, |(name, factor)| format!("[{name:?}, {factor:?}]"));
-        format!("{{\"joint\": {:?}, \"leaders\": {leaders}, \"offset\": {:?}}}", own.joint, own.offset)
+        format!("{{\"joint\": {:?}, \"leaders\": {leaders}, \"offset\": {:?}, \"higher\": {:?}}}", own.joint, own.offset, own.higher)
     });
     let effects = list(&world.effects, |(own, _)| {
         let (effect, on, xyz, numbers, turn) = (own.effect.name(), &own.on, own.at.xyz, &own.parameters, turn(&own.at));

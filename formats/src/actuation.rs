@@ -38,7 +38,7 @@ impl World {
 }
 
 /// The law of an actuator with the robot's own coordinates. A joint that follows others is
-/// q = Σ multiplier · leader's + offset: its part of the length is one of theirs, and a constant.
+/// q = Σ f(leader's): its part of the length is one of theirs, and a constant.
 /// `followers`: the number of the law, and where to put its torques on such joints.
 fn law(
     model: &Model<f64>,
@@ -49,7 +49,7 @@ fn law(
     let (mut drives, mut constant) = (Vec::new(), 0.0);
     for (joint, gear) in &actuator.drives {
         if let Some(one) = model.joints().iter().find(|one| one.name == *joint && one.v.1 == gear.len()) {
-            drives.push(Transmission { q: one.q.0, v: one.v.0, gear: gear.clone(), has_no_torque: false });
+            drives.push(Transmission { q: one.q.0, v: one.v.0, gear: gear.clone(), ..Transmission::default() });
             continue;
         }
         // One that follows several is a sequence of bodies with its name.
@@ -57,9 +57,10 @@ fn law(
         let (before, mut leaders) = (drives.len(), Vec::new());
         for (body, follow) in parts.filter_map(|body| Some((body, body.coordinates.mimic?))) {
             constant += gear[0] * follow.offset;
-            let (at, gear) = (&body.coordinates, vec![gear[0] * follow.multiplier]);
-            drives.push(Transmission { q: at.q, v: at.v, gear, has_no_torque: followers.is_some() });
-            leaders.push((at.v, follow.multiplier));
+            let (at, higher) = (body.coordinates, follow.higher.map(|all| all.map(|x| gear[0] * x)));
+            let gear = vec![gear[0] * follow.multiplier];
+            drives.push(Transmission { q: at.q, v: at.v, gear, higher, has_no_torque: followers.is_some() });
+            leaders.push(at);
         }
         if let Some((law, all)) = followers.as_mut().filter(|_| !leaders.is_empty()) {
             let known = all.iter().position(|(name, _)| name == joint);

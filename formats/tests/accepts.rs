@@ -392,8 +392,8 @@ fn mimics_have_defaults_and_chains() {
     let text = crane("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"travel\"/>")
         .replace("<axis xyz=\"1 0 0\"/>", "<axis xyz=\"1 0 0\"/><mimic joint=\"slew\" multiplier=\"-2\" offset=\".5\"/>");
     let crane = described(&text);
-    assert_eq!(crane.joints[JointId(2)].mimic, Some(Mimic { joint: JointId(1), multiplier: 1.0, offset: 0.0 }));
-    assert_eq!(crane.joints[JointId(1)].mimic, Some(Mimic { joint: JointId(0), multiplier: -2.0, offset: 0.5 }));
+    assert_eq!(crane.joints[JointId(2)].mimic, Some(Mimic::linear(JointId(1), 1.0, 0.0)));
+    assert_eq!(crane.joints[JointId(1)].mimic, Some(Mimic::linear(JointId(0), -2.0, 0.5)));
 }
 
 #[test]

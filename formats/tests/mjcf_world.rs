@@ -296,11 +296,36 @@ fn equations_of_joints_are_couplings() {
     assert!((found.2 - (0.55 + 2.0 * FRAC_PI_2)).abs() < 1e-15, "{found:?}");
 }
 
+/// y − y₀ = Σ cₖ (x − x₀)ᵏ, of joints and of tendons of one joint each.
+#[test]
+fn equations_of_higher_degree_are_polynomial_couplings() {
+    let coupling = |tags: &str| {
+        let found = world(&format!(
+            "<tendon><fixed name=\"t\"><joint joint=\"x\" coef=\"2\"/></fixed><fixed name=\"u\"><joint joint=\"h\" coef=\"4\"/></fixed></tendon>
+             <equality>{tags}</equality>"
+        ));
+        assert_eq!((found.couplings.len(), found.loops.len()), (1, 0), "{tags}");
+        found.couplings[0].0.clone()
+    };
+    let c = [0.1, 3.0, -0.5, 0.25, 0.125];
+    let expected = |d: f64| c.iter().enumerate().map(|(k, c)| c * d.powi(k as i32)).sum::<f64>();
+    for (tag, own, factor) in [("joint joint1=\"x\" joint2=\"h\"", 1.0, 1.0), ("tendon tendon1=\"t\" tendon2=\"u\"", 2.0, 4.0)] {
+        let found = coupling(&format!("<{tag} polycoef=\"0.1 3 -0.5 0.25 0.125\"/>"));
+        assert_eq!((found.joint.as_str(), found.leaders[0].0.as_str(), found.leaders.len()), ("x", "h", 1));
+        let [c2, c3, c4] = found.higher;
+        for h in [-0.4, 0.3, 1.9] {
+            let x = found.offset + h * (found.leaders[0].1 + h * (c2 + h * (c3 + h * c4)));
+            let by_hand = 0.5 + expected(factor * (h - FRAC_PI_2)) / own;
+            assert!((x - by_hand).abs() < 1e-13 * (1.0 + factor.powi(4) * 20.0), "{tag} at {h}: {x}, {by_hand}");
+        }
+    }
+}
+
 #[test]
 fn what_is_no_coupling_is_a_loop() {
     let tags = [
+        ("<joint joint1=\"x\" joint2=\"x\" polycoef=\"0 1 2\"/>", "joint"),
         ("<joint joint1=\"x\"/>", "joint"),
-        ("<joint joint1=\"x\" joint2=\"h\" polycoef=\"0 1 2\"/>", "joint"),
         ("<connect body1=\"c\" body2=\"d\" anchor=\"0 0 0\"/>", "connect"),
         ("<weld body1=\"c\"/>", "weld"),
     ];
@@ -592,7 +617,7 @@ fn tendons_and_equations_are_constraints_of_sums() {
     assert_eq!((&limit.length, limit.reference), (&t, [0.05, 1.0]));
     assert_eq!(limit.law, TouchingLaw::Between { range: [-1.0, 2.0], margin: 0.1 });
     assert_eq!((&friction.length, &friction.law), (&t, &TouchingLaw::DryFriction(3.0)));
-    assert_eq!((&quadratic.length, quadratic.reference, &quadratic.coupling), (&terms(&[("b", 1.0)]), [0.03, 1.0], &None));
+    assert_eq!((&quadratic.length, quadratic.reference, &quadratic.coupling), (&terms(&[("b", 1.0)]), [0.03, 1.0], &Some("b".to_owned())));
     let coefficients = [0.1, 1.0, 2.0, 0.0, 0.0];
     assert_eq!(quadratic.law, TouchingLaw::Equation { other: Some(terms(&[("a", 1.0)])), references: [0.0, 0.2], coefficients });
     let TouchingLaw::Equation { other, references, .. } = &held.law else { panic!("{held:?}") };

@@ -52,11 +52,11 @@ impl<'s> Creeping<'s> {
         Self { joints: session.freedoms().filter_map(joint).collect(), contacts }
     }
 
-    /// A step of this time, s, between these velocities `[nv]`.
-    pub(crate) fn step_of_joints(&mut self, time: f64, before: &[f64], after: &[f64]) {
+    /// A step of this time, s, between these states q `[nq]` and v `[nv]`.
+    pub(crate) fn step_of_joints(&mut self, time: f64, before: [&[f64]; 2], after: [&[f64]; 2]) {
         for (at, speed, creep) in &mut self.joints {
             // By rates: the coordinates of a ball joint are a quaternion.
-            let [a, b] = [before, after].map(|v| at.own_rate(v).abs());
+            let [a, b] = [before, after].map(|[q, v]| at.own.rate(q, v).abs());
             if a.max(b) <= SLIDING * *speed {
                 creep.add(0.5 * (a + b) * time, time, *speed);
             }

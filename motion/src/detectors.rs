@@ -105,8 +105,9 @@ impl<'a> Detectors<'a> {
             let kinds = [EventKind::LowerLimit, EventKind::UpperLimit];
             for (kind, (lower, upper)) in kinds.into_iter().zip([(lower, f64::INFINITY), (f64::NEG_INFINITY, upper)]) {
                 if lower.is_finite() || upper.is_finite() {
-                    let terms = at.terms.iter().map(|term| (term.q, term.multiplier)).collect();
-                    let event = Event::limit_of_sum(name.as_str(), terms, at.offset, (lower, upper)).direction(Direction::Either);
+                    let ([last, _], own) = (at.own.last(), at.own.clone());
+                    let x = move |q: &[f64]| own.coordinate(q).unwrap_or(f64::NAN);
+                    let event = Event::limit_of(name.as_str(), last, x, (lower, upper)).direction(Direction::Either);
                     self.push(event, kind, &name);
                 }
             }
@@ -137,8 +138,8 @@ impl<'a> Detectors<'a> {
         for at in session.freedoms() {
             let Some([_, speed, ..]) = at.effect(EffectId::friction).map(|friction| friction.parameters.as_slice()) else { continue };
             let name = session.name_of(&at);
-            let terms = at.terms.iter().map(|term| (term.v, term.multiplier)).collect();
-            let event = Event::stick_slip_of_sum(name.as_str(), terms, *speed);
+            let ([_, last], own) = (at.own.last(), at.own.clone());
+            let event = Event::stick_slip_of(name.as_str(), last, move |q, v| own.rate(q, v), *speed);
             self.push(event, EventKind::StickSlip, &name);
         }
     }

@@ -2,27 +2,35 @@
 
 use articulated_core::effect::{EffectId, JointEffect};
 use articulated_core::index::BodyId;
+use articulated_core::joint::Follow;
 use articulated_core::model::Body;
 
 use crate::session::Session;
 
 /// A degree of freedom: its index in its joint, and the coordinates and rates that it moves with.
-/// Its own coordinate is Σ multiplier · coordinate + offset.
+/// Its own coordinate is Σ law(coordinate) + offset.
 pub(crate) struct Freedom<'s> {
     /// The body that the joint carries; it has the joint's name.
     pub(crate) body: &'s Body<f64>,
     freedom: usize,
-    /// One term, or several for a joint that follows several others.
-    pub(crate) terms: Vec<Term>,
-    pub(crate) offset: f64,
+    /// What it moves with.
+    pub(crate) own: Terms,
+}
+
+/// One term, or several for a joint that follows several others.
+#[derive(Clone)]
+pub(crate) struct Terms {
+    all: Vec<Term>,
+    offset: f64,
 }
 
 /// A coordinate that a degree of freedom moves with, and the rate of that.
 #[derive(Clone, Copy)]
-pub(crate) struct Term {
-    pub(crate) q: usize,
-    pub(crate) v: usize,
-    pub(crate) multiplier: f64,
+struct Term {
+    q: usize,
+    v: usize,
+    /// Zero at zero.
+    law: Follow<f64>,
 }
 
 impl Session {
@@ -37,20 +45,22 @@ impl Session {
             let offset = self.model.series(body).filter_map(|part| part.coordinates.mimic).map(|follow| follow.offset).sum();
             let one = move |freedom| {
                 let term = |part: &Body<f64>| {
-                    let (at, multiplier) = (&part.coordinates, part.coordinates.mimic.map_or(1.0, |follow| follow.multiplier));
-                    Term { q: at.q + freedom, v: at.v + freedom, multiplier }
+                    let (at, itself) = (&part.coordinates, Follow { multiplier: 1.0, offset: 0.0, higher: None });
+                    let law = at.mimic.map_or(itself, |follow| Follow { offset: 0.0, ..follow });
+                    Term { q: at.q + freedom, v: at.v + freedom, law }
                 };
-                let terms = self.model.series(body).map(term).filter(|term| term.multiplier != 0.0).collect();
-                Freedom { body, freedom, terms, offset }
+                let moves = |term: &Term| term.law.multiplier != 0.0 || term.law.higher.is_some();
+                let all = self.model.series(body).map(term).filter(moves).collect();
+                Freedom { body, freedom, own: Terms { all, offset } }
             };
-            (0..body.joint.nv()).map(one).filter(|one| !one.terms.is_empty())
+            (0..body.joint.nv()).map(one).filter(|one| !one.own.all.is_empty())
         })
     }
 
     /// Name for events of a degree of freedom: its joint, with an index if the joint has several.
     pub(crate) fn name_of(&self, at: &Freedom<'_>) -> String {
         let several = self.model.joints().iter().find(|joint| joint.name == at.joint() && joint.v.1 > 1);
-        several.map_or_else(|| at.joint().to_owned(), |joint| format!("{}[{}]", joint.name, at.terms[0].v - joint.v.0))
+        several.map_or_else(|| at.joint().to_owned(), |joint| format!("{}[{}]", joint.name, at.own.all[0].v - joint.v.0))
     }
 
     /// Bounds of its own coordinate: the effect's if its joint has it, else the file's; rad or m.
@@ -98,14 +108,23 @@ impl<'s> Freedom<'s> {
     pub(crate) fn effect(&self, effect: EffectId) -> Option<&'s JointEffect<f64>> {
         self.body.effects.joint.iter().find(|e| e.effect == effect && e.freedom == self.freedom)
     }
+}
 
-    /// Its own coordinate at `q` `[nq]`; `None` if `q` is too short.
-    pub(crate) fn own_coordinate(&self, q: &[f64]) -> Option<f64> {
-        self.terms.iter().try_fold(self.offset, |sum, term| Some(sum + term.multiplier * q.get(term.q)?))
+impl Terms {
+    /// The last of the coordinates, and of the rates, that it depends on.
+    pub(crate) fn last(&self) -> [Option<usize>; 2] {
+        [self.all.iter().map(|term| term.q).max(), self.all.iter().map(|term| term.v).max()]
     }
 
-    /// Its own rate at `v` `[nv]`.
-    pub(crate) fn own_rate(&self, v: &[f64]) -> f64 {
-        self.terms.iter().map(|term| term.multiplier * v[term.v]).sum()
+    /// Its own coordinate at `q` `[nq]`; `None` if `q` is too short.
+    pub(crate) fn coordinate(&self, q: &[f64]) -> Option<f64> {
+        self.all.iter().try_fold(self.offset, |sum, term| Some(sum + term.law.value(*q.get(term.q)?)))
+    }
+
+    /// Its own rate at `q` `[nq]` and `v` `[nv]`. Without a coordinate of its own, as a degree of
+    /// freedom of a quaternion, it follows none.
+    pub(crate) fn rate(&self, q: &[f64], v: &[f64]) -> f64 {
+        let slope = |term: &Term| q.get(term.q).map_or(term.law.multiplier, |q| term.law.slope(*q));
+        self.all.iter().map(|term| slope(term) * v[term.v]).sum()
     }
 }

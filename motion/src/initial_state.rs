@@ -53,7 +53,7 @@ impl Session {
     /// file's limits at the initial q `[nq]`. The limit of a ball joint is on its angle.
     pub fn beyond(&self, q: &[f64]) -> Vec<Beyond> {
         let beyond = |at: Freedom<'_>| {
-            let ((lower, upper), found) = (self.of_the_file(at.body)?, at.own_coordinate(q)?);
+            let ((lower, upper), found) = (self.of_the_file(at.body)?, at.own.coordinate(q)?);
             let beyond = || Beyond { file: self.scene.file.clone(), joint: at.joint().to_owned(), found, lower, upper };
             (found < lower || found > upper).then(beyond)
         };

@@ -22,6 +22,7 @@ pub(crate) struct Statistics<'s> {
     depths: Depths<'s>,
     /// The state before the step.
     t: f64,
+    q: Vec<f64>,
     v: Vec<f64>,
     touches: Vec<Touch>,
     /// Room for the next one.
@@ -52,6 +53,7 @@ impl<'s> Statistics<'s> {
             depths: Depths::of(session),
             contacts,
             t,
+            q: q.to_vec(),
             v: v.to_vec(),
             touches: Vec::new(),
             next: Vec::new(),
@@ -80,7 +82,7 @@ impl<'s> Statistics<'s> {
     /// One more step, up to this state.
     pub(crate) fn step(&mut self, t: f64, q: &[f64], v: &[f64]) {
         let time = t - self.t;
-        self.creeping.step_of_joints(time, &self.v, v);
+        self.creeping.step_of_joints(time, [&self.q, &self.v], [q, v]);
         self.look(t, q, v);
         if self.touches.len() == self.next.len() {
             for (k, contact) in self.contacts.iter().enumerate() {
@@ -93,6 +95,7 @@ impl<'s> Statistics<'s> {
         }
         std::mem::swap(&mut self.touches, &mut self.next);
         self.t = t;
+        self.q.copy_from_slice(q);
         self.v.copy_from_slice(v);
     }
 

@@ -230,22 +230,37 @@ class Robot(_native.Robot):
         locks = tuple((name, _vector("at", np.atleast_1d(as_numbers("at", one)), None)) for name, one in joints.items())
         return self._edited(self._source._replace(locks=self._source.locks + locks))
 
-    def couple(self, joint, leaders, offset=0.0):
+    def couple(self, joint, leaders, offset=0.0, *, polynomial=None, reference=0.0):
         """The same robot with a joint that follows others: its coordinate is Σ coefficient · q + offset.
+
+        With a polynomial it follows one joint: its coordinate is Σ polynomial[k] · (q − reference)ᵏ.
 
         Args:
             joint: The name of the joint, of one coordinate.
             leaders: The coefficient of each joint that it follows, by name: ``{"m1": 0.5, "m2": -0.5}``.
-            offset: Its coordinate where all of them are 0, rad or m.
+                With a polynomial, the name of the joint that it follows.
+            offset: Its coordinate where all of them are 0, rad or m. Not with a polynomial.
+            polynomial: (1,) to (5,), the coefficients from power 0 on, rad or m over powers of rad or m.
+            reference: The coordinate of the leader about which the polynomial is written, rad or m.
 
         Raises:
             RobotError: There is no such joint, or it cannot follow.
+            ValueError: The polynomial has a degree above 4, or an offset beside it.
         """
+        if polynomial is not None:
+            if not isinstance(leaders, str):
+                raise TypeError(f"leaders: found {type(leaders).__name__}, expected the name of one joint with a polynomial")
+            if offset != 0.0:
+                raise ValueError(f"offset: found {offset!r} with a polynomial, expected polynomial[0] to have it")
+            numbers = [float(x) for x in np.atleast_1d(as_numbers("polynomial", polynomial))]
+            law = (_name("leaders", leaders), numbers, _number("reference", reference))
+            of_file, rest = self._source.coupling
+            return self._edited(self._source._replace(coupling=(of_file, (*rest, (_name("joint", joint), (), 0.0, law)))))
         if not hasattr(leaders, "items"):
             raise TypeError(f"leaders: found {type(leaders).__name__}, expected a dict of joints and coefficients")
         rows = tuple((_name("leaders", name), _number(f"leaders[{name!r}]", value)) for name, value in leaders.items())
         of_file, rest = self._source.coupling
-        return self._edited(self._source._replace(coupling=(of_file, (*rest, (_name("joint", joint), rows, _number("offset", offset))))))
+        return self._edited(self._source._replace(coupling=(of_file, (*rest, (_name("joint", joint), rows, _number("offset", offset), None)))))
 
     def payload(self, link, mass, center_of_mass=(0.0, 0.0, 0.0), inertia=None):
         """The robot with a load on a link or frame.

@@ -58,6 +58,10 @@ type Ends = (usize, usize);
 /// carries it, the prefix of its names, and the position and roll, pitch and yaw of its root there.
 type AppendedRow = (String, Vec<u8>, bool, String, String, [f64; 3], [f64; 3]);
 
+/// A joint that follows others: its name, the coefficient of each leader and the offset; or one
+/// leader, the coefficients of a polynomial and the coordinate about which it is written.
+type CouplingRow = (String, Vec<(String, f64)>, f64, Option<(String, Vec<f64>, f64)>);
+
 /// Values by name.
 type Names<T> = BTreeMap<String, T>;
 
@@ -329,7 +333,7 @@ impl Robot {
         args: Vec<(String, String)>,
         packages: Vec<(String, PathBuf)>,
         reading: ((bool, bool, bool), Vec<String>, Option<f64>, Vec<(String, String, usize)>),
-        coupling: (bool, Vec<(String, Vec<(String, f64)>, f64)>),
+        coupling: (bool, Vec<CouplingRow>),
         effects: bool,
         like: Option<&Bound<'_, Self>>,
     ) -> PyResult<Self> {
@@ -378,8 +382,13 @@ impl Robot {
             leave_out.iter().map(|kind| kind.parse::<LeaveOut>().map_err(|error| PyValueError::new_err(format!("leave_out: {error}"))));
         options.leave_out = kinds.collect::<PyResult<_>>()?;
         options.file_coupling = coupling.0;
-        let follower = |(joint, leaders, offset)| Coupling { joint, leaders, offset }.into();
-        options.coupling = coupling.1.into_iter().map(follower).collect();
+        let follower = |(joint, leaders, offset, polynomial): CouplingRow| match polynomial {
+            None => Ok(Coupling { joint, leaders, offset, ..Coupling::default() }),
+            Some((leader, numbers, reference)) => Coupling::polynomial(&joint, &leader, &numbers, reference),
+        };
+        let coupled =
+            coupling.1.into_iter().map(|row| follower(row).map(Into::into).map_err(|error| PyValueError::new_err(error.to_string())));
+        options.coupling = coupled.collect::<PyResult<_>>()?;
         let built = py.detach(|| request.build_robot()).map_err(|findings| errors::refused(py, &findings))?;
         let mut model = built.model;
         let about = links(&model);

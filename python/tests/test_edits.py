@@ -129,6 +129,17 @@ def test_a_joint_follows_others():
     assert (robot.nv, coupled.nv) == (3, 2)
     np.testing.assert_allclose(coupled.mass_matrix([0.3, 0.4]), 3 * np.outer([0.5, -0.25], [0.5, -0.25]), rtol=0, atol=1e-15)
     np.testing.assert_array_equal(pickle.loads(pickle.dumps(coupled)).mass_matrix([0.3, 0.4]), coupled.mass_matrix([0.3, 0.4]))
+    # 3 f′², with f′ = 0.5 + 0.4 (q − 0.1) + 0.6 (q − 0.1)²
+    bent = robot.couple("pitch", "m1", polynomial=[0.3, 0.5, 0.2, 0.2], reference=0.1)
+    slope = 0.5 + 0.4 * 0.3 + 0.6 * 0.3**2
+    np.testing.assert_allclose(bent.mass_matrix([0.4, 0.0]), [[3 * slope**2, 0], [0, 0]], rtol=0, atol=1e-14)
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(bent)).mass_matrix([0.3, 0.4]), bent.mass_matrix([0.3, 0.4]))
+    with pytest.raises(ValueError, match="found 6 coefficients"):
+        robot.couple("pitch", "m1", polynomial=[0.0] * 6)
+    with pytest.raises(ValueError, match=r"expected polynomial\[0\]"):
+        robot.couple("pitch", "m1", offset=0.1, polynomial=[0.0, 1.0])
+    with pytest.raises(TypeError, match="leaders: found dict, expected the name of one joint"):
+        robot.couple("pitch", {"m1": 1.0}, polynomial=[0.0, 1.0])
     with pytest.raises(articulated.RobotError, match="did you mean"):
         robot.couple("pitch", {"m3": 1})
     with pytest.raises(TypeError, match="leaders: found list, expected a dict"):

@@ -25,8 +25,18 @@ pub struct Follower {
     pub coupling: Coupling,
     /// Its place in the scene.
     pub place: At,
-    /// Joints and coefficients as the scene lists them.
-    lists: (Vec<String>, Vec<f64>),
+    /// The law as the scene lists it.
+    listed: Listed,
+}
+
+/// The law of a follower as a scene lists it.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Listed {
+    joints: Vec<String>,
+    coefficients: Option<Vec<f64>>,
+    offset: Option<f64>,
+    polynomial: Option<Vec<f64>>,
+    reference: Option<f64>,
 }
 
 /// A load on a link.
@@ -65,7 +75,8 @@ pub(crate) fn locks(spot: &Cursor<'_>, log: &mut Diagnostics) -> Vec<Lock> {
     entries.iter().filter_map(lock).collect()
 }
 
-/// `{ joint = { joint = […], coefficients = […], offset = 0 }, … }`.
+/// `{ joint = { joint = […], coefficients = […], offset = 0 }, … }`, with `polynomial` and
+/// `reference` instead of the last two of a joint that follows one other not linearly.
 /// The same, or the word `file`: the couplings of the scene, and whether those of the robot's file
 /// apply.
 pub(crate) fn couplings(spot: &Cursor<'_>, log: &mut Diagnostics) -> (Vec<Follower>, bool) {
@@ -81,15 +92,46 @@ fn followers(spot: &Cursor<'_>, log: &mut Diagnostics) -> Vec<Follower> {
         let (value, mut one) = (spot.of(entry), Follower { place: entry.at, ..Follower::default() });
         let before = log.count();
         value.read(FOLLOWER, &mut one, log);
-        let (joints, coefficients) = std::mem::take(&mut one.lists);
-        if log.count() == before && joints.len() != coefficients.len() {
-            value.bad(log, format!("{} joints and {} coefficients", joints.len(), coefficients.len()), "as many coefficients as joints");
+        if log.count() == before {
+            let listed = std::mem::take(&mut one.listed);
+            match listed.coupling(&entry.name) {
+                Ok(coupling) => one.coupling = coupling,
+                Err((found, expected)) => value.bad(log, found, expected),
+            }
         }
-        one.coupling.joint.clone_from(&entry.name);
-        one.coupling.leaders = joints.into_iter().zip(coefficients).collect();
         (log.count() == before).then_some(one)
     };
     entries.iter().filter_map(follower).collect()
+}
+
+impl Listed {
+    /// The coupling of this joint. The error: the found and the expected.
+    fn coupling(self, joint: &str) -> Result<Coupling, (String, &'static str)> {
+        let Self { joints, coefficients, offset, polynomial, reference } = self;
+        match (coefficients, polynomial) {
+            (Some(coefficients), None) if reference.is_none() => {
+                if joints.len() != coefficients.len() {
+                    let found = format!("{} joints and {} coefficients", joints.len(), coefficients.len());
+                    return Err((found, "as many coefficients as joints"));
+                }
+                let (joint, leaders) = (joint.to_owned(), joints.into_iter().zip(coefficients).collect());
+                Ok(Coupling { joint, leaders, offset: offset.unwrap_or_default(), ..Coupling::default() })
+            }
+            (Some(_), None) => Err(("reference without polynomial".to_owned(), "the key polynomial, or no reference")),
+            (None, Some(polynomial)) => {
+                let [leader] = joints.as_slice() else {
+                    return Err((format!("a polynomial and {} joints", joints.len()), "one joint that is followed by a polynomial"));
+                };
+                if offset.is_some() {
+                    return Err(("offset beside polynomial".to_owned(), "the number of power zero in polynomial, and no offset"));
+                }
+                Coupling::polynomial(joint, leader, &polynomial, reference.unwrap_or_default())
+                    .map_err(|error| (error.to_string(), "a polynomial of a degree up to 4, of finite numbers"))
+            }
+            (Some(_), Some(_)) => Err(("coefficients and polynomial".to_owned(), "one of them")),
+            (None, None) => Err(("neither coefficients nor polynomial".to_owned(), "one of them")),
+        }
+    }
 }
 
 const FOLLOWER: &[Row<Follower>] = &[
@@ -99,15 +141,15 @@ const FOLLOWER: &[Row<Follower>] = &[
         value: "texts",
         default: "",
         what: "the joints that are followed",
-        read: |f, s, log| f.lists.0 = s.texts(log, "a list of joints, as [\"m1\", \"m2\"]").unwrap_or_default(),
+        read: |f, s, log| f.listed.joints = s.texts(log, "a list of joints, as [\"m1\", \"m2\"]").unwrap_or_default(),
     },
     Row {
         name: "coefficients",
-        required: true,
+        required: false,
         value: "numbers",
-        default: "",
+        default: "has to be given, but where `polynomial` is",
         what: "d(own coordinate)/d(coordinate) of each of them",
-        read: |f, s, log| f.lists.1 = s.some_numbers(log, "a list of finite numbers").unwrap_or_default(),
+        read: |f, s, log| f.listed.coefficients = s.some_numbers(log, "a list of finite numbers"),
     },
     Row {
         name: "offset",
@@ -115,7 +157,23 @@ const FOLLOWER: &[Row<Follower>] = &[
         value: "number, rad or m",
         default: "0",
         what: "own coordinate where theirs are zero",
-        read: |f, s, log| f.coupling.offset = s.number(log).unwrap_or_default(),
+        read: |f, s, log| f.listed.offset = s.number(log),
+    },
+    Row {
+        name: "polynomial",
+        required: false,
+        value: "1 to 5 numbers",
+        default: "none",
+        what: "instead of `coefficients` and `offset`, of one joint: own coordinate = Σ cₖ (coordinate − reference)ᵏ, the numbers cₖ from power zero on",
+        read: |f, s, log| f.listed.polynomial = s.some_numbers(log, "a list of finite numbers"),
+    },
+    Row {
+        name: "reference",
+        required: false,
+        value: "number, rad or m",
+        default: "0",
+        what: "the coordinate of that joint about which the polynomial is written",
+        read: |f, s, log| f.listed.reference = s.number(log),
     },
 ];
 

@@ -398,9 +398,9 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
     Row {
         name: "coupling",
         required: false,
-        value: "table: joint = { joint, coefficients, offset }, or `\"file\"`",
+        value: "table: joint = { joint, coefficients, offset } or { joint, polynomial, reference }, or `\"file\"`",
         default: "none",
-        what: "joints that follow others: q = Σ coefficient · q of each + offset; `\"file\"`: as linear equations of the robot's file say (MJCF)",
+        what: "joints that follow others: q = Σ coefficient · q of each + offset, or one other by a polynomial of a degree up to 4; `\"file\"`: as equations of the robot's file say (MJCF)",
         read: |s, spot, log| (s.code.coupling, s.code.file_coupling) = edits::couplings(spot, log),
     },
     Row {

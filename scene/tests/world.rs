@@ -205,7 +205,7 @@ fn equations_of_the_file_are_couplings_where_the_scene_says_so() {
     let told = refused("coupling = \"file\"").unwrap_err().to_string();
     assert_eq!(
         told,
-        "s.toml: coupling: found \"file\", and the robot's file has no linear equations of joints, expected no key coupling, or a table of joints"
+        "s.toml: coupling: found \"file\", and the robot's file has no equations that joints can follow, expected no key coupling, or a table of joints"
     );
     assert_eq!(refused("").unwrap(), 2);
     const GRIPPER: &str = "<mujoco><option gravity='0 0 -3.7'/><worldbody>
@@ -250,6 +250,67 @@ fn equations_of_the_file_are_couplings_where_the_scene_says_so() {
     assert_eq!((plain, clamped), (together[0], -2.0 * (plain / -2.0).clamp(-2.0, 0.75)));
     assert!(plain != clamped);
     assert_eq!((free.model.gravity().z, built("gravity = [0, 0, -1]").model.gravity().z), (-3.7, -1.0));
+}
+
+/// q = f(q₁) = 0.2 − 2 q₁ + 0.6 q₁² + 0.1 q₁³: the torque of a servo of the follower acts on the
+/// leader times f′, by the equation of the file and by the scene's key alike.
+#[test]
+fn a_servo_of_a_follower_by_a_polynomial_acts_by_its_slope() {
+    const CAM: &str = "<mujoco><worldbody>
+      <body name='a'><joint name='one' axis='0 0 1'/><geom size='0.1'/></body>
+      <body name='b'><joint name='two' axis='0 0 1'/><geom size='0.1'/></body></worldbody>
+      <equality><joint joint1='two' joint2='one' polycoef='0.2 -2 0.6 0.1'/></equality></mujoco>";
+    let built = |text: &str| articulated_scene::Opened::new(scene(text), "g.xml", CAM.into(), Base::Fixed, vec![]).build().unwrap();
+    let servo =
+        Actuator { drives: vec![("two".into(), vec![3.0])], gain: [0.5, 0.25, 0.0], bias: [1.0, -7.0, -0.5], ..Actuator::default() };
+    let damper = Actuator { drives: vec![("two".into(), vec![2.0])], bias: [0.3, -1.0, -0.4], ..Actuator::default() };
+    let world = World { actuators: vec![servo], passive: vec![damper], ..World::default() };
+    let of = |robot: &articulated_scene::BuiltRobot, q: &[f64], v: &[f64]| {
+        let text = scene("control = { kind = \"actuators\", ctrl = [2] }");
+        let controller = text.controller(RobotInWorld { model: &robot.model, world: &world }, &mut |_| Err(String::new())).unwrap();
+        let (Controller::Actuators { actuators, .. }, mut tau) = (controller, vec![0.0; v.len()]) else { panic!("actuators") };
+        actuators.add_torques(&actuators.inputs(&[], &[2.0], None), q, v, &mut tau);
+        tau
+    };
+    let (q, v): (f64, f64) = (0.7, -0.4);
+    let (value, slope) = (0.2 - 2.0 * q + 0.6 * q * q + 0.1 * q * q * q, -2.0 + 1.2 * q + 0.3 * q * q);
+    let apart = of(&built(""), &[q, value], &[v, slope * v]);
+    assert!(apart[0] == 0.0 && apart[1].abs() > 1.0, "{apart:?}");
+    let key = "coupling = { two = { joint = ['one'], polynomial = [-0.4976, -1.472, 0.72, 0.1], reference = 0.4 } }";
+    for text in ["coupling = \"file\"", key] {
+        let robot = built(text);
+        assert_eq!(robot.model.nv(), 1);
+        let together = of(&robot, &[q], &[v]);
+        assert!((together[0] - slope * apart[1]).abs() < 1e-13 * apart[1].abs(), "{apart:?} {together:?}");
+    }
+}
+
+/// A follower that its polynomial takes beyond its limits is used, with a warning.
+#[test]
+fn a_follower_that_leaves_its_limits_is_warned_of() {
+    let robot = |upper: f64| {
+        let slide = |name: &str, child: &str, upper: f64| {
+            format!(
+                "<joint name='{name}' type='prismatic'><parent link='base'/><child link='{child}'/><axis xyz='0 0 1'/>
+                 <limit lower='-1' upper='{upper}' effort='1' velocity='1'/></joint>"
+            )
+        };
+        let urdf = format!(
+            "<robot name='w'><link name='base'/><link name='a'/><link name='b'/>{}{}</robot>",
+            slide("one", "a", 1.0),
+            slide("two", "b", upper)
+        );
+        let text = scene("coupling = { two = { joint = ['one'], polynomial = [0.5, 0, -1] } }");
+        articulated_scene::Opened::new(text, "r.urdf", urdf.into_bytes(), Base::Fixed, vec![]).build().unwrap()
+    };
+    // 0.5 − x² is from −0.5 to 0.5.
+    let warned = |upper: f64| {
+        let robot = robot(upper);
+        robot.reading.warnings.iter().filter(|w| w.field == "coupling").map(ToString::to_string).collect::<Vec<_>>()
+    };
+    assert_eq!(warned(0.6), Vec::<String>::new());
+    let told = warned(0.4);
+    assert!(told.len() == 1 && told[0].contains("a range of -0.5000 to 0.5000, as joint \"one\" moves within its limits"), "{told:?}");
 }
 
 /// q = 0.5 m1 − 0.7 m2 + 0.2: an actuator on it drives both motors, within the bounds of the joint.

@@ -126,7 +126,7 @@ fn what_overflows_or_is_not_a_number_is_an_error_too() {
 #[test]
 fn robots_whose_joints_follow_others_are_checked_too() {
     let mut robot = rods();
-    robot.joints[JointId(2)].mimic = Some(Mimic { joint: JointId(1), multiplier: 1.0, offset: 0.0 });
+    robot.joints[JointId(2)].mimic = Some(Mimic::linear(JointId(1), 1.0, 0.0));
     robot.joints[JointId(2)].kind = JointKind::Continuous;
     let model = built(&robot, Base::Fixed);
     let (mut ws, mut a) = (Workspace::new(&model), [0.0; 2]);

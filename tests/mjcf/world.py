@@ -594,30 +594,34 @@ def equations(model, world, joints, q, differ, count):
     """Coordinates that couplings compute are on the equations of MuJoCo."""
     off = mujoco.mjtDisableBit.mjDSBL_EQUALITY | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     active = [one for one in range(model.neq) if model.eq_active0[one] and not model.opt.disableflags & off]
-    linear, rest = [], 0
+    coupled, rest = [], 0
     for one in active:
         joint, tendon = (model.eq_type[one] == kind for kind in (mujoco.mjtEq.mjEQ_JOINT, mujoco.mjtEq.mjEQ_TENDON))
-        is_linear = (joint or tendon) and not model.eq_data[one, 2:5].any()
+        is_coupling = joint or tendon
         if joint:
-            is_linear = is_linear and model.eq_obj2id[one] >= 0
+            is_coupling = model.eq_obj2id[one] >= 0
         if tendon:
             members = [other for other in (model.eq_obj1id[one], model.eq_obj2id[one]) if other >= 0]
             fixed = all(model.wrap_type[model.tendon_adr[other]] == mujoco.mjtWrap.mjWRAP_JOINT for other in members)
-            is_linear = is_linear and fixed and sum(model.tendon_num[other] for other in members) > 1
-        linear.append(one) if is_linear else None
-        rest += not is_linear
-    differ("couplings", len(linear) != len(world["couplings"]) or rest != len(world["loops"]), 0, 1.0)
-    count("couplings", len(linear))
+            is_coupling = fixed and sum(model.tendon_num[other] for other in members) > 1
+            if len(members) > 1 and model.eq_data[one, 2:5].any():
+                is_coupling = is_coupling and all(model.tendon_num[other] == 1 for other in members)
+        coupled.append(one) if is_coupling else None
+        rest += not is_coupling
+    differ("couplings", len(coupled) != len(world["couplings"]) or rest != len(world["loops"]), 0, 1.0)
+    count("couplings", len(coupled))
     count("loops", rest)
     by_name = {joint.name: joint for joint in joints}
     data = mujoco.MjData(model)
-    for one, coupling in zip(linear, world["couplings"]):
+    for one, coupling in zip(coupled, world["couplings"]):
         for factor in (1.0, -0.3):
             data.qpos[:] = q
             for name, _ in coupling["leaders"]:
                 data.qpos[by_name[name].q] *= factor
             values = [ratio * data.qpos[by_name[name].q] for name, ratio in coupling["leaders"]]
-            data.qpos[by_name[coupling["joint"]].q] = sum(values) + coupling["offset"]
+            leader = data.qpos[by_name[coupling["leaders"][0][0]].q]
+            higher = sum(number * leader**power for power, number in enumerate(coupling["higher"], 2))
+            data.qpos[by_name[coupling["joint"]].q] = sum(values) + coupling["offset"] + higher
             mujoco.mj_forward(model, data)
             rows = np.flatnonzero((data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY) & (data.efc_id == one))
             differ("couplings", data.efc_pos[rows] if len(rows) else np.nan, 0, max(1.0, np.abs(data.qpos).max()))

@@ -113,7 +113,7 @@ impl DrawnJoint {
             axis: self.axis,
             second_axis: self.second_axis,
             pitch: self.pitch,
-            mimic: self.mimic.map(|m| Mimic { joint: JointId(m.joint), multiplier: m.multiplier, offset: m.offset }),
+            mimic: self.mimic.map(|m| Mimic::linear(JointId(m.joint), m.multiplier, m.offset)),
             ..Joint::default()
         }
     }

@@ -105,7 +105,7 @@ pub(super) struct JointRow {
     pub(super) carries: f64,
 }
 
-/// own = Σ multiplier · leader's + offset.
+/// own = Σ multiplier · leader's + offset; of one leader also powers 2 to 4.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct MimicRow {
     pub(super) leaders: Vec<LeaderRow>,
@@ -117,11 +117,15 @@ pub(super) struct MimicRow {
 pub(super) struct LeaderRow {
     pub(super) joint: String,
     pub(super) multiplier: f64,
+    /// Coefficients of its powers 2, 3 and 4, where they are not all zero.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) higher: Option<[f64; 3]>,
 }
 
 impl MimicRow {
     fn of(joint: &Joint, description: &Description) -> Option<Self> {
-        let leader = |m: &Mimic| LeaderRow { joint: description.joints[m.joint].name.clone(), multiplier: m.multiplier };
+        let leader =
+            |m: &Mimic| LeaderRow { joint: description.joints[m.joint].name.clone(), multiplier: m.multiplier, higher: m.law().higher };
         let all = || joint.mimic.iter().chain(&joint.also);
         joint.mimic?;
         Some(Self { leaders: all().map(leader).collect(), offset: all().map(|m| m.offset).sum() })

@@ -134,13 +134,19 @@ fn joints(rows: &[JointRow]) -> Table {
     table
 }
 
-/// The law of a follower: `0.5 · a - 0.5 · c + 0.1`.
+fn sign(x: f64) -> &'static str {
+    if x < 0.0 { " - " } else { " + " }
+}
+
+/// The law of a follower: `0.5 · a - 0.5 · c + 0.1`, or `0.5 · a + 0.2 · a² + 0.1`.
 fn sum(mimic: &MimicRow) -> String {
     let mut out = String::new();
-    let sign = |x: f64| if x < 0.0 { " - " } else { " + " };
     for (k, leader) in mimic.leaders.iter().enumerate() {
         let (sign, size) = if k == 0 { ("", leader.multiplier) } else { (sign(leader.multiplier), leader.multiplier.abs()) };
         let _ = write!(out, "{sign}{} · {}", number(size), leader.joint);
+        for (x, power) in leader.higher.unwrap_or_default().into_iter().zip(["²", "³", "⁴"]).filter(|(x, _)| *x != 0.0) {
+            let _ = write!(out, "{}{} · {}{power}", self::sign(x), number(x.abs()), leader.joint);
+        }
     }
     let _ = write!(out, "{}{}", sign(mimic.offset), number(mimic.offset.abs()));
     out

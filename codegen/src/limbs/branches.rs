@@ -30,6 +30,8 @@ struct Kind {
     /// Offsets in q and v from the branch's first body; of a follower, those of its leader.
     at: (usize, usize),
     follows: bool,
+    /// Whether it follows by a polynomial.
+    is_bent: bool,
     is_link: bool,
     effects: Vec<(EffectId, usize)>,
 }
@@ -144,6 +146,7 @@ fn branch_kinds(model: &Model, root: BodyId, size: usize, with_effects: bool) ->
             behind: if i == root { 0 } else { i.0 - body.parent.0 },
             at,
             follows: body.coordinates.mimic.is_some(),
+            is_bent: body.coordinates.is_bent(),
             is_link: body.link.is_some(),
             effects: if with_effects { body.effects.kinds() } else { body.effects.body.iter().map(|own| (own.effect, 0)).collect() },
         })
@@ -164,7 +167,7 @@ mod tests {
         let link = |k: usize| Link { name: format!("{k}"), ..Link::default() };
         let joint = |(k, &parent): (usize, &usize)| {
             let leader = follows.iter().find(|(follower, _)| *follower == k + 1);
-            let mimic = leader.map(|(_, leader)| Mimic { joint: JointId(leader - 1), multiplier: 2.0, offset: 0.5 });
+            let mimic = leader.map(|(_, leader)| Mimic::linear(JointId(leader - 1), 2.0, 0.5));
             let (name, kind, axis) = (format!("{}", k + 1), JointKind::Continuous, [0.0, 0.0, 1.0]);
             articulated_core::description::Joint {
                 name,

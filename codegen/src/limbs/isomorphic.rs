@@ -143,6 +143,7 @@ impl IsomorphicLimbs {
 #[derive(PartialEq, Eq)]
 struct Shape {
     freedoms: usize,
+    is_bent: bool,
     has_no_torque: bool,
     has_bounds: (bool, bool),
     has_terms: bool,
@@ -155,6 +156,7 @@ impl Shape {
         let activation = law.activation.as_ref().map(|own| (discriminant(&own.filter), own.range.is_some(), own.is_early));
         Self {
             freedoms: drive.gear.len(),
+            is_bent: drive.higher.is_some(),
             has_no_torque: drive.has_no_torque,
             has_bounds: (law.control_range.is_some(), law.force_range.is_some()),
             has_terms: law.terms.is_some(),

@@ -143,7 +143,7 @@ mod tests {
         let legs = branches::isomorphic_branches(&model, 4)[0].roots.clone();
         let drive = |body: BodyId, gear: f64| {
             let at = &model.bodies()[body].coordinates;
-            vec![Transmission { q: at.q, v: at.v, gear: vec![gear], has_no_torque: false }]
+            vec![Transmission { q: at.q, v: at.v, gear: vec![gear], ..Transmission::default() }]
         };
         let mut all = Actuators::default();
         for &hip in &legs {

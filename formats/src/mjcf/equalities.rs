@@ -60,7 +60,7 @@ pub(crate) fn equalities(
                 reference: soft.0,
                 impedance: soft.1,
             });
-            match linear(element, &found, polynomial, scope, tendons) {
+            match coupling(element, &found, polynomial, scope, tendons) {
                 Ok(coupling) => {
                     // The field is the name of the option that withdraws the warning.
                     scope.warn(element, "coupling", ("an equation of joints", APPLY), log);
@@ -98,7 +98,7 @@ fn sum(
     scope: &Scope<'_>,
     tendons: &[Tendon],
 ) -> Option<(TouchingLength, TouchingLaw)> {
-    let is_number = |joint: usize| matches!(scope.joints[joint].joint.kind, Kind::Hinge | Kind::Slide);
+    let is_number = |joint: usize| is_number(scope, joint);
     let of = |index: &usize| match element.name.as_str() {
         "joint" => is_number(*index).then(|| length_of(&[(*index, 1.0)], scope)),
         "tendon" if tendons[*index].terms().iter().all(|(joint, _)| is_number(*joint)) => tendons[*index].length(scope),
@@ -124,8 +124,9 @@ fn references<'a>(element: &'a Element, log: &mut Diagnostics) -> References<'a>
     own.filter_map(|(_, sort, field)| Some((*sort, *field, element.text(field)?))).collect()
 }
 
-/// Solves Σ aᵢ (qᵢ − refᵢ) = c₀ for the first coordinate. The error states why it has no solution.
-fn linear(
+/// Solves Σ aᵢ (qᵢ − refᵢ) = c₀ for the first coordinate, or a₁ (q₁ − ref₁) = Σ cₖ (a₂ (q₂ −
+/// ref₂))ᵏ. The error states why it has no solution.
+fn coupling(
     element: &Element,
     found: &[usize],
     [c0, c1, c2, c3, c4]: [f64; 5],
@@ -147,7 +148,7 @@ fn linear(
         return Err("an equation of spatial tendons");
     }
     if !second.is_empty() && [c2, c3, c4] != [0.0; 3] {
-        return Err("an equation of higher degree");
+        return polynomial([&first, &second], [c0, c1, c2, c3, c4], scope);
     }
     // l₁ − l₁(ref) = c₀ + c₁ (l₂ − l₂(ref))
     let mut terms = first;
@@ -159,8 +160,8 @@ fn linear(
         }
     }
     terms.retain(|(_, factor)| *factor != 0.0);
-    if terms.iter().any(|(joint, _)| !matches!(scope.joints[*joint].joint.kind, Kind::Hinge | Kind::Slide)) {
-        return Err("an equation of joints with several coordinates");
+    if !terms.iter().all(|(joint, _)| is_number(scope, *joint)) {
+        return Err(SEVERAL);
     }
     let Some(((joint, own), leaders)) = terms.split_first().filter(|(_, leaders)| !leaders.is_empty()) else {
         return Err("an equation that holds one joint");
@@ -172,5 +173,37 @@ fn linear(
         joint: name(*joint),
         leaders: leaders.iter().map(|(leader, factor)| (name(*leader), -factor / own)).collect(),
         offset: (c0 + at_reference) / own,
+        ..Coupling::default()
     })
+}
+
+const SEVERAL: &str = "an equation of joints with several coordinates";
+
+/// An equation of higher degree between lengths that are one joint each.
+fn polynomial(lengths: [&[(usize, f64)]; 2], coefficients: [f64; 5], scope: &Scope<'_>) -> Result<Coupling, &'static str> {
+    let [[(joint, own)], [(leader, factor)]] = lengths else {
+        return Err("an equation of higher degree between tendons of several joints");
+    };
+    if !is_number(scope, *joint) || !is_number(scope, *leader) {
+        return Err(SEVERAL);
+    }
+    if joint == leader || *own == 0.0 {
+        return Err("an equation that holds one joint");
+    }
+    // a₁ (q₁ − ref₁) = Σ cₖ a₂ᵏ (q₂ − ref₂)ᵏ
+    let reference = |joint: usize| scope.joints[joint].joint.reference;
+    let mut scale = 1.0 / own;
+    let mut powers = coefficients.map(|c| {
+        let found = c * scale;
+        scale *= factor;
+        found
+    });
+    powers[0] += reference(*joint);
+    let [joint, leader_name] = [*joint, *leader].map(|joint| scope.joints[joint].name);
+    Coupling::polynomial(joint, leader_name, &powers, reference(*leader)).map_err(|_| "an equation whose coefficients overflow")
+}
+
+/// Whether a joint has one coordinate.
+fn is_number(scope: &Scope<'_>, joint: usize) -> bool {
+    matches!(scope.joints[joint].joint.kind, Kind::Hinge | Kind::Slide)
 }

@@ -400,7 +400,7 @@ impl Lower<'_, '_> {
                     element.error((&about, "joint"), Code::LeaderCannotLead, found, "a joint that moves about or along this axis", log);
                     continue;
                 };
-                let mimic = Mimic { joint: leads, multiplier: mimic.multiplier, offset: mimic.offset };
+                let mimic = Mimic::linear(leads, mimic.multiplier, mimic.offset);
                 self.description.joints[follower].mimic = Some(mimic);
             }
         }

@@ -133,9 +133,5 @@ fn read_limit(limit: &urdf_rs::JointLimit, found: Limit) -> Limit {
 }
 
 fn read_mimic(mimic: &urdf_rs::Mimic) -> Option<Mimic> {
-    Some(Mimic {
-        joint: JointId(read_index(&mimic.joint)?),
-        multiplier: mimic.multiplier.unwrap_or(1.0),
-        offset: mimic.offset.unwrap_or(0.0),
-    })
+    Some(Mimic::linear(JointId(read_index(&mimic.joint)?), mimic.multiplier.unwrap_or(1.0), mimic.offset.unwrap_or(0.0)))
 }

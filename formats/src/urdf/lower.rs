@@ -13,10 +13,8 @@ pub(crate) fn lower(draft: &Draft, tree: &Tree, leaders: &Leaders) -> Option<Des
         Some(Link { name, inertial: link.inertial, collision, visual, ..Link::default() })
     });
     let joints = draft.joints.iter().enumerate().map(|(i, joint)| {
-        let follow = |mimic: &DraftMimic, leader: usize| Mimic {
-            joint: JointId(leader),
-            multiplier: mimic.multiplier.unwrap_or(1.0),
-            offset: mimic.offset.unwrap_or(0.0),
+        let follow = |mimic: &DraftMimic, leader: usize| {
+            Mimic::linear(JointId(leader), mimic.multiplier.unwrap_or(1.0), mimic.offset.unwrap_or(0.0))
         };
         let mimic = joint.mimic.as_ref().zip(leaders.first[i]).map(|(mimic, leader)| follow(mimic, leader));
         let also = joint.also.iter().zip(&leaders.also[i]).map(|(mimic, leader)| Some(follow(mimic, (*leader)?)));

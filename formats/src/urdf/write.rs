@@ -5,8 +5,11 @@ use std::fmt::Write;
 use articulated_core::description::{Description, Inertial, Joint, JointKind, LinkId, Origin};
 
 /// The robot as a URDF, without collision geometry, appearance, and dampings and stiffnesses of
-/// higher degree, which a URDF does not have. Every number is printed so that
-/// the same double is read again.
+/// higher degree, which a URDF does not have. Every number is printed so that the same double is
+/// read again.
+///
+/// A URDF has no follower by a polynomial either. Its coefficients of the powers 2 to 4 are written
+/// as the attribute `higher` of `<mimic>`, so that [`read`](crate::read) refuses the file.
 #[must_use]
 pub fn write(description: &Description) -> String {
     let version = if description.joints.iter().any(needs_version_1_2) { " version=\"1.2\"" } else { "" };
@@ -105,7 +108,8 @@ fn joint(out: &mut String, description: &Description, j: &Joint) {
     }
     for m in j.mimic.iter().chain(&j.also) {
         let leader = escaped(&description.joints[m.joint].name);
-        let _ = writeln!(out, "    <mimic joint=\"{leader}\" multiplier=\"{:?}\" offset=\"{:?}\"/>", m.multiplier, m.offset);
+        let higher = m.law().higher.map(|higher| format!(" higher=\"{higher:?}\"")).unwrap_or_default();
+        let _ = writeln!(out, "    <mimic joint=\"{leader}\" multiplier=\"{:?}\" offset=\"{:?}\"{higher}/>", m.multiplier, m.offset);
     }
     *out += "  </joint>\n";
 }
@@ -124,6 +128,15 @@ mod tests {
         <joint name='follow' type='prismatic'><parent link='&lt;tip&gt;'/><child link='thumb'/><limit lower='0' upper='1' effort='1' velocity='1'/>\
         <mimic joint='slide' multiplier='-0.5' offset='0.1'/></joint>\
         <joint name='cardan' type='universal'><parent link='thumb'/><child link='cup'/><axis xyz='1 0 0'/><axis2 xyz='0 1 0'/></joint></robot>";
+
+    #[test]
+    fn a_follower_by_a_polynomial_is_not_read_back_as_a_linear_one() {
+        let mut description = read(ROBOT.as_bytes(), &Options::default()).unwrap().description;
+        let follow = description.joint("follow").unwrap();
+        description.joints[follow].mimic.iter_mut().for_each(|mimic| mimic.higher = [0.1, 0.0, 0.0]);
+        let error = read(write(&description).as_bytes(), &Options::default()).unwrap_err().to_string();
+        assert!(error.contains("follow") && error.contains("higher"), "{error}");
+    }
 
     #[test]
     fn what_is_written_is_read_back() {

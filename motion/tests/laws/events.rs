@@ -207,6 +207,29 @@ fn a_joint_that_follows_slides_at_its_own_rate() {
     }
 }
 
+/// y = 2 x² with x = 0.5 t − ½ t²: it is beyond 0.02 m while x is beyond 0.1, from 0.2764 s to
+/// 0.7236 s, and slides while |ẏ| = |4 x ẋ| is above ten times 0.005 m/s.
+#[test]
+fn a_joint_that_follows_by_a_polynomial_has_its_own_bounds_and_rate() {
+    let follower = "<link name='b'/><joint name='y' type='prismatic'><parent link='rail'/><child link='b'/><axis xyz='1 0 0'/>
+        <limit lower='-1' upper='0.02' effort='1' velocity='1'/></joint></robot>";
+    let scene = "initial = { v = { slide = 0.5 } }
+        coupling = { y = { joint = ['slide'], polynomial = [0, 0, 2] } }
+        control = { kind = 'torque', torque = { slide = -2.0 } }
+        effects = { friction = { y = { friction = 1e-9, speed = 0.005 } } }
+        simulation = { end = 0.9, events = ['limits', 'stick_slip'] }";
+    let outcome = moved(&session(scene, &CART.replace("</robot>", follower)));
+    let of = |kind: EventKind| {
+        let is_own = |about: &SceneEvent| about.kind == kind && about.on == "y";
+        outcome.occurrences.iter().filter(|o| o.about.as_ref().is_some_and(is_own)).map(|o| o.t).collect::<Vec<f64>>()
+    };
+    let (bounds, slides) = (of(EventKind::UpperLimit), of(EventKind::StickSlip));
+    let expected = [0.5 - 0.05_f64.sqrt(), 0.5 + 0.05_f64.sqrt()];
+    assert!(bounds.len() == 2 && bounds.iter().zip(expected).all(|(t, e)| (t - e).abs() < 1e-6), "{bounds:?}");
+    let rate = |t: f64| (4.0 * (0.5 * t - 0.5 * t * t) * (0.5 - t)).abs();
+    assert!(slides.len() == 3 && slides.iter().all(|t| (rate(*t) - 0.05).abs() < 1e-6), "{slides:?}");
+}
+
 #[test]
 fn contacts_and_ends_of_sliding_are_found_and_told() {
     let fall = "initial = { q = { shoulder = 1.2 } }

@@ -67,7 +67,7 @@ mod tests {
     #[test]
     fn what_follows_a_joint_that_does_not_move_does_not_move_however_long_the_chain_and_rings_move() {
         let count = 20_000;
-        let follow = |joint| Some(Mimic { joint: JointId(joint), multiplier: 1.0, offset: 0.0 });
+        let follow = |joint| Some(Mimic::linear(JointId(joint), 1.0, 0.0));
         let mut joints: Vec<Joint> =
             (0..count).map(|k| Joint { kind: JointKind::Revolute, mimic: follow(k + 1), ..Joint::default() }).collect();
         joints[count - 1].mimic = None;
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn what_follows_several_joints_moves_while_one_of_them_does() {
-        let follow = |joint| Mimic { joint, multiplier: 1.0, offset: 0.0 };
+        let follow = |joint| Mimic::linear(joint, 1.0, 0.0);
         let mut joints = vec![Joint { kind: JointKind::Revolute, ..Joint::default() }; 4];
         (joints[0].mimic, joints[0].also) = (Some(follow(JointId(1))), vec![follow(JointId(2))]);
         let of = |joints: &[Joint]| moving(&Description { joints: joints.to_vec().into(), ..Description::default() });

@@ -153,7 +153,7 @@ impl Joining<'_> {
     }
 
     fn coupling(&self, coupling: Coupling) -> Coupling {
-        Coupling { joint: self.named(&coupling.joint), leaders: self.all_named(coupling.leaders), offset: coupling.offset }
+        Coupling { joint: self.named(&coupling.joint), leaders: self.all_named(coupling.leaders), ..coupling }
     }
 
     /// States with controls for the actuators of both: `[own, appended]`. Missing controls of a

@@ -341,12 +341,12 @@ impl Editing<'_> {
         appended
     }
 
-    /// Linear equations of the robot's file and of appended ones are edits. Warnings that they are
+    /// Equations of the robot's file and of appended ones are edits. Warnings that they are
     /// not applied are removed. `appended`: whether all robots were appended.
     fn couple_as_the_files_say(&mut self, appended: bool, editor: &mut Editor<'_>, log: &mut Diagnostics) {
         if appended && self.reading.world.couplings.is_empty() {
             let place = (Default::default(), "coupling");
-            let found = "\"file\", and the robot's file has no linear equations of joints";
+            let found = "\"file\", and the robot's file has no equations that joints can follow";
             log.error(place, Code::Edit, found, "no key coupling, or a table of joints");
         }
         let couplings = std::mem::take(&mut self.reading.world.couplings);

@@ -38,7 +38,7 @@ pub struct RobotOptions {
     /// Joints that follow others, see
     /// [`couple`](articulated_core::description::Description::couple).
     pub coupling: Vec<Spanned<Coupling>>,
-    /// Lets joints follow others according to the linear equations of the robot's file
+    /// Lets joints follow others according to the equations of the robot's file
     /// ([`World::couplings`]).
     pub file_coupling: bool,
     /// Joints to lock and their coordinates, see

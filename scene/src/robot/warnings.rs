@@ -47,6 +47,7 @@ impl Editing<'_> {
         self.let_go();
         self.warn_of_gravity();
         self.warn_of_limits();
+        self.warn_of_followers();
         self.warn_of_loads();
         self.warn_of_moments();
         self.warn_of_masses();
@@ -177,6 +178,25 @@ impl Editing<'_> {
                     format!("{}, beyond its limits", Plain(at)),
                     format!("{} to {}; used as given", Plain(limit.lower), Plain(limit.upper)),
                 )
+            })
+        });
+        self.reading.warnings.extend(problems.collect::<Vec<_>>());
+    }
+
+    /// Warns of a follower by a polynomial that leaves its limits, as its leader moves within its
+    /// own.
+    fn warn_of_followers(&mut self) {
+        let joints = &self.reading.description.joints;
+        let problems = joints.iter().filter_map(|joint| {
+            let mimic = joint.mimic.filter(|mimic| mimic.degree() > 1)?;
+            let leader = joints.get(mimic.joint)?;
+            let (own, led) = (joint.limit?, leader.limit.filter(|led| led.lower <= led.upper && (led.upper - led.lower).is_finite())?);
+            let [least, most] = mimic.law().range(led.lower, led.upper);
+            (own.lower <= own.upper && (least < own.lower || own.upper < most)).then(|| {
+                let place = Place { at: At::Nowhere, subject: &Subject::Joint(joint.name.clone()), field: "coupling" };
+                let found = format!("a range of {least:.4} to {most:.4}, as joint {:?} moves within its limits", leader.name);
+                let expected = format!("a range within this joint's limits, {} to {}; used as given", Plain(own.lower), Plain(own.upper));
+                warning(self.request.file, &place, Code::MimicRange, found, expected)
             })
         });
         self.reading.warnings.extend(problems.collect::<Vec<_>>());

@@ -97,6 +97,28 @@ fn an_added_mass_that_gives_energy_is_told_of_the_numbers_that_are_written() {
 }
 
 #[test]
+fn a_law_of_a_follower_that_cannot_be_is_told() {
+    let told = |law: &str| one(&format!("coupling = {{ wing = {{ {law} }} }}"));
+    let line = |found: &str, expected: &str| format!("s.toml:1: coupling.wing: found {found}, expected {expected}");
+    assert_eq!(told("joint = ['a']"), line("neither coefficients nor polynomial", "one of them"));
+    assert_eq!(told("joint = ['a'], coefficients = [1], polynomial = [0, 1]"), line("coefficients and polynomial", "one of them"));
+    assert_eq!(
+        told("joint = ['a', 'b'], polynomial = [0, 1, 2]"),
+        line("a polynomial and 2 joints", "one joint that is followed by a polynomial")
+    );
+    assert_eq!(
+        told("joint = ['a'], polynomial = [0, 1, 2], offset = 1"),
+        line("offset beside polynomial", "the number of power zero in polynomial, and no offset")
+    );
+    assert_eq!(
+        told("joint = ['a'], coefficients = [1], reference = 1"),
+        line("reference without polynomial", "the key polynomial, or no reference")
+    );
+    let long = told("joint = ['a'], polynomial = [0, 1, 2, 3, 4, 5]");
+    assert!(long.contains("found 6 coefficients of a polynomial, expected one to five"), "{long}");
+}
+
+#[test]
 fn a_simulation_that_cannot_be_is_told() {
     assert_eq!(one("[simulation]\nstart = 2\nend = 1"), "s.toml:3: simulation.end: found 1, expected a time after start = 2, s");
     assert_eq!(one("[simulation]\nend = 1\nstep = 0"), "s.toml:3: simulation.step: found 0, expected a finite number above 0, s");

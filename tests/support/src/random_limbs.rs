@@ -49,7 +49,7 @@ pub fn random_limbs(seed: u64) -> Description {
             let before = robot.joints.len();
             last = attach(&mut robot, &format!("{limb}_{k}"), last, joint, body);
             if mimic && k == 1 && [before - 1, before].iter().all(|&j| robot.joints[JointId(j)].kind.sizes() == (1, 1)) {
-                robot.joints[JointId(before)].mimic = Some(Mimic { joint: JointId(before - 1), multiplier: -0.7, offset: 0.2 });
+                robot.joints[JointId(before)].mimic = Some(Mimic::linear(JointId(before - 1), -0.7, 0.2));
             }
         }
     }
@@ -57,7 +57,8 @@ pub fn random_limbs(seed: u64) -> Description {
 }
 
 /// Bodies, and joints that a URDF has words for.
-const BODY: Flavour = Flavour { massless: false, mimic: false, floating: false, fixed: false, every_kind: false, locked: false, links: 1 };
+const BODY: Flavour =
+    Flavour { massless: false, mimic: false, bent: false, floating: false, fixed: false, every_kind: false, locked: false, links: 1 };
 
 /// The joints of a limb, and the bodies behind them.
 fn template(random: &mut Random) -> Vec<(Joint, Option<Inertial>)> {

@@ -13,6 +13,8 @@ pub struct Flavour {
     pub massless: bool,
     /// Joints that follow others.
     pub mimic: bool,
+    /// Of these, many by polynomials of a degree up to four.
+    pub bent: bool,
     /// Floating joints inside the tree.
     pub floating: bool,
     /// Fixed joints.
@@ -27,7 +29,10 @@ pub struct Flavour {
 
 impl Flavour {
     /// Everything.
-    pub const ANY: Self = Self { massless: true, mimic: true, floating: true, fixed: true, every_kind: true, locked: true, links: 12 };
+    pub const ANY: Self =
+        Self { massless: true, mimic: true, bent: false, floating: true, fixed: true, every_kind: true, locked: true, links: 12 };
+    /// Everything, and many joints that follow others, most by polynomials.
+    pub const BENT: Self = Self { bent: true, ..Self::ANY };
     /// All that a URDF can contain.
     pub const WRITTEN: Self = Self { locked: false, ..Self::ANY };
     /// Every link has a body's inertia, so that the mass matrix is positive definite.
@@ -50,7 +55,7 @@ pub fn random_tree(seed: u64, flavour: Flavour) -> Description {
         })
         .collect();
     if flavour.mimic {
-        follow(random, &mut description.joints);
+        follow(random, flavour, &mut description.joints);
     }
     shuffled(random, &description)
 }
@@ -185,17 +190,35 @@ fn unit(a: [f64; 3]) -> [f64; 3] {
 }
 
 /// Lets some joints follow others; those may follow further ones, but no joint follows itself.
-fn follow(random: &mut Random, joints: &mut [Joint]) {
+fn follow(random: &mut Random, flavour: Flavour, joints: &mut [Joint]) {
     let mut able: Vec<usize> = (0..joints.len()).filter(|&j| joints[j].kind.sizes() == (1, 1)).collect();
     random.shuffle(&mut able);
     // Everyone follows only somebody further on in the shuffled list.
     for place in 0..able.len().saturating_sub(1) {
-        if random.chance(0.3) {
+        if random.chance(if flavour.bent { 0.6 } else { 0.3 }) {
             let leader = able[place + 1 + random.below(able.len() - place - 1)];
             let multiplier = *random.choose(&[-1.0, 1.0, 0.5, -1.7]);
             let offset = *random.choose(&[0.0, 0.0, 0.3, -1.1]);
-            joints[able[place]].mimic = Some(Mimic { joint: JointId(leader), multiplier, offset });
+            joints[able[place]].mimic = Some(Mimic::linear(JointId(leader), multiplier, offset));
         }
+    }
+    if flavour.bent {
+        bend(random, &able, joints);
+    }
+}
+
+/// Bends the laws of most followers, the last leaders first: the product of the degrees in a chain
+/// is at most four.
+fn bend(random: &mut Random, able: &[usize], joints: &mut [Joint]) {
+    let mut degrees = vec![1; joints.len()];
+    for &follower in able.iter().rev() {
+        let Some(mimic) = &mut joints[follower].mimic else { continue };
+        let most = 4 / degrees[mimic.joint.0];
+        let degree = if most > 1 && random.chance(0.8) { 2 + random.below(most - 1) } else { 1 };
+        for (power, x) in mimic.higher.iter_mut().enumerate().take(degree - 1) {
+            *x = *random.choose(&[0.3, -0.2, 0.12]) / f64::powi(3.0, power as i32);
+        }
+        degrees[follower] = degree * degrees[mimic.joint.0];
     }
 }
 

@@ -10,6 +10,7 @@ mod constrained_steps;
 mod derivatives;
 mod effects;
 mod equals_generic;
+mod followers;
 mod hard_contacts;
 mod interpreted;
 mod limbs;

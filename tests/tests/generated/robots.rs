@@ -68,7 +68,9 @@ fn robot(name: String, urdf: &str, base: Base, singular: bool) -> Robot {
 
 /// The same with further choices, and of the functions those that are `wanted`.
 pub(crate) fn with(name: String, urdf: &str, base: Base, singular: bool, options: Options, wanted: impl Fn(&str) -> bool) -> Robot {
-    let mut case = Case::new(name.clone(), read(urdf), base);
+    let mut description = read(urdf);
+    options.robot.coupling.iter().for_each(|own| description.couple(own).expect("a joint that can follow"));
+    let mut case = Case::new(name.clone(), description, base);
     let frames = frames(&case.model);
     case.model = case.model.with_effects(&options.robot.effects).expect("effects that can be had");
     let mut request = Request::new(format!("{name}.urdf"), urdf);

@@ -78,7 +78,7 @@ fn a_workspace_of_another_robot_of_that_size_is_an_error() {
     let model = |links, joints| Model::new(&tree(links, joints), Base::Fixed).unwrap();
     let two = |second: Joint| model(3, vec![joint("a", Continuous, 0, 1), second]);
     let (chain, branches) = (two(joint("b", Continuous, 1, 2)), two(joint("b", Continuous, 0, 2)));
-    let leader = Mimic { joint: JointId(0), multiplier: 2.0, offset: 0.0 };
+    let leader = Mimic::linear(JointId(0), 2.0, 0.0);
     let follower = two(Joint { mimic: Some(leader), ..joint("b", Continuous, 1, 2) });
     let (planar, three) = (model(2, vec![joint("a", Planar, 0, 1)]), {
         let joints = (0..3).map(|k| joint(["a", "b", "c"][k], Continuous, k, k + 1));
@@ -218,7 +218,7 @@ fn inertia_in_all_directions_is_no_number_where_joints_follow_others() {
     let chain = |follows: bool| {
         let of = |k: usize| {
             let axis = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]][k % 3];
-            let mimic = (follows && k == 3).then_some(Mimic { joint: JointId(0), multiplier: 0.7, offset: 0.1 });
+            let mimic = (follows && k == 3).then_some(Mimic::linear(JointId(0), 0.7, 0.1));
             let origin = Origin::at([0.1, 0.2, 0.3]);
             Joint { axis, mimic, origin, ..joint(&format!("j{k}"), JointKind::Revolute, k, k + 1) }
         };
@@ -258,7 +258,7 @@ fn who_follows_nobody_with_one_coordinate_is_an_error() {
     use JointKind::{Continuous, Fixed, Floating};
     let following = |leader: usize, other: Joint| {
         let mut first = joint("a", Continuous, 0, 1);
-        first.mimic = Some(Mimic { joint: JointId(leader), multiplier: 1.0, offset: 0.0 });
+        first.mimic = Some(Mimic::linear(JointId(leader), 1.0, 0.0));
         Model::new(&tree(3, vec![first, other]), Base::Fixed)
     };
     let bad = |m: Result<Model, ModelError>| matches!(m, Err(ModelError::BadMimic { joint }) if joint == "a");
@@ -267,7 +267,7 @@ fn who_follows_nobody_with_one_coordinate_is_an_error() {
     assert!(bad(following(1, joint("b", Floating, 1, 2))), "a floating joint");
     assert!(bad(following(7, joint("b", Continuous, 1, 2))), "nobody");
     let mut ring = joint("b", Continuous, 1, 2);
-    ring.mimic = Some(Mimic { joint: JointId(0), multiplier: 1.0, offset: 0.0 });
+    ring.mimic = Some(Mimic::linear(JointId(0), 1.0, 0.0));
     assert!(matches!(following(1, ring), Err(ModelError::BadMimic { .. })), "each other");
     assert!(following(1, joint("b", Continuous, 1, 2)).is_ok());
 }
@@ -293,7 +293,7 @@ fn what_overflows_is_an_error_that_names_it() {
 fn multipliers_that_overflow_are_an_error_that_names_the_joint() {
     let chain = |multiplier: f64, offset: f64, locked: Option<Vec<f64>>| {
         let mut joints: Vec<Joint> = ["a", "b", "c"].iter().enumerate().map(|(k, n)| joint(n, JointKind::Continuous, k, k + 1)).collect();
-        joints.iter_mut().skip(1).enumerate().for_each(|(k, j)| j.mimic = Some(Mimic { joint: JointId(k), multiplier, offset }));
+        joints.iter_mut().skip(1).enumerate().for_each(|(k, j)| j.mimic = Some(Mimic::linear(JointId(k), multiplier, offset)));
         joints[0].locked = locked;
         Model::new(&tree(4, joints), Base::Fixed)
     };

@@ -28,6 +28,7 @@ pub use site::{SiteDrive, SiteFrame};
 pub use terms::Terms;
 
 use crate::Scalar;
+use crate::joint::Coordinates;
 
 /// The actuators of a robot, in the order of its file, with the springs and dampers of its tendons.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,20 +76,23 @@ pub struct Transmission<S = f64> {
     pub v: usize,
     /// d(length)/d(coordinate), a number for each degree of freedom: one, or three of a ball joint.
     pub gear: Vec<S>,
+    /// Coefficients of the powers 2, 3 and 4 of the coordinate in the length, of a joint that
+    /// follows by a polynomial: then `gear` is the coefficient of the first power. `None`: zeros.
+    pub higher: Option<[S; 3]>,
     /// Whether it gives no torque, only a part of the length: a [`Follower`] has the torque.
     pub has_no_torque: bool,
 }
 
-/// A joint with actuators that follows others: q = Σ multiplier · leader + offset. Each leader gets
-/// the torque of these actuators, times the multiplier. The bounds of the leaders do not limit it.
+/// A joint with actuators that follows others: q = Σ f(leader). Each leader gets the torque of
+/// these actuators, times f′. The bounds of the leaders do not limit it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Follower<S = f64> {
     /// The actuators on it: the place in [`Actuators::laws`], and the gear.
     pub laws: Vec<(usize, S)>,
     /// Bounds of their torque together, N·m or N.
     pub range: Option<[S; 2]>,
-    /// The leaders: the degree of freedom, and the multiplier.
-    pub leaders: Vec<(usize, S)>,
+    /// The coordinates that it moves with, each with the law by which it follows.
+    pub leaders: Vec<Coordinates<S>>,
 }
 
 impl<S> Default for Actuators<S> {
@@ -137,7 +141,7 @@ impl<S: Scalar> Actuators<S> {
         let follower = |one: &Follower<S>| Follower {
             laws: pairs(&one.laws),
             range: one.range.map(|range| range.map(f)),
-            leaders: pairs(&one.leaders),
+            leaders: one.leaders.iter().map(|own| own.map(f)).collect(),
         };
         Actuators {
             laws: self.laws.iter().map(|law| law.map(f)).collect(),
@@ -155,6 +159,7 @@ impl<S: Scalar> ActuatorLaw<S> {
             q: drive.q,
             v: drive.v,
             gear: drive.gear.iter().map(|x| f(*x)).collect(),
+            higher: drive.higher.map(|all| all.map(f)),
             has_no_torque: drive.has_no_torque,
         };
         ActuatorLaw {

@@ -4,6 +4,7 @@ use alloc::vec;
 
 use super::{ActuatorLaw, Actuators, FrameRow, Transmission};
 use crate::Scalar;
+use crate::joint::Follow;
 use crate::spatial::screw::Quaternion;
 
 /// The nearest number within the range.
@@ -30,10 +31,27 @@ impl<S: Scalar> Transmission<S> {
         let length = match (self.gear.len(), q.get(self.q..)) {
             // The rotation vector in axes of the child, rad, of norm π at most
             (3, Some(&[x, y, z, w, ..])) => sum(Quaternion::from_array([x, y, z, w]).log().as_slice()),
-            (_, Some(q)) => sum(q),
+            (_, Some(q)) => match self.law() {
+                Some(law) => q.first().map_or(S::zero(), |q| law.value(*q)),
+                None => sum(q),
+            },
             _ => S::zero(),
         };
-        (length, rates)
+        match self.law() {
+            Some(_) => (length, self.row(q).fold(S::zero(), |sum, (k, slope)| v.get(k).map_or(sum, |v| sum + slope * *v))),
+            None => (length, rates),
+        }
+    }
+
+    /// The part of the length as a polynomial of the coordinate; `None`: it is linear.
+    fn law(&self) -> Option<Follow<S>> {
+        self.higher.zip(self.gear.first()).map(|(higher, gear)| Follow { multiplier: *gear, offset: S::zero(), higher: Some(higher) })
+    }
+
+    /// The torque of a force of one at q: its entries, each with its degree of freedom.
+    fn row(&self, q: &[S]) -> impl Iterator<Item = (usize, S)> + Clone + '_ {
+        let slope = self.law().and_then(|law| q.get(self.q).map(|q| law.slope(*q)));
+        self.gear.iter().enumerate().map(move |(k, gear)| (self.v + k, slope.unwrap_or(*gear)))
     }
 }
 
@@ -74,16 +92,21 @@ impl<S: Scalar> ActuatorLaw<S> {
         (gear.len() == 1).then_some(*v)
     }
 
-    /// The torque of a force of one: its entries, each with its degree of freedom.
-    fn row(&self) -> impl Iterator<Item = (usize, S)> + Clone + '_ {
-        self.drives.iter().flat_map(|drive| drive.gear.iter().enumerate().map(|(k, gear)| (drive.v + k, *gear)))
+    /// The torque of a force of one at q: its entries, each with its degree of freedom.
+    fn row<'a>(&'a self, q: &'a [S]) -> impl Iterator<Item = (usize, S)> + Clone + 'a {
+        self.drives.iter().flat_map(|drive| drive.row(q))
+    }
+
+    /// The degrees of freedom of its row.
+    fn freedoms(&self) -> impl Iterator<Item = usize> + '_ {
+        self.drives.iter().flat_map(|drive| drive.v..drive.v + drive.gear.len())
     }
 
     /// τ += gear · f.
     fn add_torque(&self, input: S, q: &[S], v: &[S], tau: &mut [S]) {
         let force = self.force(input, q, v);
         for drive in self.drives.iter().filter(|drive| !drive.has_no_torque) {
-            tau.iter_mut().skip(drive.v).zip(&drive.gear).for_each(|(tau, gear)| *tau += *gear * force);
+            drive.row(q).for_each(|(k, gear)| tau.iter_mut().skip(k).take(1).for_each(|tau| *tau += gear * force));
         }
     }
 
@@ -117,8 +140,8 @@ impl<S: Scalar> Actuators<S> {
             let laws = follower.laws.iter().filter_map(|(k, gear)| Some((self.laws.get(*k)?, *k, *gear)));
             let torque = laws.fold(S::zero(), |sum, (law, k, gear)| sum + gear * law.force(input(k), q, v));
             let torque = clamp(torque, follower.range);
-            for (k, multiplier) in &follower.leaders {
-                tau.iter_mut().skip(*k).take(1).for_each(|tau| *tau += *multiplier * torque);
+            for own in &follower.leaders {
+                tau.iter_mut().skip(own.v).take(1).for_each(|tau| *tau += own.to_leader(q, torque));
             }
         }
         self.passive.iter().for_each(|law| law.add_torque(S::zero(), q, v, tau));
@@ -144,8 +167,8 @@ impl<S: Scalar> Actuators<S> {
                 laws.clone().for_each(|(law, input)| law.add_torque(input, q, v, &mut tau));
                 slope = within(tau[*own], Some(*range), slope);
             }
-            for (i, a) in law.row() {
-                law.row().filter(|(j, _)| *j <= i).for_each(|(j, b)| visit(i, j, slope * a * b));
+            for (i, a) in law.row(q) {
+                law.row(q).filter(|(j, _)| *j <= i).for_each(|(j, b)| visit(i, j, slope * a * b));
             }
         }
         let of_frames = self.laws_of(rows, inputs, false).chain(self.laws_of(rows, inputs, true));
@@ -160,15 +183,16 @@ impl<S: Scalar> Actuators<S> {
     /// Whether a force that depends on a rate acts on several degrees of freedom.
     pub fn couple_rates(&self) -> bool {
         self.all().filter(|law| law.has_damping(|x| x == S::zero())).any(|law| {
-            let first = law.row().next();
-            law.frames.is_some() || law.row().any(|(k, _)| first.is_some_and(|(first, _)| first != k))
+            let first = law.freedoms().next();
+            law.frames.is_some() || law.freedoms().any(|k| first.is_some_and(|first| first != k))
         })
     }
 
     /// Whether a torque depends on q or v.
     pub fn depend_on_state(&self) -> bool {
         let depends = |[_, of_length, of_rate]: [S; 3]| of_length != S::zero() || of_rate != S::zero();
-        self.all().any(|law| depends(law.gain) || depends(law.bias) || law.terms.is_some())
+        let is_bent = |law: &ActuatorLaw<S>| law.drives.iter().any(|drive| drive.higher.is_some());
+        self.all().any(|law| depends(law.gain) || depends(law.bias) || law.terms.is_some() || is_bent(law))
     }
 }
 
@@ -176,6 +200,7 @@ impl<S: Scalar> Actuators<S> {
 mod tests {
     use super::*;
     use crate::actuator::Follower;
+    use crate::joint::Coordinates;
 
     #[test]
     fn an_actuator_follows_its_affine_law_within_its_bounds() {
@@ -209,10 +234,25 @@ mod tests {
         // A joint that follows the first, x = 3 q₀, has the servo too: its torque is bounded by
         // itself.
         all.laws[0].drives[0].has_no_torque = true;
-        all.followers = vec![Follower { laws: vec![(0, 2.0)], range: Some([-4.0, 7.0]), leaders: vec![(0, 3.0)] }];
+        let law = Follow { multiplier: 3.0, offset: 0.0, higher: None };
+        let leader = Coordinates { q: 0, v: 0, mimic: Some(law), pitch: 0.0 };
+        all.followers = vec![Follower { laws: vec![(0, 2.0)], range: Some([-4.0, 7.0]), leaders: vec![leader] }];
         let mut tau = [0.0; 2];
         all.add_torques(&inputs, &q, &v, &mut tau);
         assert_eq!(tau, [3.0 * 7.0, -1.0 - 1.0]);
+        // By x = 3 q₀ + q₀², whose slope is 4.
+        all.followers[0].leaders[0].mimic = Some(Follow { higher: Some([1.0, 0.0, 0.0]), ..law });
+        let mut tau = [0.0; 2];
+        all.add_torques(&inputs, &q, &v, &mut tau);
+        assert_eq!(tau, [4.0 * 7.0, -1.0 - 1.0]);
+        // As a part of the length with the factor 2: 2 (3 · 0.5 + 0.25), and its rate 2 · 4.
+        let bent = Transmission { gear: vec![6.0], higher: Some([2.0, 0.0, 0.0]), ..Transmission::default() };
+        let law = ActuatorLaw { drives: vec![bent], bias: [1.0, 10.0, 100.0], ..ActuatorLaw::default() };
+        assert_eq!(law.force(0.0, &q, &v), 1.0 + 35.0 + 800.0);
+        let mut tau = [0.0; 2];
+        let passive = Actuators { passive: vec![law], ..Actuators::default() };
+        passive.add_torques(&[], &q, &v, &mut tau);
+        assert_eq!((tau, passive.depend_on_state()), ([8.0 * 836.0, 0.0], true));
         assert!(all.depend_on_state());
         (all.laws[0].gain, all.laws[0].bias) = ([1.0, 0.0, 0.0], [0.0; 3]);
         assert!(all.depend_on_state());

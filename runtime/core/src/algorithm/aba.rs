@@ -68,7 +68,7 @@ pub fn solve_by_articulated_body<S: Scalar>(model: &Model<S>, ws: &mut Workspace
 fn solve<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], load: &LoadCase<S>, out: &mut [S]) {
     ws.set_poses(model, q);
     for i in model.outward() {
-        velocity(model, ws, i, v);
+        velocity(model, ws, i, q, v);
     }
     // p_i −= w
     wrenches::each(model, ws, q, load.wrenches, |ws, i, w| ws.bodies[i].wrench = ws.bodies[i].wrench - *w);
@@ -86,7 +86,7 @@ fn solve<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], t
 
 /// ω, the bias acceleration c, the bias wrench p and the placement in the parent of body `i`, and S
 /// of its joint.
-fn velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: BodyId, v: &[S]) {
+fn velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: BodyId, q: &[S], v: &[S]) {
     let body = &model.bodies[i];
     let pose = ws.bodies[i].pose;
     let omega = ws.bodies[body.parent].motion.omega;
@@ -96,7 +96,7 @@ fn velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: BodyId, v: &[
         // The point of the parent accelerates by U_λ p = ω × (ω × p) more than the parent's origin
         // does.
         let carried = Motion { omega, alpha: zero, acceleration: rotate(&ws.bodies[body.parent].u, mount.origin) };
-        ws.bodies[i].motion = p.motion(carried, |vector| mount.outward(vector), &body.coordinates, v, &zeros);
+        ws.bodies[i].motion = p.motion(carried, |vector| mount.outward(vector), &body.coordinates, [q, v, &zeros]);
         for (k, c) in ws.columns_of(i).enumerate() {
             ws.columns[c].axis = p.subspace(&Matrix3::identity(), k);
         }

@@ -37,7 +37,7 @@ pub(super) fn positions<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes
         from_the_center(model, ws);
     }
     for i in model.outward() {
-        position(model, ws, axes, i);
+        position(model, ws, axes, i, q);
     }
 }
 
@@ -55,14 +55,14 @@ pub(super) fn positions_of_frames<S: Scalar>(model: &Model<S>, ws: &mut Workspac
     for i in model.outward().filter(|i| is_needed[*i]) {
         ws.bodies[i].pose = ws.pose(&model.bodies[i], i, q);
         ws.common[i].base = Matrix3::identity();
-        position(model, ws, Axes::Base, i);
+        position(model, ws, Axes::Base, i, q);
     }
     ws.is_needed = is_needed;
 }
 
 /// Rotation and origin of a body, and its columns of S, from those of its parent.
 #[inline(always)]
-fn position<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes: Axes, i: BodyId) {
+fn position<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes: Axes, i: BodyId, q: &[S]) {
     let body = &model.bodies[i];
     let parent = if body.parent == BodyId::BASE {
         CommonState { rotation: ws.common[i].base, ..ws.common[BodyId::BASE] }
@@ -78,7 +78,10 @@ fn position<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes: Axes, i: B
         state.position = parent.position + state.shift;
         for (k, c) in ws.columns_of(i).enumerate() {
             let axis = p.subspace(&ws.common[i].rotation, k);
-            ws.columns[c].axis = body.coordinates.rate_of_one().map_or(axis, |m| axis.times(m));
+            let (own, at) = (&mut ws.columns[c], &body.coordinates);
+            own.axis = at.rate_of_one(q).map_or(axis, |ratio| axis.times(ratio));
+            own.bend = at.bend(q).map(|bend| axis.times(bend));
+            own.rate_of_bend = at.rate_of_bend(q).map(|rate| axis.times(rate));
         }
     });
 }
@@ -110,7 +113,8 @@ fn turned<S: Scalar, P: JointLaw<S>>(body: &Body<S>, p: &P, parent: &Matrix3<S>)
     p.compose(Placement { rotation: parent * body.placement.rotation, position: Vector3::zeros() }).rotation
 }
 
-/// Twist of every body, and ψ̇ = V_λ × S and Ṡ = V_i × S of every column; after [`positions`].
+/// Twist of every body, and ψ̇ = V_λ × S and Ṡ = V_i × S of every column, both with S′ q̇ more of a
+/// follower that is not linear; after [`positions`].
 pub(super) fn twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes: Axes, v: &[S]) {
     for i in model.outward() {
         let body = &model.bodies[i];
@@ -133,6 +137,7 @@ pub(super) fn twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes: A
         for c in columns {
             let column = &mut ws.columns[c];
             column.psi_dot = carried.cross(&column.axis);
+            column.bend.iter().for_each(|bend| column.psi_dot = column.psi_dot + bend.times(v[column.at]));
             column.s_dot = if alone { column.psi_dot } else { twist.cross(&column.axis) };
         }
         ws.common[i].carried_twist = carried;

@@ -24,9 +24,9 @@ pub fn mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], 
     }
     out.fill(S::zero());
     for i in model.inward() {
-        with_pose!(ws.bodies[i].pose, p => joint(model, ws, i, &p, out));
+        with_pose!(ws.bodies[i].pose, p => joint(model, ws, i, &p, q, out));
     }
-    effects::armature_matrix(model, out);
+    effects::armature_matrix(model, q, out);
     effects::add_inertia(model, ws, q, out);
 }
 
@@ -34,20 +34,20 @@ pub fn mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], 
 /// columns' wrenches, carried to its body, along the joint. Then passes them, and the inertia of
 /// all that it carries, on to the parent.
 #[inline(always)]
-fn joint<S: Scalar, P: JointLaw<S>>(model: &Model<S>, ws: &mut Workspace<S>, i: BodyId, p: &P, out: &mut [S]) {
+fn joint<S: Scalar, P: JointLaw<S>>(model: &Model<S>, ws: &mut Workspace<S>, i: BodyId, p: &P, q: &[S], out: &mut [S]) {
     let (n, body) = (model.nv, &model.bodies[i]);
     let mount = Mount::new(*p, &body.placement);
     let (at, dofs) = (&body.coordinates, body.joint.nv());
     for (k, c) in ws.columns_of(i).enumerate() {
         // F = I_i S_i,k
-        ws.columns[c].u = p.column(&ws.composite[i], k).scaled(at.rate_of_one());
+        ws.columns[c].u = p.column(&ws.composite[i], k).scaled(at.rate_of_one(q));
     }
     let all = ws.columns_from(i);
     for (c, column) in ws.columns[all].iter_mut().enumerate() {
         // M_cj = M_jc = S_jᵀ F
         let (k, wrench) = (column.at, &mut column.u);
         for own in 0..dofs {
-            let (l, inertia) = (at.v + own, at.to_leader(p.torque(wrench, own)));
+            let (l, inertia) = (at.v + own, at.to_leader(q, p.torque(wrench, own)));
             out[k * n + l] += inertia;
             if c >= dofs {
                 out[l * n + k] += inertia;
@@ -98,6 +98,6 @@ pub(super) fn mass_matrix_in_common_axes<S: Scalar>(model: &Model<S>, ws: &mut W
             ws.common[parent].inertia += state.inertia.shifted(state.shift);
         }
     }
-    effects::armature_matrix(model, out);
+    effects::armature_matrix(model, q, out);
     effects::add_inertia(model, ws, q, out);
 }

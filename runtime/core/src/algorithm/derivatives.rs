@@ -11,7 +11,17 @@
 //! ∂τ_k/∂v_l = S_kᵀ [2B^C S_l + I^C (ψ̇_l + Ṡ_l)]  ∂τ_l/∂v_k = S_lᵀ [2B^C S_k + I^C (ψ̇_k + Ṡ_k)]
 //! ```
 //!
-//! with the composites of k's body. Forward dynamics: Carpentier & Mansard, *RSS* 2018: ∂a = −M⁻¹
+//! with the composites of k's body. A follower of the coordinate q by f(q) has S = f′ A with an
+//! axis A that moves as others do. Where f is not linear, S′ = f″ A and S″ = f‴ A are not zero, and
+//! the chain rule adds
+//!
+//! ```text
+//! S′ q̇ to ψ̇ and Ṡ
+//! V_λ × S′ q̇ + S′ q̈ + S″ q̇² to ψ̈
+//! S′ᵀ F^C to ∂τ/∂q of the leader by itself
+//! ```
+//!
+//! Forward dynamics: Carpentier & Mansard, *RSS* 2018: ∂a = −M⁻¹
 //! ∂(inverse dynamics at a).
 
 use super::Workspace;
@@ -52,7 +62,7 @@ pub fn inverse_dynamics_derivatives_with_wrenches<S: Scalar>(
     inertias(model, ws);
     coriolis(model, ws);
     forces(model, ws);
-    curls(model, ws);
+    curls(model, ws, v, a);
     let n = model.nv * model.nv;
     let (by_q, rest) = out.split_at_mut(n);
     let (by_v, by_a) = rest.split_at_mut(n);
@@ -60,7 +70,7 @@ pub fn inverse_dynamics_derivatives_with_wrenches<S: Scalar>(
     matrices.clear();
     external(model, ws, q, wrenches, matrices.by_q);
     effects::body_slopes(model, ws, matrices.by_q, Some((&mut *matrices.by_v, &mut *matrices.by_a)));
-    effects::joint_slopes(model, q, v, matrices.by_q, Some((&mut *matrices.by_v, &mut *matrices.by_a)));
+    effects::joint_slopes(model, [q, v, a], matrices.by_q, Some((&mut *matrices.by_v, &mut *matrices.by_a)));
     for i in model.inward() {
         for k in ws.columns_of(i) {
             matrices.row_and_column(model, ws, i, k);
@@ -82,7 +92,7 @@ pub fn static_torque_derivative<S: Scalar>(model: &Model<S>, ws: &mut Workspace<
     let zeros = core::mem::take(&mut ws.zeros);
     still(model, ws);
     accelerations(model, ws, &zeros, &zeros, -model.gravity);
-    effects::joint_slopes(model, q, &zeros, out, None);
+    effects::joint_slopes(model, [q, &zeros, &zeros], out, None);
     ws.zeros = zeros;
     for i in model.outward() {
         let state = &mut ws.common[i];
@@ -98,6 +108,7 @@ pub fn static_torque_derivative<S: Scalar>(model: &Model<S>, ws: &mut Workspace<
             let (state, column) = (&ws.common[i], &ws.columns[k]);
             let held = state.inertia.apply(&column.axis);
             let drive = state.inertia.apply(&column.psi_ddot) + column.axis.cross_wrench(&state.force);
+            column.bend.iter().for_each(|bend| out[column.at * (model.nv + 1)] += state.force.power(bend));
             carry(model, ws, i, [held, drive], |own, [held, drive], other| {
                 out[column.at * model.nv + other.at] += held.power(&other.psi_ddot);
                 if !own {
@@ -214,13 +225,17 @@ fn still<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
 }
 
 /// ψ̈ of every column.
-fn curls<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
+fn curls<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, v: &[S], a: &[S]) {
     for i in model.outward() {
         let (twist, acceleration) = (ws.common[i].carried_twist, ws.common[i].carried_acceleration);
         for k in ws.columns_of(i) {
             let falling = falling(model, ws, i, k, &acceleration);
             let column = &mut ws.columns[k];
             column.psi_ddot = falling + twist.cross(&column.psi_dot);
+            if let (Some(bend), Some(rate)) = (column.bend, column.rate_of_bend) {
+                let (v, a) = (v[column.at], a[column.at]);
+                column.psi_ddot = column.psi_ddot + twist.cross(&bend).times(v) + bend.times(a) + rate.times(v * v);
+            }
         }
     }
 }
@@ -229,12 +244,12 @@ fn curls<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
 /// taken before its factors are turned, and is zero for an upright joint.
 fn falling<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: BodyId, k: usize, carried: &Twist<S>) -> Twist<S> {
     let body = &model.bodies[i];
-    if body.parent != BodyId::BASE || !body.joint.is_rotation_about_axis() {
+    if body.parent != BodyId::BASE || !body.joint.is_rotation_about_axis() || body.coordinates.is_bent() {
         return carried.cross(&ws.columns[k].axis);
     }
     let product = body.placement.rotation.column(2).cross(&model.gravity);
     let product = Twist { angular: Vector3::zeros(), linear: rotate(&ws.common[i].base, product) };
-    body.coordinates.rate_of_one().map_or(product, |m| product.times(m))
+    body.coordinates.mimic.map_or(product, |f| product.times(f.multiplier))
 }
 
 /// Adds the sums of a body and all beyond it to its parent.
@@ -273,6 +288,7 @@ impl<S: Scalar> Matrices<'_, S> {
             true => Wrench::zero(),
             false => twice_b(column.psi_dot.angular) + state.inertia.apply(&column.psi_ddot) + column.axis.cross_wrench(&state.force),
         };
+        column.bend.iter().for_each(|bend| self.by_q[column.at * (n + 1)] += state.force.power(bend));
         let by_v = twice_b(column.axis.angular) + state.inertia.apply(&(column.psi_dot + column.s_dot));
         carry(model, ws, i, [held, by_q, by_v], |own, [held, by_q, by_v], other| {
             let (row, transposed) = (column.at * n + other.at, other.at * n + column.at);

@@ -70,7 +70,8 @@ fn entries<S: Scalar>(axis: &Twist<S>, a: &Vector3<S>, u: &Matrix3<S>) -> [S; PA
 /// v, a: `[nv]`; out: `[nv][3]`, N·m|N per N·m·s/rad|N·s/m, N·m|N and kg·m²|kg: v, v/√(v² + s²) and
 /// a. s is the rate below which the model's friction is smooth, 1e-5 rad/s|m/s if it has none.
 /// Joints that follow a coordinate act on the same columns: Σ d c², Σ |μ c| for rates far above s,
-/// and Σ I c², with their multipliers c, add to the numbers of the leader.
+/// and Σ I c², with their multipliers c, add to the numbers of the leader. Those of a follower by a
+/// polynomial, whose c depends on q, are in no column.
 ///
 /// # Panics
 /// As [`torque_regressor`].

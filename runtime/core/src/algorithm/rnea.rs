@@ -69,10 +69,10 @@ pub(super) fn recursion<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &
     tau.fill(S::zero());
     for i in model.inward() {
         let body = &model.bodies[i];
-        with_pose!(ws.bodies[i].pose, p => inward(body, i, &p, ws, tau));
+        with_pose!(ws.bodies[i].pose, p => inward(body, i, &p, ws, q, tau));
     }
     if load.inertia && features.on_joints {
-        effects::armature(model, a, tau);
+        effects::armature(model, [q, v, a], tau);
     }
     if load.forces && features.on_joints {
         effects::apply_joint_forces(model, q, v, tau);
@@ -125,18 +125,18 @@ fn outward_sweep<S: Scalar, const FORMULATED: bool>(model: &Model<S>, ws: &mut W
     ws.set_poses(model, q);
     for i in model.outward() {
         let body = &model.bodies[i];
-        with_pose!(ws.bodies[i].pose, p => outward::<S, _, FORMULATED>(body, i, p, ws, v, a));
+        with_pose!(ws.bodies[i].pose, p => outward::<S, _, FORMULATED>(body, i, p, ws, [q, v, a]));
     }
 }
 
 /// Motion and own wrench of body `i` from its parent's motion.
 #[inline(always)]
-fn outward<S: Scalar, P: JointLaw<S>, const FORMULATED: bool>(body: &Body<S>, i: BodyId, p: P, ws: &mut Workspace<S>, v: &[S], a: &[S]) {
+fn outward<S: Scalar, P: JointLaw<S>, const FORMULATED: bool>(body: &Body<S>, i: BodyId, p: P, ws: &mut Workspace<S>, state: [&[S]; 3]) {
     let parent = &ws.bodies[body.parent];
     let mount = Mount::new(p, &body.placement);
     // r̈ = r̈_λ + U_λ p
     let carried = Motion { acceleration: parent.motion.acceleration + rotate(&parent.u, mount.origin), ..parent.motion };
-    let mut motion = p.motion(carried, |vector| mount.outward(vector), &body.coordinates, v, a);
+    let mut motion = p.motion(carried, |vector| mount.outward(vector), &body.coordinates, state);
     let formulation = FORMULATED.then_some(&ws.formulation);
     let kinematics = formulation.and_then(|f| f.kinematics.get(i).copied()).unwrap_or_default();
     let u = if FORMULATED && kinematics != AngularKinematics::AngularAcceleration {
@@ -158,11 +158,11 @@ fn outward<S: Scalar, P: JointLaw<S>, const FORMULATED: bool>(body: &Body<S>, i:
 
 /// τ of joint `i`, and its wrench on to the parent.
 #[inline(always)]
-fn inward<S: Scalar, P: JointLaw<S>>(body: &Body<S>, i: BodyId, p: &P, ws: &mut Workspace<S>, tau: &mut [S]) {
+fn inward<S: Scalar, P: JointLaw<S>>(body: &Body<S>, i: BodyId, p: &P, ws: &mut Workspace<S>, q: &[S], tau: &mut [S]) {
     let wrench = ws.bodies[i].wrench;
     // τ_i = S_iᵀ F_i
     for k in 0..body.joint.nv() {
-        tau[body.coordinates.v + k] += body.coordinates.to_leader(p.torque(&wrench, k));
+        tau[body.coordinates.v + k] += body.coordinates.to_leader(q, p.torque(&wrench, k));
     }
     if body.parent == BodyId::BASE {
         return;

@@ -119,11 +119,15 @@ pub(super) struct Column<S> {
     pub(super) at: usize,
     /// S.
     pub(super) axis: Twist<S>,
-    /// ψ̇ = V_λ × S.
+    /// Of a follower that is not linear, S = f′(q) A has derivatives in q besides those of the
+    /// axis A, which moves with the bodies: S′ = f″ A, S″ = f‴ A.
+    pub(super) bend: Option<Twist<S>>,
+    pub(super) rate_of_bend: Option<Twist<S>>,
+    /// ψ̇ = V_λ × S + S′ q̇, the derivative of the body's twist in q.
     pub(super) psi_dot: Twist<S>,
-    /// Ṡ = V_i × S.
+    /// Ṡ = V_i × S + S′ q̇.
     pub(super) s_dot: Twist<S>,
-    /// ψ̈ = V̇_λ × S + V_λ × ψ̇.
+    /// ψ̈ = V̇_λ × S + V_λ × (ψ̇ + S′ q̇) + S′ q̈ + S″ q̇².
     pub(super) psi_ddot: Twist<S>,
     /// Of the articulated-body sweep: I^A S, 1 / Sᵀ I^A S, and τ − Sᵀ p^A.
     pub(super) u: Wrench<S>,
@@ -221,10 +225,13 @@ impl<S: Scalar> Workspace<S> {
     }
 
     /// Whether nothing depends on the angle of body `i`: its frame does not rotate, it is
-    /// axisymmetric, and it carries no other.
+    /// axisymmetric, it carries no other, and its rate does not depend on it.
     pub(super) fn is_independent_of_angle(&self, model: &Model<S>, i: BodyId) -> bool {
         let stays = self.formulation.rotations.get(i).is_some_and(|rotation| rotation.share.is_zero());
-        stays && model.bodies[i].inertia.is_axisymmetric() && model.outward().all(|k| model.bodies[k].parent != i)
+        stays
+            && !model.bodies[i].coordinates.is_bent()
+            && model.bodies[i].inertia.is_axisymmetric()
+            && model.outward().all(|k| model.bodies[k].parent != i)
     }
 
     /// The columns of the joint of body `i`, which is not the base.
@@ -276,7 +283,18 @@ impl<S: Scalar> CommonState<S> {
 impl<S: Scalar> Column<S> {
     fn zero(at: usize) -> Self {
         let o = Twist::zero();
-        Self { at, axis: o, psi_dot: o, s_dot: o, psi_ddot: o, u: Wrench::zero(), inverse: S::zero(), residue: S::zero() }
+        Self {
+            at,
+            axis: o,
+            bend: None,
+            rate_of_bend: None,
+            psi_dot: o,
+            s_dot: o,
+            psi_ddot: o,
+            u: Wrench::zero(),
+            inverse: S::zero(),
+            residue: S::zero(),
+        }
     }
 }
 

@@ -27,7 +27,8 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 pub use collision::{Collision, CollisionShape, ContactSphere, Hull, RIM_POINTS, Visual};
-pub use couple::Coupling;
+pub(crate) use couple::degree_of_chain;
+pub use couple::{Coupling, MOST_DEGREE};
 pub use edit::{Editor, Payload};
 pub use error::EditError;
 pub use moments::PrincipalMoments;
@@ -35,6 +36,7 @@ pub use origin::{Origin, Rotation};
 pub use shaft::Shaft;
 
 pub use crate::index::{ById, Id, JointId, LinkId};
+use crate::joint::Follow;
 
 /// A tree of links and joints. Indices into `links`, `joints` and `frames` follow the order of the
 /// file.
@@ -281,7 +283,11 @@ pub struct Joint {
     pub dynamics: JointDynamics,
 }
 
-/// q = multiplier · q_leader + offset.
+/// How a joint follows another: q = f(x) with the coordinate x of the leader,
+///
+/// ```text
+/// f(x) = offset + multiplier x + higher₀ x² + higher₁ x³ + higher₂ x⁴
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mimic {
     /// Index of the joint that is followed.
@@ -290,6 +296,26 @@ pub struct Mimic {
     pub multiplier: f64,
     /// rad or m.
     pub offset: f64,
+    /// Coefficients of the powers 2, 3 and 4, rad or m over powers of rad or m; zeros where the
+    /// joint follows linearly.
+    pub higher: [f64; 3],
+}
+
+impl Mimic {
+    /// q = multiplier · x + offset.
+    pub fn linear(joint: JointId, multiplier: f64, offset: f64) -> Self {
+        Self { joint, multiplier, offset, higher: [0.0; 3] }
+    }
+
+    /// f.
+    pub fn law(&self) -> Follow<f64> {
+        Follow { multiplier: self.multiplier, offset: self.offset, higher: Some(self.higher).filter(|all| *all != [0.0; 3]) }
+    }
+
+    /// The degree of f: one also where the multiplier is zero.
+    pub fn degree(&self) -> usize {
+        self.higher.iter().rposition(|x| *x != 0.0).map_or(1, |last| last + 2)
+    }
 }
 
 /// Bounds of a joint's motion; infinite where the file gives none.

@@ -61,7 +61,7 @@ impl<S: Scalar> JointLaw<S> for Floating<S> {
     }
 
     #[inline(always)]
-    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
+    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, [_, v, a]: [&[S]; 3]) -> Motion<S> {
         let (rate, derivative) = (six(v, at.v), six(a, at.v));
         let omega = turn(carried.omega);
         let total = omega + rate.angular;

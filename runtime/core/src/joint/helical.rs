@@ -53,9 +53,10 @@ impl<S: Scalar> JointLaw<S> for Helical<S> {
     }
 
     #[inline(always)]
-    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
-        let slid = Prismatic::slide(carried.turned(turn), at.rate(v) * self.pitch, at.rate(a) * self.pitch);
-        self.turn.motion(slid, |vector| vector, at, v, a)
+    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, state: [&[S]; 3]) -> Motion<S> {
+        let [rate, acceleration] = at.rates(state);
+        let slid = Prismatic::slide(carried.turned(turn), rate * self.pitch, acceleration * self.pitch);
+        self.turn.motion(slid, |vector| vector, at, state)
     }
 
     #[inline(always)]

@@ -6,6 +6,7 @@
 //! `joints!`.
 
 mod floating;
+mod follow;
 mod helical;
 #[cfg(feature = "alloc")]
 mod mount;
@@ -14,6 +15,7 @@ mod revolute;
 mod spherical;
 
 pub use floating::Floating;
+pub use follow::Follow;
 pub use helical::Helical;
 #[cfg(feature = "alloc")]
 pub(crate) use mount::Mount;
@@ -202,7 +204,7 @@ pub struct Coordinates<S> {
     pub q: usize,
     /// First index in v, a and τ.
     pub v: usize,
-    /// For a joint that follows: own coordinate = multiplier · leader's + offset.
+    /// For a joint that follows: its own coordinate as a function of the leader's.
     pub mimic: Option<Follow<S>>,
     /// How far a helical joint slides, m/rad; zero for every other.
     pub pitch: S,
@@ -241,52 +243,72 @@ impl<S: Scalar> Angle<S> {
     }
 }
 
-/// The law by which a joint follows another.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Follow<S> {
-    /// d(own)/d(leader's).
-    pub multiplier: S,
-    /// Own coordinate where the leader's is zero, rad or m.
-    pub offset: S,
-}
-
 impl<S: Scalar> Coordinates<S> {
     /// The joint's own single coordinate.
     #[inline(always)]
     pub fn coordinate(&self, q: &[S]) -> S {
         match &self.mimic {
             None => q[self.q],
-            Some(f) => q[self.q] * f.multiplier + f.offset,
+            Some(f) => f.value(q[self.q]),
         }
     }
 
-    /// The joint's own single rate, or acceleration.
+    /// The joint's own single rate.
     #[inline(always)]
-    pub fn rate(&self, v: &[S]) -> S {
+    pub fn rate(&self, q: &[S], v: &[S]) -> S {
         match &self.mimic {
             None => v[self.v],
-            Some(f) => v[self.v] * f.multiplier,
+            Some(f) => v[self.v] * f.slope(q[self.q]),
         }
     }
 
-    /// Own rate over the leader's; `None` for a joint that is no mimic.
+    /// The joint's own single acceleration: f′ a + f″ v² of a follower.
     #[inline(always)]
-    pub fn rate_of_one(&self) -> Option<S> {
-        self.mimic.as_ref().map(|f| f.multiplier)
+    pub fn acceleration(&self, q: &[S], v: &[S], a: &[S]) -> S {
+        let linear = self.rate(q, a);
+        self.bend(q).map_or(linear, |bend| linear + bend * (v[self.v] * v[self.v]))
+    }
+
+    /// Both, of q, v and a.
+    #[inline(always)]
+    pub(crate) fn rates(&self, [q, v, a]: [&[S]; 3]) -> [S; 2] {
+        [self.rate(q, v), self.acceleration(q, v, a)]
+    }
+
+    /// Own rate over the leader's, f′; `None` for a joint that follows none.
+    #[inline(always)]
+    pub fn rate_of_one(&self, q: &[S]) -> Option<S> {
+        self.mimic.as_ref().map(|f| f.slope(q[self.q]))
+    }
+
+    /// Whether it follows another joint, and not linearly.
+    pub fn is_bent(&self) -> bool {
+        self.mimic.as_ref().is_some_and(|f| f.higher.is_some())
+    }
+
+    /// f″ of a follower; `None` where it is zero everywhere.
+    #[inline(always)]
+    pub fn bend(&self, q: &[S]) -> Option<S> {
+        self.mimic.as_ref()?.bend(q[self.q])
+    }
+
+    /// f‴ of a follower; `None` where f″ is zero everywhere.
+    #[inline(always)]
+    pub fn rate_of_bend(&self, q: &[S]) -> Option<S> {
+        self.mimic.as_ref()?.rate_of_bend(q[self.q])
     }
 
     /// The joint's own torque, N·m or N, in terms of the coordinate that it moves with: power is
-    /// the same, so τ_leader = multiplier · τ.
+    /// the same, so τ_leader = f′ τ.
     #[inline(always)]
-    pub fn to_leader(&self, torque: S) -> S {
-        self.rate_of_one().map_or(torque, |multiplier| torque * multiplier)
+    pub fn to_leader(&self, q: &[S], torque: S) -> S {
+        self.rate_of_one(q).map_or(torque, |ratio| torque * ratio)
     }
 
     /// The same in another scalar.
     #[cfg(feature = "alloc")]
-    pub(crate) fn map<T: Scalar>(&self, f: impl Fn(S) -> T) -> Coordinates<T> {
-        let mimic = self.mimic.as_ref().map(|m| Follow { multiplier: f(m.multiplier), offset: f(m.offset) });
-        Coordinates { q: self.q, v: self.v, mimic, pitch: f(self.pitch) }
+    pub(crate) fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> Coordinates<T> {
+        Coordinates { q: self.q, v: self.v, mimic: self.mimic.as_ref().map(|m| m.map(f)), pitch: f(self.pitch) }
     }
 }
 
@@ -328,7 +350,7 @@ pub trait JointLaw<S: Scalar>: Copy {
     /// The child's motion in its axes, from `carried`, the motion that the point of the parent now
     /// at the child's origin has, in axes from which `turn` takes vectors to the child's, and from
     /// the joint's rates in `v` and their derivatives in `a`.
-    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S>;
+    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, state: [&[S]; 3]) -> Motion<S>;
 
     /// The child's mass as seen from the joint frame.
     fn inertia_to_joint(&self, inertia: &SpatialInertia<S>) -> SpatialInertia<S>;

@@ -68,8 +68,9 @@ impl<S: Scalar> JointLaw<S> for Prismatic<S> {
     }
 
     #[inline(always)]
-    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
-        Self::slide(carried.turned(turn), at.rate(v), at.rate(a))
+    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, state: [&[S]; 3]) -> Motion<S> {
+        let [rate, acceleration] = at.rates(state);
+        Self::slide(carried.turned(turn), rate, acceleration)
     }
 
     #[inline(always)]

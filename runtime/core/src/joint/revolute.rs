@@ -65,8 +65,8 @@ impl<S: Scalar> JointLaw<S> for Revolute<S> {
     }
 
     #[inline(always)]
-    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
-        let (rate, acceleration) = (at.rate(v), at.rate(a));
+    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, state: [&[S]; 3]) -> Motion<S> {
+        let [rate, acceleration] = at.rates(state);
         let (mut omega, mut alpha) = (turn(carried.omega), turn(carried.alpha));
         // ω̇ = Rᵀ ω̇_λ + Rᵀ ω_λ × e_z q̇ + e_z q̈;  ω = Rᵀ ω_λ + e_z q̇
         alpha.x += omega.y * rate;

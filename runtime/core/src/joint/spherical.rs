@@ -59,7 +59,7 @@ impl<S: Scalar> JointLaw<S> for Spherical<S> {
     }
 
     #[inline(always)]
-    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
+    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, [_, v, a]: [&[S]; 3]) -> Motion<S> {
         let (rate, derivative) = (three(v, at.v), three(a, at.v));
         let omega = turn(carried.omega);
         // ω̇ = Rᵀ ω̇_λ + Rᵀ ω_λ × ω_J + ω̇_J;  ω = Rᵀ ω_λ + ω_J

@@ -46,6 +46,12 @@ pub enum ModelError {
         /// Name of the joint.
         joint: String,
     },
+    /// A joint follows the last of its leaders by a polynomial of a degree above
+    /// [`MOST_DEGREE`](description::MOST_DEGREE): the product of the degrees on the way.
+    Degree {
+        /// Name of the joint.
+        joint: String,
+    },
     /// A floating base is requested for a robot whose root has a free joint
     /// ([`Description::free_joint_of_root`]). [`Model::new`] accepts such a robot; loaders refuse
     /// it.
@@ -89,6 +95,13 @@ impl fmt::Display for ModelError {
                 write!(
                     f,
                     "joint {joint:?}: mimic: expected a leader with one degree of freedom that follows neither this joint nor several"
+                )
+            }
+            Self::Degree { joint } => {
+                write!(
+                    f,
+                    "joint {joint:?}: mimic: found polynomials of followers of each other, expected at most {} as the product of their degrees",
+                    description::MOST_DEGREE
                 )
             }
             Self::SecondBase { link, joint } => {
@@ -173,7 +186,8 @@ struct Builder<'a> {
 /// places.
 fn too_large(model: &Model<f64>) -> Vec<String> {
     let is_finite = |x: &Placement<f64>| x.position.iter().all(|x| x.is_finite());
-    let follows = |body: &Body<f64>| body.coordinates.mimic.is_none_or(|f| f.multiplier.is_finite() && f.offset.is_finite());
+    let all = |f: Follow<f64>| f.higher.unwrap_or_default().into_iter().chain([f.multiplier, f.offset]).all(f64::is_finite);
+    let follows = |body: &Body<f64>| body.coordinates.mimic.is_none_or(all);
     let heavy =
         |body: &&Body<f64>| !(is_finite(&body.placement) && follows(body) && body.inertia.parameters().iter().all(|x| x.is_finite()));
     let joints = model.bodies.iter().skip(1).filter(heavy).map(|body| format!("joint {:?}", body.name));
@@ -281,7 +295,7 @@ impl<'a> Builder<'a> {
     fn add_coupled(&mut self, index: JointId, joint: &description::Joint, seat: Seat, stage: &Stage) -> Result<(), ModelError> {
         let joints = &self.description.joints;
         let terms: Option<Vec<Mimic>> = core::iter::once(self.leads[index]).chain(others(joints, &self.leads, joint)).collect();
-        let terms = terms.ok_or_else(|| ModelError::BadMimic { joint: joint.name.clone() })?;
+        let terms = terms.ok_or_else(|| self.refused(joint))?;
         let (mut parent, mut x) = seat;
         // The contribution of locked leaders to the coordinate.
         let mut still = 0.0;
@@ -291,7 +305,7 @@ impl<'a> Builder<'a> {
                 let [at] = at.as_slice() else {
                     return Err(ModelError::BadLock { joint: leader.name.clone(), kind: leader.kind, found: at.len() });
                 };
-                still += lead.multiplier * at + lead.offset;
+                still += lead.law().value(*at);
             }
         }
         let mut moving: Vec<Mimic> = terms.into_iter().filter(|lead| joints[lead.joint].locked.is_none()).collect();
@@ -321,7 +335,7 @@ impl<'a> Builder<'a> {
         if found != kind.sizes().0 || coordinates.iter().any(|x| !x.is_finite()) {
             return Err(ModelError::BadLock { joint: joint.name.clone(), kind, found });
         }
-        Ok(Some(coordinates.iter().map(|x| lead.map_or(*x, |lead| lead.multiplier * x + lead.offset)).collect()))
+        Ok(Some(coordinates.iter().map(|x| lead.map_or(*x, |lead| lead.law().value(*x))).collect()))
     }
 
     fn push_joint(&mut self, name: &str, kind: JointKind, limit: Option<description::Limit>) -> Coordinates<f64> {
@@ -367,15 +381,13 @@ impl<'a> Builder<'a> {
         for (index, joint) in self.description.joints.with_ids() {
             if let (Some(mimic), Some(body), true) = (&joint.mimic, self.body_of[index], joint.also.is_empty()) {
                 let lead = self.leads[index];
-                let follow = lead
-                    .and_then(|lead| self.follow(index, mimic, lead))
-                    .ok_or_else(|| ModelError::BadMimic { joint: joint.name.clone() })?;
+                let follow = lead.and_then(|lead| self.follow(index, mimic, lead)).ok_or_else(|| self.refused(joint))?;
                 self.model.bodies[body].coordinates = follow;
             }
         }
         for (body, index, lead) in core::mem::take(&mut self.followers) {
             let joint = &self.description.joints[index];
-            let follow = self.follow(index, &lead, lead).ok_or_else(|| ModelError::BadMimic { joint: joint.name.clone() })?;
+            let follow = self.follow(index, &lead, lead).ok_or_else(|| self.refused(joint))?;
             self.model.bodies[body].coordinates = follow;
         }
         self.model.frames = self.frames();
@@ -413,8 +425,19 @@ impl<'a> Builder<'a> {
         self.body_of[mimic.joint]?;
         let body = self.body_of[lead.joint].filter(|_| joints[lead.joint].kind.sizes() == (1, 1))?;
         let Coordinates { q, v, .. } = self.model.bodies[body].coordinates;
-        let mimic = Some(Follow { multiplier: lead.multiplier, offset: lead.offset });
+        let mimic = Some(lead.law());
         Some(Coordinates { q, v, mimic, pitch: per_radian(&joints[follower]) })
+    }
+
+    /// Why a joint cannot follow.
+    fn refused(&self, joint: &description::Joint) -> ModelError {
+        let joints = &self.description.joints;
+        let is_too_high = |law: &Mimic| description::degree_of_chain(joints, law) > description::MOST_DEGREE;
+        let name = joint.name.clone();
+        match joint.mimic.iter().chain(&joint.also).any(is_too_high) {
+            true => ModelError::Degree { joint: name },
+            false => ModelError::BadMimic { joint: name },
+        }
     }
 
     fn not_a_tree(&self) -> ModelError {

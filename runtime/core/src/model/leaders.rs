@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::description::{ById, Joint, JointId, Mimic};
+use crate::description::{ById, Joint, JointId, MOST_DEGREE, Mimic};
 
 /// The final leader of each joint.
 pub(super) type Leads = ById<JointId, Option<Mimic>>;
@@ -47,12 +47,36 @@ fn lead(joints: &ById<JointId, Joint>, known: &Leads, first: Mimic) -> Option<Mi
             return None;
         }
         let next = if walked < WALKED { own } else { known[lead.joint]? };
-        // multiplier · (m q + o) + offset
-        let (multiplier, offset) = (lead.multiplier * next.multiplier, lead.multiplier * next.offset + lead.offset);
-        lead = Mimic { joint: next.joint, multiplier, offset };
+        lead = composed(&lead, &next)?;
         walked += 1;
     }
     Some(lead)
+}
+
+/// f(g(x)) of the leader's leader x. `None` if its degree is above [`MOST_DEGREE`].
+fn composed(outer: &Mimic, inner: &Mimic) -> Option<Mimic> {
+    if (outer.higher, inner.higher) == ([0.0; 3], [0.0; 3]) {
+        // multiplier · (m x + o) + offset
+        let (multiplier, offset) = (outer.multiplier * inner.multiplier, outer.multiplier * inner.offset + outer.offset);
+        return Some(Mimic::linear(inner.joint, multiplier, offset));
+    }
+    if outer.degree() * inner.degree() > MOST_DEGREE {
+        return None;
+    }
+    let powers = |law: &Mimic| [law.offset, law.multiplier, law.higher[0], law.higher[1], law.higher[2]];
+    let (outer, g) = (powers(outer), powers(inner));
+    // Horner: p ← p g + c
+    let mut p = [0.0; MOST_DEGREE + 1];
+    for c in outer.into_iter().rev() {
+        let mut product = [0.0; MOST_DEGREE + 1];
+        for (i, x) in p.iter().enumerate() {
+            g.iter().enumerate().filter(|(k, _)| i + k <= MOST_DEGREE).for_each(|(k, y)| product[i + k] += x * y);
+        }
+        product[0] += c;
+        p = product;
+    }
+    let [offset, multiplier, higher @ ..] = p;
+    Some(Mimic { joint: inner.joint, multiplier, offset, higher })
 }
 
 /// How a joint follows another; a locked one follows none.
@@ -66,11 +90,7 @@ mod tests {
 
     /// Joints that follow those of these indices.
     fn joints(leaders: &[Option<usize>]) -> ById<JointId, Joint> {
-        let follow = |(k, joint): (usize, usize)| Mimic {
-            joint: JointId(joint),
-            multiplier: 1.0 + 0.3 / (k + 3) as f64,
-            offset: 0.1 * k as f64 - 0.7,
-        };
+        let follow = |(k, joint): (usize, usize)| Mimic::linear(JointId(joint), 1.0 + 0.3 / (k + 3) as f64, 0.1 * k as f64 - 0.7);
         let joint = |(k, leader): (usize, &Option<usize>)| Joint { mimic: leader.map(|l| follow((k, l))), ..Default::default() };
         leaders.iter().enumerate().map(joint).collect()
     }

@@ -274,7 +274,7 @@ mod tests {
             parent: LinkId(parent),
             child: LinkId(child),
             axis: [0.0, 0.0, 1.0],
-            mimic: mimic.map(|joint| Mimic { joint: JointId(joint), multiplier: 2.0, offset: 0.0 }),
+            mimic: mimic.map(|joint| Mimic::linear(JointId(joint), 2.0, 0.0)),
             ..Joint::default()
         };
         let joints = [joint("ja", 0, 1, None), joint("jb", 1, 2, None), joint("jc", 2, 3, Some(0)), joint("jd", 1, 4, None)].into();

@@ -23,6 +23,7 @@ fn power_balance_holds(case: &Case, random: &mut Random) {
 #[test]
 fn power_of_the_torques_is_the_change_of_energy() {
     for_each_tree(200, Flavour::ANY, power_balance_holds);
+    for_each_tree(100, Flavour::BENT, power_balance_holds);
     for_each_bundled(power_balance_holds);
 }
 

@@ -16,6 +16,7 @@ mod manifold;
 mod mimic;
 mod paths;
 mod pivots;
+mod polynomial;
 mod reference;
 mod screws;
 mod shafts;

@@ -109,7 +109,7 @@ impl<'a> Coupled<'a> {
         let (terms, follower) = ([(a, 0.5), (b, -1.25), (c, 2.0)], joints[JointId(follower)].name.clone());
         let mut tree = free.description.clone();
         let leaders = terms.iter().map(|(j, coefficient)| (joints[JointId(*j)].name.clone(), *coefficient)).collect();
-        tree.couple(&Coupling { joint: follower.clone(), leaders, offset: OFFSET }).unwrap();
+        tree.couple(&Coupling { joint: follower.clone(), leaders, offset: OFFSET, ..Coupling::default() }).unwrap();
         let reduced = Case::new("", tree, free.base);
         assert_eq!(reduced.model.nv() + 1, free.model.nv());
         let terms = terms.map(|(j, coefficient)| (info(&reduced, &joints[JointId(j)].name), coefficient)).to_vec();
@@ -236,7 +236,7 @@ fn the_mass_matrix_of_a_differential_drive_couples_its_motors() {
     let pitch = tree.joint("pitch").unwrap();
     (tree.joints[pitch].mimic, tree.joints[pitch].also) = (None, Vec::new());
     let leaders = vec![("m1".to_owned(), 0.05), ("m2".to_owned(), -0.05)];
-    let coupling = Coupling { joint: "pitch".into(), leaders, offset: 0.0 };
+    let coupling = Coupling { joint: "pitch".into(), leaders, ..Coupling::default() };
     tree.couple(&coupling).unwrap();
     check(&tree);
     let told = tree.lock("pitch", &[0.0]).unwrap_err().to_string();
@@ -253,10 +253,10 @@ fn the_mass_matrix_of_a_differential_drive_couples_its_motors() {
     for (change, what) in [
         (Coupling { joint: "pich".into(), ..coupling.clone() }, "pitch"),
         (coupling.clone(), "follows another already"),
-        (Coupling { joint: "m1".into(), leaders: vec![("m1".into(), 1.0)], offset: 0.0 }, "expected another joint"),
-        (Coupling { joint: "m1".into(), leaders: vec![("pitch".into(), 1.0)], offset: 0.0 }, "which does not follow several"),
-        (Coupling { joint: "m1".into(), leaders: vec![("m2".into(), f64::NAN)], offset: 0.0 }, "expected a finite number"),
-        (Coupling { joint: "m1".into(), leaders: vec![], offset: 0.0 }, "follows this joint"),
+        (Coupling { joint: "m1".into(), leaders: vec![("m1".into(), 1.0)], ..Coupling::default() }, "expected another joint"),
+        (Coupling { joint: "m1".into(), leaders: vec![("pitch".into(), 1.0)], ..Coupling::default() }, "which does not follow several"),
+        (Coupling { joint: "m1".into(), leaders: vec![("m2".into(), f64::NAN)], ..Coupling::default() }, "expected a finite number"),
+        (Coupling { joint: "m1".into(), leaders: vec![], ..Coupling::default() }, "follows this joint"),
     ] {
         let told = tree.couple(&change).unwrap_err().to_string();
         assert!(told.contains(what), "{told}");

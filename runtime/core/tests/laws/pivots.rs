@@ -37,7 +37,7 @@ fn smallest(links: Vec<Link>, joints: Vec<Joint>) -> f64 {
 #[test]
 fn a_follower_counts_with_its_rate() {
     let (a, b, m) = (1.0, 0.01, 80.0);
-    let follower = Joint { mimic: Some(Mimic { joint: JointId(0), multiplier: m, offset: 0.0 }), ..hinge("pinion", 0, 2, 0.5) };
+    let follower = Joint { mimic: Some(Mimic::linear(JointId(0), m, 0.0)), ..hinge("pinion", 0, 2, 0.5) };
     let links = vec![Link { name: "base".into(), ..Link::default() }, ball("wheel", 1.0, a), ball("pinion", 1.0, b)];
     let terms = ((1.5 * a).sqrt() + m * (1.5 * b).sqrt()).powi(2);
     let left = smallest(links, vec![hinge("wheel", 0, 1, 0.0), follower]);

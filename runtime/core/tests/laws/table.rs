@@ -24,8 +24,9 @@ fn run(row: &Function<Big>, way: usize, model: &Model<Big>, given: &[&[Big]]) ->
 #[test]
 fn every_function_in_every_way_is_the_textbooks() {
     let seen = std::cell::RefCell::new(std::collections::BTreeSet::new());
-    for reference in [Reference::Body, Reference::World, Reference::WorldAligned] {
-        for_each_tree(8, SMALL, |case, random| {
+    let references = [Reference::Body, Reference::World, Reference::WorldAligned];
+    for (reference, bent) in references.into_iter().flat_map(|reference| [(reference, false), (reference, true)]) {
+        for_each_tree(8, Flavour { bent, ..SMALL }, |case, random| {
             let state = case.state(random);
             Big::scope(|| {
                 let model = case.model.clone().with_wrenches_in(reference).cast::<Big>();

@@ -6,6 +6,7 @@ use articulated_core::actuator::Actuators;
 use articulated_core::algorithm::{FunctionError, FunctionId};
 use articulated_core::control::{Aim, Controller, Series, Signal};
 use articulated_core::dynamics::Dynamics;
+use articulated_core::joint::Coordinates;
 
 use super::{Control, Dependence};
 use crate::simulate::{SimulateError, StateError, manifold::Manifold};
@@ -192,14 +193,15 @@ fn wrong_actuators(actuators: &Actuators, controls: &Signal, nq: usize, nv: usiz
     let of_followers = followers.iter().filter_map(|follower| follower.range);
     bounds.iter().map(|(_, bounds)| *bounds).chain(of_followers).for_each(|bounds| range("bounds of torques", bounds));
     for follower in followers {
-        let [laws_of, leaders] = [&follower.laws, &follower.leaders];
-        for (vector, all, length) in [("actuators", laws_of, laws.len()), ("v", leaders, nv)] {
-            let beyond = all.iter().map(|(k, _)| *k).filter(|k| *k >= length);
-            let event = || "a joint that follows others".to_owned();
-            wrong.extend(beyond.map(|index| StateError::Beyond { event: event(), vector, index, length }));
-            let factors: Vec<f64> = all.iter().map(|(_, factor)| *factor).collect();
-            wrong.extend(StateError::of("gear of an actuator", &factors, factors.len(), |_| None));
-        }
+        let of_laws = follower.laws.iter().map(|(k, _)| ("actuators", *k, laws.len()));
+        let of_leaders = follower.leaders.iter().flat_map(|own| [("q", own.q, nq), ("v", own.v, nv)]);
+        let beyond = of_laws.chain(of_leaders).filter(|(_, index, length)| index >= length);
+        let event = || "a joint that follows others".to_owned();
+        wrong.extend(beyond.map(|(vector, index, length)| StateError::Beyond { event: event(), vector, index, length }));
+        let of_leader = |own: &Coordinates<f64>| own.mimic.map(|law| [[law.multiplier, 0.0, 0.0], law.higher.unwrap_or_default()]);
+        let factors = follower.laws.iter().map(|(_, gear)| *gear);
+        let factors: Vec<f64> = factors.chain(follower.leaders.iter().filter_map(of_leader).flatten().flatten()).collect();
+        wrong.extend(StateError::of("gear of an actuator", &factors, factors.len(), |_| None));
     }
     for law in laws.iter().chain(passive) {
         wrong.extend(StateError::of("gain of an actuator", &law.gain, 3, |_| None));

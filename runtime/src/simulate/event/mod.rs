@@ -140,8 +140,14 @@ impl<'a> Event<'a> {
     /// the indices in q, and the multipliers.
     pub fn limit_of_sum(name: impl Into<String>, terms: Vec<(usize, f64)>, offset: f64, (lower, upper): (f64, f64)) -> Self {
         let last = terms.iter().map(|(i, _)| *i).max();
+        Self::limit_of(name, last, move |q| sum(q, &terms) + offset, (lower, upper))
+    }
+
+    /// As [`Event::limit`], of a coordinate x(q) `[nq]` that depends on the entry `about` of q and
+    /// on those before, if on any: one of a joint that follows another by a polynomial.
+    pub fn limit_of(name: impl Into<String>, about: Option<usize>, x: impl Fn(&[f64]) -> f64 + 'a, (lower, upper): (f64, f64)) -> Self {
         let g = move |_: f64, q: &[f64], _: &[f64]| {
-            let x = sum(q, &terms) + offset;
+            let x = x(q);
             match (lower.is_finite(), upper.is_finite()) {
                 // Halves: the distance of the two may be beyond the range of numbers.
                 (true, true) => (x - lower) * (((upper - x) / 2.0) / (upper / 2.0 - lower / 2.0)),
@@ -151,7 +157,7 @@ impl<'a> Event<'a> {
         };
         // NaN is no bound.
         let inverted = if lower < upper { None } else { Some((lower, upper)) };
-        Self { about: last.map(About::Coordinate), inverted, ..Self::new(name, g).falling() }
+        Self { about: about.map(About::Coordinate), inverted, ..Self::new(name, g).falling() }
     }
 
     /// The rotation of the unit quaternion (x, y, z, w) at coordinate i of q is by the angle
@@ -172,7 +178,14 @@ impl<'a> Event<'a> {
     /// `terms`: the indices in v, and the multipliers.
     pub fn stick_slip_of_sum(name: impl Into<String>, terms: Vec<(usize, f64)>, speed: f64) -> Self {
         let last = terms.iter().map(|(i, _)| *i).max();
-        Self { about: last.map(About::Rate), ..Self::new(name, move |_, _, v: &[f64]| sum(v, &terms).abs() - SLIDING * speed) }
+        Self::stick_slip_of(name, last, move |_, v| sum(v, &terms), speed)
+    }
+
+    /// As [`Event::stick_slip`], of a rate x(q, v) that depends on the entry `about` of v and on
+    /// those before, if on any: one of a joint that follows another by a polynomial.
+    pub fn stick_slip_of(name: impl Into<String>, about: Option<usize>, x: impl Fn(&[f64], &[f64]) -> f64 + 'a, speed: f64) -> Self {
+        let g = move |_: f64, q: &[f64], v: &[f64]| x(q, v).abs() - SLIDING * speed;
+        Self { about: about.map(About::Rate), ..Self::new(name, g) }
     }
 
     /// Errors for a robot of this shape: an index out of range, or bounds that exclude every value.

@@ -105,7 +105,7 @@ impl<'a> Motions<'a> {
     }
 
     /// A joint's own coordinates, rates and their derivatives. A locked joint rests; a follower's
-    /// coordinate is its leader's times and plus.
+    /// coordinate is a polynomial of its leader's.
     fn numbers<S: Scalar>(&self, joint: usize, q: &[S], v: &[S], a: &[S]) -> [Vec<S>; 3] {
         let it = &self.description.joints[JointId(joint)];
         let (nq, nv) = it.kind.sizes();
@@ -116,9 +116,11 @@ impl<'a> Motions<'a> {
         if it.mimic.is_some() {
             let mut own = [S::zero(); 3];
             for m in it.mimic.iter().chain(&it.also) {
-                let (multiplier, offset) = (S::from_f64(m.multiplier), S::from_f64(m.offset));
                 let [q, v, a] = self.numbers(m.joint.0, q, v, a);
-                own = [own[0] + multiplier * q[0] + offset, own[1] + multiplier * v[0], own[2] + multiplier * a[0]];
+                let leader = Jet(q[0], v[0], a[0]);
+                let powers = [m.offset, m.multiplier, m.higher[0], m.higher[1], m.higher[2]];
+                let Jet(x, rate, second) = powers.iter().rev().fold(Jet::from_f64(0.0), |sum, c| sum * leader + Jet::from_f64(*c));
+                own = [own[0] + x, own[1] + rate, own[2] + second];
             }
             return own.map(|x| vec![x]);
         }

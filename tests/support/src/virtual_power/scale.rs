@@ -90,7 +90,7 @@ impl Motions<'_> {
             self.add_scale(root, &ways, g, &FREE, (0, ways[root].length), &mut scale);
         }
         for (index, joint) in self.description.joints.iter().enumerate() {
-            for (end, multiplier) in self.leaders(index) {
+            for (end, multiplier) in self.leaders(index, q) {
                 let own: Vec<Share> = shares(joint).iter().map(|s| (s.0 * multiplier.abs(), s.1 * multiplier.abs())).collect();
                 let from = ways[joint.child].length;
                 self.add_scale(joint.child, &ways, g, &own, (self.seat(end).1, from), &mut scale);
@@ -115,9 +115,9 @@ impl Motions<'_> {
         }
     }
 
-    /// The joints at the ends of chains of followers, and their factors for this one. Empty if
+    /// The joints at the ends of chains of followers, and their factors for this one at q. Empty if
     /// either is locked, or does not move.
-    fn leaders(&self, joint: usize) -> Vec<(usize, f64)> {
+    fn leaders(&self, joint: usize, q: &[f64]) -> Vec<(usize, f64)> {
         let it = &self.description.joints[JointId(joint)];
         if it.locked.is_some() || it.kind.is_fixed() {
             return Vec::new();
@@ -125,8 +125,11 @@ impl Motions<'_> {
         if it.mimic.is_none() {
             return vec![(joint, 1.0)];
         }
-        let further =
-            |m: &Mimic| self.leaders(m.joint.0).into_iter().map(|(end, multiplier)| (end, m.multiplier * multiplier)).collect::<Vec<_>>();
+        let rest = vec![0.0; self.size.1];
+        let further = |m: &Mimic| {
+            let slope = m.law().slope(self.numbers(m.joint.0, q, &rest, &rest)[0][0]);
+            self.leaders(m.joint.0, q).into_iter().map(move |(end, multiplier)| (end, slope * multiplier)).collect::<Vec<_>>()
+        };
         it.mimic.iter().chain(&it.also).flat_map(further).collect()
     }
 

@@ -81,7 +81,8 @@ fn edits(module: &Module<'_>) -> Vec<String> {
         lines.push(format!("Bends: {} of fixed joint {:?}.", pieces(shaft.segments), shaft.joint));
     }
     for c in values(&o.robot.coupling) {
-        lines.push(format!("Follows: joint {:?}: {:?}, offset {:?}.", c.joint, c.leaders, c.offset));
+        let higher = if c.higher == [0.0; 3] { String::new() } else { format!(", powers 2 to 4 {:?}", c.higher) };
+        lines.push(format!("Follows: joint {:?}: {:?}, offset {:?}{higher}.", c.joint, c.leaders, c.offset));
     }
     lines.extend(o.robot.file_coupling.then(|| "Follow: joints by the linear equations of the file.".to_owned()));
     for (joint, at) in values(&o.robot.lock) {

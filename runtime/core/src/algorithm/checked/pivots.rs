@@ -55,7 +55,7 @@ pub fn checked_forward_dynamics_with_wrenches<S: Scalar<Mask = bool>>(
     let mut monitor = PivotMonitor::new();
     if model.has_followers() {
         forward_dynamics_with_wrenches(model, ws, q, v, tau, wrenches, out);
-        factored_pivots(model, ws, |freedom, left| monitor.see(freedom, left));
+        factored_pivots(model, ws, q, |freedom, left| monitor.see(freedom, left));
     } else {
         articulated_body_with_wrenches(model, ws, q, v, tau, wrenches, out);
         articulated_body_pivots(model, ws, |freedom, left| monitor.see(freedom, left));
@@ -130,14 +130,14 @@ pub fn articulated_body_pivots<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S
 /// The same for the elimination Lᵀ D L of M that
 /// [`forward_dynamics`](super::super::forward_dynamics()) left in the workspace: D⁻¹ on the
 /// diagonal of the matrix, composite inertias.
-pub fn factored_pivots<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, mut see: impl FnMut(usize, S)) {
+pub fn factored_pivots<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], mut see: impl FnMut(usize, S)) {
     // A coordinate that several joints follow sums √(S_iᵀ I S_i) of each at most.
     ws.row.fill(S::zero());
     for i in model.outward() {
         let (at, size) = (&model.bodies[i].coordinates, Size::of(&ws.composite[i]));
         for c in ws.columns_of(i) {
             let axis = with_pose!(ws.bodies[i].pose, p => p.subspace(&Matrix3::identity(), ws.columns[c].at - at.v));
-            let rate = at.rate_of_one().map_or(S::one(), Scalar::abs);
+            let rate = at.rate_of_one(q).map_or(S::one(), Scalar::abs);
             ws.row[ws.columns[c].at] += size.along(&axis).sqrt() * rate;
         }
     }

@@ -16,7 +16,7 @@ use crate::spatial::{ArticulatedInertia, Matrix3, Twist, Vector3, Wrench, rotate
 
 /// Twists of all bodies in their own axes, into the common states; poses, origins and angular
 /// velocities are known.
-fn body_twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, v: &[S]) {
+fn body_twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S]) {
     ws.common[BodyId::BASE].twist = Twist::zero();
     for i in model.outward() {
         let body = &model.bodies[i];
@@ -26,7 +26,7 @@ fn body_twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, v: &[S]) {
             let mount = Mount::new(p, &body.placement);
             let mut linear = mount.outward(carried.at(mount.origin).linear);
             for k in 0..body.joint.nv() {
-                let rate = at.rate_of_one().map_or(v[at.v + k], |m| v[at.v + k] * m);
+                let rate = at.rate_of_one(q).map_or(v[at.v + k], |m| v[at.v + k] * m);
                 linear += p.subspace(&Matrix3::identity(), k).linear * rate;
             }
             linear
@@ -88,7 +88,7 @@ fn momentum<S: Scalar>(inertia: &ArticulatedInertia<S>, twist: &Twist<S>) -> Wre
 /// Poses, motions and wrenches of bodies.
 fn wrenches<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], load: &LoadCase<S>) {
     place_bodies(model, ws, q);
-    body_twists(model, ws, v);
+    body_twists(model, ws, q, v);
     for i in model.outward().filter(|_| load.forces) {
         for effect in &model.bodies[i].effects.body {
             if let Law::Wrench { wrench, .. } = effect.effect.law::<S>() {

@@ -13,18 +13,24 @@ use crate::model::{Body, Model};
 use crate::spatial::Vector3;
 use crate::spatial::screw::{Quaternion, right_jacobian_inverse};
 
-/// One effect on one degree of freedom: the effect, its place in v, its own coordinate and rate,
-/// and its own rate over that of the coordinate that it moves with.
+/// One effect on one degree of freedom: the effect, and its place in v.
 pub(super) struct Acting<'a, S: 'static> {
     pub(super) effect: &'a JointEffect<S>,
     pub(super) at: usize,
-    pub(super) ratio: Option<S>,
     body: &'a Body<S>,
     model: &'a Model<S>,
 }
 
-/// A place in v, and the rate of an effect over the rate there.
-pub(super) type Term<S> = (usize, Option<S>);
+/// A coordinate that an effect moves with.
+#[derive(Clone, Copy)]
+pub(super) struct Term<S> {
+    /// Its place in v.
+    pub(super) at: usize,
+    /// The rate of the effect over the rate there: f′ of a joint that follows.
+    pub(super) ratio: Option<S>,
+    /// f″ and f‴ of a follower that is not linear.
+    pub(super) bends: Option<[S; 2]>,
+}
 
 impl<'a, S: Scalar> Acting<'a, S> {
     /// Its own coordinate; meaningless if the joint does not have one for each degree of freedom.
@@ -37,15 +43,15 @@ impl<'a, S: Scalar> Acting<'a, S> {
         }
     }
 
-    /// The other bodies of a joint that follows several: q = Σ (multiplier · leader + offset).
+    /// The other bodies of a joint that follows several: q = Σ fᵢ(qᵢ).
     fn before(&self) -> impl Iterator<Item = &'a Body<S>> + use<'a, S> {
         self.model.series(self.body).skip(1)
     }
 
-    /// The coordinates that it moves with: one, or several.
-    pub(super) fn terms(&self) -> impl Iterator<Item = Term<S>> + use<'a, S> {
-        let others = self.before().map(|body| (body.coordinates.v, body.coordinates.rate_of_one()));
-        core::iter::once((self.at, self.ratio)).chain(others)
+    /// The coordinates that it moves with at q: one, or several.
+    pub(super) fn terms<'q>(&self, q: &'q [S]) -> impl Iterator<Item = Term<S>> + use<'a, 'q, S> {
+        let others = self.before().map(move |body| Term::of(body.coordinates.v, &body.coordinates, q));
+        core::iter::once(self.term(q)).chain(others)
     }
 
     /// Its law of the rotation, if it acts on a ball joint and has one.
@@ -59,24 +65,37 @@ impl<'a, S: Scalar> Acting<'a, S> {
         })
     }
 
-    /// Its own rate, or acceleration.
-    pub(super) fn rate(&self, v: &[S]) -> S {
-        self.terms().skip(1).fold(scaled(v[self.at], self.ratio), |sum, (at, ratio)| sum + scaled(v[at], ratio))
+    /// Its own rate.
+    pub(super) fn rate(&self, q: &[S], v: &[S]) -> S {
+        let own = |term: Term<S>| term.scaled(v[term.at]);
+        self.terms(q).skip(1).fold(own(self.term(q)), |sum, term| sum + own(term))
+    }
+
+    /// The first of them; the only one of a rotor.
+    pub(super) fn term(&self, q: &[S]) -> Term<S> {
+        Term::of(self.at, &self.body.coordinates, q)
+    }
+
+    /// Whether its joint follows others, and not linearly.
+    pub(super) fn is_bent(&self) -> bool {
+        self.model.series(self.body).any(|body| body.coordinates.is_bent())
     }
 
     /// Whether it is a motor: a joint that follows another has none.
     pub(super) fn is_motor(&self) -> bool {
-        self.ratio.is_none() && matches!(self.effect.effect.law::<S>(), Law::Drive { .. })
-    }
-
-    /// As a torque of the coordinate that it moves with.
-    pub(super) fn torque(&self, own: S) -> S {
-        scaled(own, self.ratio)
+        self.body.coordinates.mimic.is_none() && matches!(self.effect.effect.law::<S>(), Law::Drive { .. })
     }
 }
 
-pub(super) fn scaled<S: Scalar>(x: S, ratio: Option<S>) -> S {
-    ratio.map_or(x, |r| x * r)
+impl<S: Scalar> Term<S> {
+    fn of(at: usize, own: &Coordinates<S>, q: &[S]) -> Self {
+        Self { at, ratio: own.rate_of_one(q), bends: own.bend(q).zip(own.rate_of_bend(q)).map(<[S; 2]>::from) }
+    }
+
+    /// Times f′: a rate there as the effect's, or a torque of the effect as one there.
+    pub(super) fn scaled(&self, x: S) -> S {
+        self.ratio.map_or(x, |ratio| x * ratio)
+    }
 }
 
 /// An effect on a ball joint whose law depends on φ = log(q₀⁻¹ q), the rotation vector from rest in
@@ -139,14 +158,10 @@ impl<S: Scalar> OnBall<'_, S> {
 
 /// All effects on joints.
 pub(super) fn all<S: Scalar>(model: &Model<S>) -> impl Iterator<Item = Acting<'_, S>> {
-    let of = |body: &'_ Body<S>| -> (usize, Option<S>) {
-        let at: &Coordinates<S> = &body.coordinates;
-        (at.v, at.rate_of_one())
-    };
     model.outward().flat_map(move |i| {
         let body = &model.bodies[i];
-        let (at, ratio) = of(body);
-        body.effects.joint.iter().map(move |effect| Acting { effect, at: at + effect.freedom, ratio, body, model })
+        let at = body.coordinates.v;
+        body.effects.joint.iter().map(move |effect| Acting { effect, at: at + effect.freedom, body, model })
     })
 }
 
@@ -158,8 +173,8 @@ fn for_each_force<S: Scalar>(model: &Model<S>, q: &[S], v: &[S], mut visit: impl
             let torque = ball.torque(q, v);
             (0..3).for_each(|k| visit(one.at + k, torque[k]));
         } else if let Law::Force { force, .. } = one.effect.effect.law::<S>() {
-            let own = force(&one.effect.parameters, one.coordinate(q), one.rate(v));
-            one.terms().for_each(|(at, ratio)| visit(at, scaled(own, ratio)));
+            let own = force(&one.effect.parameters, one.coordinate(q), one.rate(q, v));
+            one.terms(q).for_each(|term| visit(term.at, term.scaled(own)));
         }
     }
 }
@@ -174,8 +189,8 @@ pub(crate) fn damping<S: Scalar>(model: &Model<S>, q: &[S], v: &[S], mut visit: 
             }
         } else if let Law::Force { slope, .. } = one.effect.effect.law::<S>() {
             let p = &duals(&one.effect.parameters)[..one.effect.parameters.len()];
-            let own = slope(p, Dual::constant(one.coordinate(q)), Dual::variable(one.rate(v))).slope;
-            one.terms().for_each(|(at, ratio)| visit(at, -scaled(scaled(own, ratio), ratio)));
+            let own = slope(p, Dual::constant(one.coordinate(q)), Dual::variable(one.rate(q, v))).slope;
+            one.terms(q).for_each(|term| visit(term.at, -term.scaled(term.scaled(own))));
         }
     }
 }
@@ -188,20 +203,23 @@ pub(in crate::algorithm) fn apply_joint_forces<S: Scalar>(model: &Model<S>, q: &
 
 /// τ += I a of rotors.
 #[inline(always)]
-pub(in crate::algorithm) fn armature<S: Scalar>(model: &Model<S>, a: &[S], tau: &mut [S]) {
+pub(in crate::algorithm) fn armature<S: Scalar>(model: &Model<S>, [q, v, a]: [&[S]; 3], tau: &mut [S]) {
     for one in all(model) {
         if let Law::Inertia(inertia) = one.effect.effect.law::<S>() {
-            tau[one.at] += one.torque(inertia(&one.effect.parameters) * one.rate(a));
+            let term = one.term(q);
+            let linear = term.scaled(a[one.at]);
+            let own = term.bends.map_or(linear, |[bend, _]| linear + bend * (v[one.at] * v[one.at]));
+            tau[one.at] += term.scaled(inertia(&one.effect.parameters) * own);
         }
     }
 }
 
 /// M_ii += I of rotors.
 #[inline(always)]
-pub(in crate::algorithm) fn armature_matrix<S: Scalar>(model: &Model<S>, out: &mut [S]) {
+pub(in crate::algorithm) fn armature_matrix<S: Scalar>(model: &Model<S>, q: &[S], out: &mut [S]) {
     for one in all(model) {
         if let Law::Inertia(inertia) = one.effect.effect.law::<S>() {
-            out[one.at * model.nv + one.at] += one.torque(one.torque(inertia(&one.effect.parameters)));
+            out[one.at * model.nv + one.at] += one.term(q).scaled(one.term(q).scaled(inertia(&one.effect.parameters)));
         }
     }
 }
@@ -211,7 +229,7 @@ pub(in crate::algorithm) fn armature_matrix<S: Scalar>(model: &Model<S>, out: &m
 pub(in crate::algorithm) fn motor_torque<S: Scalar>(model: &Model<S>, v: &[S], tau: &[S], out: &mut [S]) {
     out.copy_from_slice(tau);
     for one in all(model) {
-        if let (Law::Drive { torque, .. }, None) = (one.effect.effect.law::<S>(), one.ratio) {
+        if let (Law::Drive { torque, .. }, true) = (one.effect.effect.law::<S>(), one.is_motor()) {
             out[one.at] = torque(&one.effect.parameters, tau[one.at], v[one.at]);
         }
     }
@@ -249,7 +267,7 @@ pub(in crate::algorithm) fn rotor<S: Scalar>(model: &Model<S>, i: BodyId, k: usi
 /// For each motor its place in v, ∂/∂v and ∂/∂τ of the torque that it gives.
 pub(in crate::algorithm) fn driven_slopes<S: Scalar>(model: &Model<S>, v: &[S], tau: &[S], mut visit: impl FnMut(usize, S, S)) {
     for one in all(model) {
-        if let (Law::Drive { slope, .. }, None) = (one.effect.effect.law::<S>(), one.ratio) {
+        if let (Law::Drive { slope, .. }, true) = (one.effect.effect.law::<S>(), one.is_motor()) {
             let p = &duals(&one.effect.parameters)[..one.effect.parameters.len()];
             let (tau, v) = (tau[one.at], v[one.at]);
             let by_v = slope(p, Dual::constant(tau), Dual::variable(v)).slope;
@@ -266,7 +284,7 @@ pub(super) fn dissipation<S: Scalar>(model: &Model<S>, q: &[S], v: &[S]) -> S {
         if let Some(ball) = one.on_ball() {
             sum += ball.dissipation(q, v);
         } else if let Law::Force { force, rise, .. } = one.effect.effect.law::<S>() {
-            let (q, v) = (one.coordinate(q), one.rate(v));
+            let (q, v) = (one.coordinate(q), one.rate(q, v));
             let p = &duals(&one.effect.parameters)[..one.effect.parameters.len()];
             // f v + dE/dt
             sum += force(&one.effect.parameters, q, v) * v + rise(p, Dual::new(q, v)).slope;

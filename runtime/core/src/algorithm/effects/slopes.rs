@@ -5,7 +5,7 @@
 //! Russell & Wensing, *IEEE Robot. Autom. Lett.* 7, 2022): ∂V/∂q_k = ψ̇_k, ∂V̇/∂q_k = ψ̈_k − V ×
 //! ψ̇_k, ∂V/∂v_k = S_k, ∂V̇/∂v_k = ψ̇_k + Ṡ_k − V × S_k.
 
-use super::joints::{self, scaled};
+use super::joints;
 use super::{duals, on_body, station_in_base};
 use crate::Scalar;
 use crate::algorithm::Workspace;
@@ -19,8 +19,7 @@ use crate::spatial::{ArticulatedInertia, Twist, Vector3, Wrench, rotate};
 /// ∂τ/∂q, ∂τ/∂v and ∂τ/∂a of effects on joints; of `by_v` and `by_a` only where they are given.
 pub(in crate::algorithm) fn on_joints<S: Scalar>(
     model: &Model<S>,
-    q: &[S],
-    v: &[S],
+    [q, v, a]: [&[S]; 3],
     by_q: &mut [S],
     mut others: Option<(&mut [S], &mut [S])>,
 ) {
@@ -37,22 +36,40 @@ pub(in crate::algorithm) fn on_joints<S: Scalar>(
         }
         let p = &one.effect.parameters;
         match (one.effect.effect.law::<S>(), &mut others) {
-            (Law::Force { slope, .. }, others) => {
-                let (p, q, v) = (&duals(p)[..p.len()], one.coordinate(q), one.rate(v));
-                let own_by_q = slope(p, Dual::variable(q), Dual::constant(v)).slope;
-                let own_by_v = others.is_some().then(|| slope(p, Dual::constant(q), Dual::variable(v)).slope);
+            (Law::Force { slope, force, .. }, others) => {
+                let (d, own_q, own_v) = (&duals(p)[..p.len()], one.coordinate(q), one.rate(q, v));
+                let own_by_q = slope(d, Dual::variable(own_q), Dual::constant(own_v)).slope;
+                let with_rate = others.is_some() || one.is_bent();
+                let own_by_v = with_rate.then(|| slope(d, Dual::constant(own_q), Dual::variable(own_v)).slope);
                 // Of each coordinate by each: the torque on the one, the rate of the other.
-                for (row, torque) in one.terms() {
-                    for (column, rate) in one.terms() {
-                        let at = row * model.nv + column;
-                        by_q[at] -= scaled(scaled(own_by_q, torque), rate);
-                        if let (Some((by_v, _)), Some(own)) = (&mut *others, own_by_v) {
-                            by_v[at] -= scaled(scaled(own, torque), rate);
+                for row in one.terms(q) {
+                    for column in one.terms(q) {
+                        let at = row.at * model.nv + column.at;
+                        by_q[at] -= column.scaled(row.scaled(own_by_q));
+                        if let (Some([bend, _]), Some(own)) = (column.bends, own_by_v) {
+                            by_q[at] -= row.scaled(own * bend * v[column.at]);
                         }
+                        if let (Some((by_v, _)), Some(own)) = (&mut *others, own_by_v) {
+                            by_v[at] -= column.scaled(row.scaled(own));
+                        }
+                    }
+                    if let Some([bend, _]) = row.bends {
+                        by_q[row.at * (model.nv + 1)] -= bend * force(p, own_q, own_v);
                     }
                 }
             }
-            (Law::Inertia(inertia), Some((_, by_a))) => by_a[one.at * model.nv + one.at] += one.torque(one.torque(inertia(p))),
+            (Law::Inertia(inertia), others) => {
+                let (term, inertia, at) = (one.term(q), inertia(p), one.at * (model.nv + 1));
+                if let Some([bend, rate]) = term.bends {
+                    // f′ (f′ a + f″ v²)
+                    let (v, a, twice) = (v[one.at], a[one.at], S::from_f64(2.0));
+                    let square = v * v;
+                    let own = term.scaled(a) + bend * square;
+                    by_q[at] += inertia * (bend * own + term.scaled(bend * a + rate * square));
+                    others.iter_mut().for_each(|(by_v, _)| by_v[at] += inertia * term.scaled(bend * v) * twice);
+                }
+                others.iter_mut().for_each(|(_, by_a)| by_a[at] += term.scaled(term.scaled(inertia)));
+            }
             _ => {}
         }
     }

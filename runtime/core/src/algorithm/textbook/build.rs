@@ -6,11 +6,11 @@ use alloc::vec::Vec;
 
 use nalgebra::{Matrix3, Matrix6, Vector3};
 
-use super::joint::{Joint, Motion, Seat};
+use super::joint::{Joint, Law, Motion, Seat};
 use super::matrix::{blocks, cross_matrix};
 use super::{Link, Textbook};
 use crate::Scalar;
-use crate::description::{Base, ById, Description, Inertial, JointId, LinkId, Origin};
+use crate::description::{Base, ById, Description, Inertial, JointId, LinkId, Mimic, Origin};
 use crate::model::{FLOATING_BASE, JointInfo, Model, ModelError};
 use crate::spatial::{Placement, Reference};
 
@@ -68,9 +68,9 @@ fn child_joint<S: Scalar>(description: &Description, model: &Model, j: JointId) 
     let motion = Motion::of(&description.joints[j]);
     match leader(description, j) {
         Led::Still(coordinates) => (motion.placement(&motion.normalised(&coordinates)), Joint::fixed()),
-        Led::By(leader, multiplier, offset) => {
+        Led::By(leader, law) => {
             let mut seat = seat(model, &description.joints[leader].name);
-            seat.follow = (leader != j).then_some((multiplier, offset));
+            seat.follow = Some(law).filter(|_| leader != j);
             (Placement::identity(), Joint::new(motion, seat))
         }
     }
@@ -80,22 +80,20 @@ fn child_joint<S: Scalar>(description: &Description, model: &Model, j: JointId) 
 enum Led<S> {
     /// Nothing: it is locked, or follows one that is, at these coordinates.
     Still(Vec<S>),
-    /// The coordinate of a joint, itself perhaps, with multiplier and offset.
-    By(JointId, S, S),
+    /// The coordinate of a joint, itself perhaps, by a law.
+    By(JointId, Law<S>),
 }
 
 fn leader<S: Scalar>(description: &Description, mut j: JointId) -> Led<S> {
-    let (own, mut multiplier, mut offset) = (j, S::one(), S::zero());
+    let mut law = Law(Vec::new());
     loop {
         let joint = &description.joints[j];
         if let Some(locked) = &joint.locked {
-            let coordinate = |&x: &f64| if j == own { S::from_f64(x) } else { multiplier * S::from_f64(x) + offset };
-            return Led::Still(locked.iter().map(coordinate).collect());
+            return Led::Still(locked.iter().map(|&x| law.at(S::from_f64(x))).collect());
         }
-        let Some(mimic) = joint.mimic else { return Led::By(j, multiplier, offset) };
-        offset += multiplier * S::from_f64(mimic.offset);
-        multiplier *= S::from_f64(mimic.multiplier);
-        j = mimic.joint;
+        let Some(Mimic { joint, multiplier, offset, higher: [c2, c3, c4] }) = joint.mimic else { return Led::By(j, law) };
+        law.0.push([offset, multiplier, c2, c3, c4].map(S::from_f64).to_vec());
+        j = joint;
     }
 }
 

@@ -35,12 +35,34 @@ pub(super) enum Motion<S> {
     Free,
 }
 
-/// Where a joint's numbers are, and multiplier and offset if it follows.
+/// Where a joint's numbers are, and the law if it follows.
 #[derive(Clone, Debug)]
 pub(super) struct Seat<S> {
     pub(super) q: usize,
     pub(super) v: usize,
-    pub(super) follow: Option<(S, S)>,
+    pub(super) follow: Option<Law<S>>,
+}
+
+/// Polynomials by which joints follow each other, the own one first, each by its coefficients from
+/// power zero on: its derivatives are those of dual numbers.
+#[derive(Clone, Debug)]
+pub(super) struct Law<S>(pub(super) Vec<Vec<S>>);
+
+impl<S: Scalar> Law<S> {
+    /// Own coordinate at the leader's.
+    pub(super) fn at(&self, leader: S) -> S {
+        let one = |x: S, powers: &Vec<S>| powers.iter().rev().fold(S::zero(), |sum, &c| sum * x + c);
+        self.0.iter().rev().fold(leader, one)
+    }
+
+    fn lift(&self) -> Law<Dual<S>> {
+        Law(self.0.iter().map(|powers| powers.iter().map(|&c| Dual::constant(c)).collect()).collect())
+    }
+
+    /// The derivative at the leader's coordinate.
+    fn slope(&self, leader: S) -> S {
+        self.lift().at(Dual::variable(leader)).slope
+    }
 }
 
 /// A joint with its place in the vectors.
@@ -185,16 +207,16 @@ impl<S: Scalar> Joint<S> {
 
     /// Its own coordinates, of q.
     pub(super) fn coordinates(&self, q: &[S]) -> Vec<S> {
-        match self.seat.follow {
-            Some((multiplier, offset)) => vec![q[self.seat.q] * multiplier + offset],
+        match &self.seat.follow {
+            Some(law) => vec![law.at(q[self.seat.q])],
             None => q[self.seat.q..][..self.motion.sizes().0].to_vec(),
         }
     }
 
-    /// Its own rates, or their derivatives, of v or a.
-    pub(super) fn rates(&self, v: &[S]) -> Vec<S> {
-        match self.seat.follow {
-            Some((multiplier, _)) => vec![v[self.seat.v] * multiplier],
+    /// Its own rates.
+    fn rates(&self, q: &[S], v: &[S]) -> Vec<S> {
+        match &self.seat.follow {
+            Some(law) => vec![v[self.seat.v] * law.slope(q[self.seat.q])],
             None => v[self.seat.v..][..self.motion.sizes().1].to_vec(),
         }
     }
@@ -209,27 +231,33 @@ impl<S: Scalar> Joint<S> {
         self.motion.screws(&self.coordinates(q))
     }
 
-    /// Ṡ v.
+    /// Ṡ v, S being the screws per unit of the rates in v.
     pub(super) fn bias(&self, q: &[S], v: &[S]) -> Vector6<S> {
-        self.motion.bias(&self.coordinates(q), &self.rates(v))
+        let own = self.motion.bias(&self.coordinates(q), &self.rates(q, v));
+        let Some(law) = &self.seat.follow else { return own };
+        // d(f′)/dt = f″ q̇
+        let (leader, rate) = (q[self.seat.q], v[self.seat.v]);
+        let slope = law.lift().slope(Dual::new(leader, rate)).slope;
+        self.screws(q).iter().fold(own, |sum, screw| sum + screw * (slope * rate))
     }
 
     /// Writes q̇ of the coordinates that are its own.
     pub(super) fn write_coordinate_rates(&self, q: &[S], v: &[S], out: &mut [S]) {
         if self.seat.follow.is_none() {
-            let rates = self.motion.coordinate_rates(&self.coordinates(q), &self.rates(v));
+            let rates = self.motion.coordinate_rates(&self.coordinates(q), &self.rates(q, v));
             out[self.seat.q..][..rates.len()].copy_from_slice(&rates);
         }
     }
 
-    /// Its own rates for a rate of one: the multiplier of a joint that follows another, or one.
-    pub(super) fn multiplier(&self) -> S {
-        self.seat.follow.map_or_else(S::one, |(multiplier, _)| multiplier)
+    /// Its own rates for a rate of one: the slope of the law of a joint that follows another, or
+    /// one.
+    pub(super) fn multiplier(&self, q: &[S]) -> S {
+        self.seat.follow.as_ref().map_or_else(S::one, |law| law.slope(q[self.seat.q]))
     }
 
     pub(super) fn lift(&self) -> Joint<Dual<S>> {
-        let Seat { q, v, follow } = self.seat;
-        let follow = follow.map(|(multiplier, offset)| (Dual::constant(multiplier), Dual::constant(offset)));
+        let Seat { q, v, ref follow } = self.seat;
+        let follow = follow.as_ref().map(Law::lift);
         Joint { motion: self.motion.lift(), seat: Seat { q, v, follow } }
     }
 }

@@ -48,13 +48,13 @@ impl<S: Scalar> TreeBody<S> {
 
 impl<S: Scalar> Textbook<S> {
     /// The bodies at q: `[nq]`, moving at v: `[nv]`. A joint that follows another one has the
-    /// screws and the place of its leader's rates, times the multiplier.
+    /// screws and the place of its leader's rates, times the slope of its law.
     ///
     /// # Panics
     /// If a slice is shorter than stated.
     pub fn at(&self, q: &[S], v: &[S]) -> Tree<S> {
         let body = |b: &Link<S>| {
-            let (screws, multiplier) = (b.joint.screws(q), b.joint.multiplier());
+            let (screws, multiplier) = (b.joint.screws(q), b.joint.multiplier(q));
             TreeBody {
                 parent: b.parent,
                 adjoint: inverse_adjoint(&b.placement.compose(&b.joint.placement(q))),

@@ -11,6 +11,7 @@ use articulated_core::algorithm::{Argument, Needs, functions};
 use articulated_core::spatial::Reference;
 use articulated_reference::Big;
 use articulated_test_support::case::{Case, State, cast};
+use articulated_test_support::random::Random;
 use articulated_test_support::random_tree::Flavour;
 use num_traits::{One, Zero};
 
@@ -132,11 +133,14 @@ fn same(what: &str, found: &[Big], expected: &[Big], tolerance: f64) {
     }
 }
 
+/// Also on trees where joints follow others by polynomials.
 fn for_each_scene(count: u64, flavour: Flavour, law: impl Fn(&Case, &Scene)) {
-    for_each_tree(count, flavour, |case, random| {
+    let law = |case: &Case, random: &mut Random| {
         let state = case.state(random);
         Big::scope(|| law(case, &Scene::new(case, &state)));
-    });
+    };
+    for_each_tree(count, flavour, law);
+    for_each_tree(count, Flavour { bent: true, ..flavour }, law);
 }
 
 /// Small, since everything is tried.
