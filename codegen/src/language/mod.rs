@@ -11,8 +11,8 @@ use articulated_core::lanes::Real;
 use articulated_core::model::Model;
 
 use crate::capabilities::Capabilities;
-use crate::lir::{Column, Stored, Temp};
 use crate::lir::function::Function;
+use crate::lir::{Column, Stored, Temp};
 use crate::size::Bytes;
 use crate::{FunctionSpec, Options, Parameter, Request};
 
@@ -186,4 +186,3 @@ fn in_turn(column: &Column, turn: &str, name: fn(Temp) -> String, argument: impl
 fn stored_turn(stored: Stored, turn: &str, turns: usize) -> String {
     if stored.is_backward { format!("({} - {turn})", turns - 1) } else { turn.to_owned() }
 }
-

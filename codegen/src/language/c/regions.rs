@@ -61,7 +61,12 @@ impl Printer<'_> {
             Turns::Each { name: number, table, row, fixed, results, turns, read, stored, is_kept } => {
                 let (turn, is_read) = (format!("x{number}_turn"), !read.is_empty() || *is_kept);
                 for (temp, column) in fixed {
-                    let _ = writeln!(inside, "    const {real} {} = {};", name(*temp), in_turn(column, &turn, name, |argument, at| self.number_of(argument, at)));
+                    let _ = writeln!(
+                        inside,
+                        "    const {real} {} = {};",
+                        name(*temp),
+                        in_turn(column, &turn, name, |argument, at| self.number_of(argument, at))
+                    );
                 }
                 if !row.is_empty() {
                     inside = self.rows(out, (table, row), (*number, &turn), *turns) + &inside;

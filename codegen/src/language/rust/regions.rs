@@ -5,9 +5,9 @@
 
 use std::fmt::Write;
 
-use crate::language::{in_turn, stored_turn};
 use crate::language::rust::literal::bare;
 use crate::language::rust::statements::{Printer, name, ty};
+use crate::language::{in_turn, stored_turn};
 use crate::lir::function::Argument;
 use crate::lir::{Carried, Operand, Region, Table, Temp, Turns, Ty};
 
@@ -72,7 +72,12 @@ impl Printer<'_> {
             Turns::Each { name: number, table, row, fixed, results, turns, read, stored, is_kept } => {
                 let (turn, is_read) = (format!("x{number}_turn"), !read.is_empty() || *is_kept);
                 for (temp, column) in fixed {
-                    let _ = writeln!(inside, "    let {} = {};", name(*temp), in_turn(column, &turn, name, |argument, at| self.number_of(argument, at)));
+                    let _ = writeln!(
+                        inside,
+                        "    let {} = {};",
+                        name(*temp),
+                        in_turn(column, &turn, name, |argument, at| self.number_of(argument, at))
+                    );
                 }
                 if !row.is_empty() {
                     inside = self.rows(out, (table, row), (*number, &turn)) + &inside;

@@ -66,9 +66,8 @@ fn column(made: &Made, values: &[Operand]) -> Option<Column> {
 fn own_columns(region: &mut Region, made: &Made) -> Vec<Column> {
     let Turns::Each { table: Table::Values(values), row, fixed, turns, .. } = &mut region.turns else { return Vec::new() };
     let width = row.len();
-    let found: Vec<Option<Column>> = (0..width)
-        .map(|k| column(made, &(0..*turns).map(|turn| values[turn * width + k]).collect::<Vec<_>>()))
-        .collect();
+    let found: Vec<Option<Column>> =
+        (0..width).map(|k| column(made, &(0..*turns).map(|turn| values[turn * width + k]).collect::<Vec<_>>())).collect();
     fixed.extend(row.iter().zip(&found).filter_map(|(temp, column)| Some((*temp, (*column)?))));
     *values = values.iter().enumerate().filter(|(k, _)| found[k % width].is_none()).map(|(_, value)| *value).collect();
     let mut stays = found.iter().map(Option::is_none);

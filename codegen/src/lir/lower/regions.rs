@@ -109,7 +109,8 @@ impl Lowering<'_> {
 
     /// The numbers of one argument that these values are, at equal distances.
     fn column_of_argument(&self, values: &[NodeId]) -> Option<Column> {
-        let input = |id: &NodeId| Some(self.graph.node(*id)).filter(|node| node.op == Op::Input).map(|node| (node.args[0], node.args[1] as usize));
+        let input =
+            |id: &NodeId| Some(self.graph.node(*id)).filter(|node| node.op == Op::Input).map(|node| (node.args[0], node.args[1] as usize));
         let ((argument, first), (_, second)) = (input(values.first()?)?, input(values.get(1)?)?);
         let is_backward = second < first;
         let column = Column::Argument { argument, first, stride: first.abs_diff(second), is_backward };

@@ -178,7 +178,16 @@ fn the_way_back_of_a_gradient_reads_the_states_in_place() {
         let (mut pieces, kept) = crate::lir::pass::outline::outline(lowering.stores_as_made(|_| true, false), usize::MAX);
         pieces.iter_mut().for_each(|piece| read_in_place(piece, &[]));
         let statements = pieces[0].clone();
-        let body = Body { ty: Ty::F64, lanes: graph.lanes().clone(), results: results.clone(), pieces, kept, slots: None, barrier: false, is_partial: false };
+        let body = Body {
+            ty: Ty::F64,
+            lanes: graph.lanes().clone(),
+            results: results.clone(),
+            pieces,
+            kept,
+            slots: None,
+            barrier: false,
+            is_partial: false,
+        };
         assert_eq!(verify(&body), Ok(()));
         let input = |argument: usize, k: usize| if argument == 0 { [0.7, -0.4][k] } else { 0.01 + 1e-4 * k as f64 };
         assert_eq!(interpret(&body, input), graph.evaluate(input));

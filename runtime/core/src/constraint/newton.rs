@@ -90,8 +90,9 @@ pub(crate) fn certified<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, smoo
     Problem::new(model, ws, smooth).certificate(smooth.warm)
 }
 
-/// Contacts of one dimension: those of one body with the world, or of pairs of bodies that much the
-/// same columns move. They are rows of one table: generated code has each loop over them once.
+/// Contacts of one dimension: those of one body with the world, or those of several pairs of bodies
+/// that nearly the same columns move. They are rows of one table: generated code has each loop over
+/// them once.
 struct Group<S> {
     dimension: usize,
     /// The body that touches the world.
@@ -107,8 +108,9 @@ struct Group<S> {
     acts: S,
 }
 
-/// A pair joins a group of pairs if it has at least this part of its columns: each row of J has the
-/// columns of its group.
+/// A pair joins a group of pairs if it has at least this part of the group's columns. Each row of J
+/// has all columns of its group. With three quarters in place of half the code of a humanoid is a
+/// seventh longer, and its step 2 % faster.
 const SHARED: [usize; 2] = [1, 2];
 
 /// A motion of all joints.
@@ -248,9 +250,9 @@ impl<'a, S: Scalar> Problem<'a, S> {
         Motion { x, twists: motion::twists(self.model, &self.columns, x) }
     }
 
-    /// Visits the contacts of a group that act, after which `visit(contact, rows, rates, state)` has
-    /// its results behind the state, zeros elsewhere. `rates`: B V of N motions. `rows`: those of J,
-    /// for each of [`Self::columns`]; none for contacts with the world.
+    /// Visits the contacts of a group that act: `visit(contact, rows, rates, state)` changes the
+    /// state, behind which its results are; they are zeros for other contacts. `rates`: B V of N
+    /// motions. `rows`: those of J, for each of [`Self::columns`]; none for contacts with the world.
     fn each<const N: usize>(
         &self,
         group: &Group<S>,
