@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use articulated_codegen::{Applied, Generated, Options, Request, RobotOptions, generate};
 use articulated_core::description::Base;
-use articulated_core::effect::{EffectId, On, effects};
+use articulated_core::effect::{EffectId, Field, On, effects};
 use articulated_tests::case::{State, read};
 use articulated_tests::golden;
 use articulated_tests::program::Program;
@@ -197,8 +197,9 @@ fn an_effect_that_is_off_costs_nothing() {
     };
     let bare = module(Vec::new());
     for effect in effects().iter().filter(|e| !matches!(e.id, EffectId::motor | EffectId::limit | EffectId::contact)) {
-        // No stiffness, no damping, no mass: other fields keep their defaults.
-        let parameters: Vec<f64> = effect.fields.iter().flat_map(|f| f.default.map_or_else(|| vec![0.0; f.len], <[f64]>::to_vec)).collect();
+        // No stiffness, no damping, no mass, no density: other fields keep their defaults.
+        let without = |f: &Field| if f.name == "semi_axes" { vec![0.1; f.len] } else { vec![0.0; f.len] };
+        let parameters: Vec<f64> = effect.fields.iter().flat_map(|f| f.default.map_or_else(|| without(f), <[f64]>::to_vec)).collect();
         let on: &[&str] = if effect.on == On::Joint { &JOINTS } else { &["upper", "tool"] };
         assert!(module(all_of(effect.id, on, &parameters)) == bare, "{} of nothing is something", effect.name);
     }

@@ -314,6 +314,50 @@ fn derivatives_are_those_of_ninety_digits() {
     }
 }
 
+/// The way back of a gradient reads stored states, controls and weights where they are, from the
+/// last turn to the first.
+#[test]
+fn gradients_of_turns_are_the_same_in_every_language() {
+    const BACK: [(&str, &str); 2] = [("vjp_path", "path"), ("vjp_turns", "turns")];
+    let functions = ["vjp_path = vjp(path, q controls)", "vjp_turns = vjp(turns, q pushes)"];
+    let generate = |target: Target| {
+        let generated = generate(&request(Options { target, batch: vec![Real::F64], ..Options::default() }, &functions)).unwrap();
+        assert!(generated.source.contains("_results[6 - "), "the states are not read in place");
+        generated
+    };
+    let rust = generate(Target::Rust(RustOptions::default()));
+    let mut random = Random::new(11);
+    let mut all: Vec<Vec<Vec<Vec<f64>>>> = Vec::new();
+    for (_, function) in BACK {
+        let weights = |random: &mut Random| random.vector(if function == "path" { 8 } else { 21 }, -1.0, 1.0);
+        let one = |state: &State, random: &mut Random| [given(function, state, random), vec![weights(random)]].concat();
+        all.push(states(STATES).iter().map(|state| one(state, &mut random)).collect());
+    }
+    let compare = |what: &str, run: &dyn Fn(&str, &[Vec<&[f64]>]) -> Vec<Vec<f64>>| {
+        for (k, (name, _)) in BACK.iter().enumerate() {
+            let slices: Vec<Vec<&[f64]>> = all[k].iter().map(|given| given.iter().map(Vec::as_slice).collect()).collect();
+            for (found, given) in run(name, &slices).iter().zip(&all[k]) {
+                assert_close(found, &rust.graphs[k].evaluate(|argument, k| given[argument][k]), 1e-13, &format!("{what}: {name}"));
+            }
+        }
+    };
+    for (k, all) in all.iter().enumerate() {
+        let input = |argument: usize, k: usize| all[0][argument][k];
+        for (which, body) in rust.bodies[k].all() {
+            assert_close(&interpret(body, input), &rust.graphs[k].evaluate(input), 1e-13, which);
+        }
+    }
+    let program = Program::build(&[("arm", &rust)], &[]);
+    compare("Rust", &|function, states| program.run("arm", function, states));
+    let program = BatchProgram::build(&[("arm", &rust)], "portable", &[]);
+    compare("Rust, lanes", &|function, states| program.run("arm", function, Real::F64, states));
+    let c = generate(Target::C(COptions::default()));
+    let program = c_program::build(&[("arm", c.model.shape(), &c)], Vectors::Any, "-O1");
+    for form in ["", " batch f64", " blocks f64"] {
+        compare(&format!("C{form}"), &|function, states| program.run("arm", &format!("{function}{form}"), states));
+    }
+}
+
 #[test]
 fn bounds_hold_where_an_end_is_certain() {
     let generated = generate(&request(Options::default(), &["roots"])).unwrap();

@@ -456,18 +456,41 @@ user_function! {
     }
 }
 
+user_function! {
+    /// The states after each of 400 steps of 2 ms, and ½|v|² at the end.
+    struct Long;
+    fn long<S>(robot, work, q: [Nq] "rad", v: [Nv] "rad/s", torques: [Of(400), Nv] "N·m")
+        -> (path: [Of(400), Of(6)] "q and v", cost: [] "rad²/s²") {
+        let n = robot.nv();
+        let mut state = [q, v].concat();
+        let step = step::<S>("step_semi_implicit_euler").expect("a row");
+        S::for_each(400, torques, &mut state, path, |tau, state, now| {
+            let (q, v) = state.split_at(n);
+            step.call(robot, work, &[q, v, tau, &[S::from_f64(2e-3)]], now).expect("vectors made to measure");
+            state.copy_from_slice(now);
+        });
+        cost[0] = state[n..].iter().fold(S::zero(), |sum, v| sum + S::from_f64(0.5) * *v * *v);
+    }
+}
+
 /// The body of the loop is traced once; its gradient goes back through stored states.
 #[test]
 fn a_rollout_is_a_loop_over_a_step() {
     let mut request = Request::new("arm.urdf", include_str!("../../robots/arm.urdf"));
     request.options.users.push(Roll);
-    request.options.functions = ["roll", "step_semi_implicit_euler", "pull = vjp(roll)", "push = jvp(roll)"].map(Into::into).to_vec();
+    request.options.users.push(Long);
+    let functions = ["roll", "step_semi_implicit_euler", "pull = vjp(roll)", "push = jvp(roll)", "long", "long_pull = vjp(long)"];
+    request.options.functions = functions.map(Into::into).to_vec();
     let generated = generate(&request).unwrap();
     let model = &generated.model;
     let nv = model.nv();
     assert_eq!(2 * nv, 6);
     let text = |name: &str| generated.source.split_once(&format!("pub fn {name}(")).unwrap().1.split("pub fn ").next().unwrap().len();
     assert!(text("roll") < 3 * text("step_semi_implicit_euler"), "{} {}", text("roll"), text("step_semi_implicit_euler"));
+    // Names have more digits.
+    for (few, many) in [("roll", "long"), ("pull", "long_pull")] {
+        assert!(9 * text(many) < 10 * text(few), "{many}: {} {}", text(few), text(many));
+    }
     let mut random = Random::new(5);
     let State { q, v, .. } = state(model, &mut random);
     let given = [q, v, random.vector(12 * nv, -1.0, 1.0)];

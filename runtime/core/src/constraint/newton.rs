@@ -252,7 +252,8 @@ impl<'a, S: Scalar> Problem<'a, S> {
 
     /// Visits the contacts of a group that act: `visit(contact, rows, rates, state)` changes the
     /// state, behind which its results are; they are zeros for other contacts. `rates`: B V of N
-    /// motions. `rows`: those of J, for each of [`Self::columns`]; none for contacts with the world.
+    /// motions. `rows`: those of J, for each of [`Self::columns`]; none for contacts with the
+    /// world.
     fn each<const N: usize>(
         &self,
         group: &Group<S>,
