@@ -182,7 +182,12 @@ fn in_turn(column: &Column, turn: &str, name: fn(Temp) -> String, argument: impl
     }
 }
 
+/// An expression as a factor of a product.
+fn factor(expression: &str) -> String {
+    if expression.contains(' ') { format!("({expression})") } else { expression.to_owned() }
+}
+
 /// The number of the turn whose results are stored in a turn.
 fn stored_turn(stored: Stored, turn: &str, turns: usize) -> String {
-    if stored.is_backward { format!("({} - {turn})", turns - 1) } else { turn.to_owned() }
+    if stored.is_backward { format!("{} - {turn}", turns - 1) } else { turn.to_owned() }
 }

@@ -319,13 +319,13 @@ fn derivatives_are_those_of_ninety_digits() {
 #[test]
 fn gradients_of_turns_are_the_same_in_every_language() {
     const BACK: [(&str, &str); 2] = [("vjp_path", "path"), ("vjp_turns", "turns")];
-    let functions = ["vjp_path = vjp(path, q controls)", "vjp_turns = vjp(turns, q pushes)"];
-    let generate = |target: Target| {
-        let generated = generate(&request(Options { target, batch: vec![Real::F64], ..Options::default() }, &functions)).unwrap();
+    let functions = ["vjp_path = vjp(path, controls)", "vjp_turns = vjp(turns, pushes)"];
+    let generate = |target: Target, batch: &[Real]| {
+        let generated = generate(&request(Options { target, batch: batch.to_vec(), ..Options::default() }, &functions)).unwrap();
         assert!(generated.source.contains("_results[6 - "), "the states are not read in place");
         generated
     };
-    let rust = generate(Target::Rust(RustOptions::default()));
+    let rust = generate(Target::Rust(RustOptions::default()), &[]);
     let mut random = Random::new(11);
     let mut all: Vec<Vec<Vec<Vec<f64>>>> = Vec::new();
     for (_, function) in BACK {
@@ -349,9 +349,10 @@ fn gradients_of_turns_are_the_same_in_every_language() {
     }
     let program = Program::build(&[("arm", &rust)], &[]);
     compare("Rust", &|function, states| program.run("arm", function, states));
-    let program = BatchProgram::build(&[("arm", &rust)], "portable", &[]);
+    let many = generate(Target::Rust(RustOptions::default()), &[Real::F64]);
+    let program = BatchProgram::build(&[("arm", &many)], "portable", &[]);
     compare("Rust, lanes", &|function, states| program.run("arm", function, Real::F64, states));
-    let c = generate(Target::C(COptions::default()));
+    let c = generate(Target::C(COptions::default()), &[Real::F64]);
     let program = c_program::build(&[("arm", c.model.shape(), &c)], Vectors::Any, "-O1");
     for form in ["", " batch f64", " blocks f64"] {
         compare(&format!("C{form}"), &|function, states| program.run("arm", &format!("{function}{form}"), states));

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::statements::{Lanes, Printer, name};
-use crate::language::{in_turn, stored_turn};
+use crate::language::{factor, in_turn, stored_turn};
 use crate::lir::{Carried, Operand, Region, Table, Temp, Turns};
 
 impl Printer<'_> {
@@ -80,7 +80,7 @@ impl Printer<'_> {
                 }
                 if let Some(stored) = stored {
                     let ((array, index), width) = ((self.places)(stored.first), results.len());
-                    let turn = stored_turn(*stored, &turn, *turns);
+                    let turn = factor(&stored_turn(*stored, &turn, *turns));
                     for (k, value) in results.iter().enumerate() {
                         let (at, value) = (format!("{} + {turn} * {width}", index + k), self.vector(value));
                         let _ = match &self.numbers.lanes {

@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use crate::language::rust::literal::bare;
 use crate::language::rust::statements::{Printer, name, ty};
-use crate::language::{in_turn, stored_turn};
+use crate::language::{factor, in_turn, stored_turn};
 use crate::lir::function::Argument;
 use crate::lir::{Carried, Operand, Region, Table, Temp, Turns, Ty};
 
@@ -150,7 +150,7 @@ impl Printer<'_> {
             let value = self.operand(value);
             let to = match place.index {
                 Some(0) if is_matrix => format!("{}[{turn}][{k}]", place.array.strip_suffix("[0]").unwrap_or(&place.array)),
-                index => format!("{}[{} + {turn} * {width}]", place.array, index.unwrap_or(0) + k),
+                index => format!("{}[{} + {} * {width}]", place.array, index.unwrap_or(0) + k, factor(turn)),
             };
             let _ = match self.body.ty {
                 Ty::States => writeln!(out, "    put(&mut {to}, part, {value});"),
