@@ -179,7 +179,7 @@ def test_options_of_the_reader():
         articulated.loads(plain, snap_angles=1e-3)
     with pytest.raises(articulated.RobotError, match="snap_angles: found 0.7"):
         articulated.loads(plain, snap_angles=0.7)
-    with pytest.raises(articulated.RobotError, match="coupling: found \"file\", and the robot's file has no linear equations"):
+    with pytest.raises(articulated.RobotError, match="coupling: found \"file\", and the robot's file has no equations that joints can follow"):
         articulated.loads(plain, coupling="file")
     with pytest.raises(ValueError, match='coupling: found {}, expected "file" or None'):
         articulated.loads(twice, coupling={})
