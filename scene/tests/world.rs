@@ -223,13 +223,7 @@ fn equations_of_the_file_are_couplings_where_the_scene_says_so() {
     let servo =
         Actuator { drives: vec![("two".into(), vec![3.0])], gain: [0.5, 0.25, 0.0], bias: [1.0, -7.0, -0.5], ..Actuator::default() };
     let world = World { actuators: vec![servo], ..World::default() };
-    let of = |robot: &articulated_scene::BuiltRobot, q: &[f64], v: &[f64]| {
-        let text = scene("control = { kind = \"actuators\", ctrl = [2] }");
-        let controller = text.controller(RobotInWorld { model: &robot.model, world: &world }, &mut |_| Err(String::new())).unwrap();
-        let (Controller::Actuators { actuators, .. }, mut tau) = (controller, vec![0.0; v.len()]) else { panic!("actuators") };
-        actuators.add_torques(&actuators.inputs(&[], &[2.0], None), q, v, &mut tau);
-        tau
-    };
+    let of = |robot: &articulated_scene::BuiltRobot, q: &[f64], v: &[f64]| torques(robot, &world, q, v);
     let (q, v) = (-2.0 * 0.3 + 10.0_f64.to_radians(), -2.0 * 0.7);
     let (apart, together) = (of(&free, &[0.3, q], &[0.7, v]), of(&coupled, &[0.3], &[0.7]));
     assert!(
@@ -239,17 +233,19 @@ fn equations_of_the_file_are_couplings_where_the_scene_says_so() {
     // The bounds of the joints count for each by itself: those of the follower before the
     // transmission.
     let bounded = World { joint_forces: vec![("one".into(), [-0.1, 0.1]), ("two".into(), [-2.0, 0.75])], ..world.clone() };
-    let of = |robot: &articulated_scene::BuiltRobot, world: &World| {
-        let text = scene("control = { kind = \"actuators\", ctrl = [2] }");
-        let controller = text.controller(RobotInWorld { model: &robot.model, world }, &mut |_| Err(String::new())).unwrap();
-        let (Controller::Actuators { actuators, .. }, mut tau) = (controller, vec![0.0]) else { panic!("actuators") };
-        actuators.add_torques(&actuators.inputs(&[], &[2.0], None), &[0.3], &[0.7], &mut tau);
-        tau[0]
-    };
-    let [plain, clamped] = [&world, &bounded].map(|world| of(&coupled, world));
+    let [plain, clamped] = [&world, &bounded].map(|world| torques(&coupled, world, &[0.3], &[0.7])[0]);
     assert_eq!((plain, clamped), (together[0], -2.0 * (plain / -2.0).clamp(-2.0, 0.75)));
     assert!(plain != clamped);
     assert_eq!((free.model.gravity().z, built("gravity = [0, 0, -1]").model.gravity().z), (-3.7, -1.0));
+}
+
+/// The torques of one actuator with the control 2, of a scene.
+fn torques(robot: &articulated_scene::BuiltRobot, world: &World, q: &[f64], v: &[f64]) -> Vec<f64> {
+    let text = scene("control = { kind = \"actuators\", ctrl = [2] }");
+    let controller = text.controller(RobotInWorld { model: &robot.model, world }, &mut |_| Err(String::new())).unwrap();
+    let (Controller::Actuators { actuators, .. }, mut tau) = (controller, vec![0.0; v.len()]) else { panic!("actuators") };
+    actuators.add_torques(&actuators.inputs(&[], &[2.0], None), q, v, &mut tau);
+    tau
 }
 
 /// q = f(q₁) = 0.2 − 2 q₁ + 0.6 q₁² + 0.1 q₁³: the torque of a servo of the follower acts on the
@@ -265,13 +261,7 @@ fn a_servo_of_a_follower_by_a_polynomial_acts_by_its_slope() {
         Actuator { drives: vec![("two".into(), vec![3.0])], gain: [0.5, 0.25, 0.0], bias: [1.0, -7.0, -0.5], ..Actuator::default() };
     let damper = Actuator { drives: vec![("two".into(), vec![2.0])], bias: [0.3, -1.0, -0.4], ..Actuator::default() };
     let world = World { actuators: vec![servo], passive: vec![damper], ..World::default() };
-    let of = |robot: &articulated_scene::BuiltRobot, q: &[f64], v: &[f64]| {
-        let text = scene("control = { kind = \"actuators\", ctrl = [2] }");
-        let controller = text.controller(RobotInWorld { model: &robot.model, world: &world }, &mut |_| Err(String::new())).unwrap();
-        let (Controller::Actuators { actuators, .. }, mut tau) = (controller, vec![0.0; v.len()]) else { panic!("actuators") };
-        actuators.add_torques(&actuators.inputs(&[], &[2.0], None), q, v, &mut tau);
-        tau
-    };
+    let of = |robot: &articulated_scene::BuiltRobot, q: &[f64], v: &[f64]| torques(robot, &world, q, v);
     let (q, v): (f64, f64) = (0.7, -0.4);
     let (value, slope) = (0.2 - 2.0 * q + 0.6 * q * q + 0.1 * q * q * q, -2.0 + 1.2 * q + 0.3 * q * q);
     let apart = of(&built(""), &[q, value], &[v, slope * v]);

@@ -28,7 +28,10 @@ def box(mass, inertia):
 
 
 def drag(mass, inertia):
-    """Coefficients along and about the axes of a box: quadratic, then viscous, and no wind (MuJoCo's documentation, Computation, Fluid forces)."""
+    """Coefficients along and about the axes of a box: quadratic, then viscous, and no wind.
+
+    Source: MuJoCo documentation, Computation, Fluid forces.
+    """
     r = box(mass, inertia)
     pairs = [(1, 2), (0, 2), (0, 1)]
     linear = [2 * DENSITY * r[j] * r[k] for j, k in pairs]

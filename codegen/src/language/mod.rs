@@ -12,7 +12,7 @@ use articulated_core::model::Model;
 
 use crate::capabilities::Capabilities;
 use crate::lir::function::Function;
-use crate::lir::{Column, Stored, Temp};
+use crate::lir::{Stored, TableColumn, Temp};
 use crate::size::Bytes;
 use crate::{FunctionSpec, Options, Parameter, Request};
 
@@ -164,7 +164,7 @@ impl Target {
 }
 /// A column of a table in a turn, in Rust and in C. `argument`: numbers of an argument, by their
 /// place.
-fn in_turn(column: &Column, turn: &str, name: fn(Temp) -> String, argument: impl Fn(u32, &str) -> String) -> String {
+fn in_turn(column: &TableColumn, turn: &str, name: fn(Temp) -> String, argument: impl Fn(u32, &str) -> String) -> String {
     let at = |first: usize, stride: usize, is_backward: bool| {
         let moved = if stride == 1 { turn.to_owned() } else { format!("{turn} * {stride}") };
         match (first, is_backward) {
@@ -174,11 +174,11 @@ fn in_turn(column: &Column, turn: &str, name: fn(Temp) -> String, argument: impl
         }
     };
     match *column {
-        Column::Named(column) => format!("{}_column[{turn}]", name(column)),
-        Column::Results { region, number, first, is_backward } => {
+        TableColumn::Named(column) => format!("{}_column[{turn}]", name(column)),
+        TableColumn::Results { region, number, first, is_backward } => {
             format!("x{region}_results[{}][{number}]", at(first, 1, is_backward))
         }
-        Column::Argument { argument: of, first, stride, is_backward } => argument(of, &at(first, stride, is_backward)),
+        TableColumn::Argument { argument: of, first, stride, is_backward } => argument(of, &at(first, stride, is_backward)),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{Body, Carried, Column, Expr, Number, Operand, Region, Slot, Stmt, Store, Table, Temp, Turns};
+use super::{Body, Carried, Expr, Number, Operand, Region, Slot, Stmt, Store, Table, TableColumn, Temp, Turns};
 use crate::graph::{MOST, Op, Value, operation};
 
 /// The numbers of the result, and NaN where a partial body stores none; `input(argument, index)`
@@ -112,9 +112,9 @@ impl<F: Fn(usize, usize) -> f64> Machine<'_, F> {
                     for (temp, column) in fixed {
                         let place = column.place(turn);
                         let value = match *column {
-                            Column::Named(name) => self.columns[&name][place],
-                            Column::Results { region, number, .. } => self.results[&region][place][number],
-                            Column::Argument { argument, .. } => [(self.input)(argument as usize, place); MOST],
+                            TableColumn::Named(name) => self.columns[&name][place],
+                            TableColumn::Results { region, number, .. } => self.results[&region][place][number],
+                            TableColumn::Argument { argument, .. } => [(self.input)(argument as usize, place); MOST],
                         };
                         self.values.insert(*temp, value);
                     }

@@ -259,7 +259,7 @@ pub enum Turns {
         /// The values of a row in a turn.
         row: Vec<Temp>,
         /// More values of a row, each with its column.
-        fixed: Vec<(Temp, Column)>,
+        fixed: Vec<(Temp, TableColumn)>,
         /// The results of a turn, operands of the body.
         results: Vec<Operand>,
         /// The number of turns.
@@ -284,7 +284,7 @@ pub struct Stored {
 
 /// A column of a table that is not copied into it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Column {
+pub enum TableColumn {
     /// One of [`Region::columns`], by its name.
     Named(Temp),
     /// A result of an earlier region: in turn k that of its turn `first` + k, or `first` − k.
@@ -311,7 +311,7 @@ pub enum Column {
     },
 }
 
-impl Column {
+impl TableColumn {
     /// The place in a turn, of results and of numbers of an argument.
     pub(crate) fn place(self, turn: usize) -> usize {
         let (first, step, is_backward) = match self {

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::{Body, Column, Expr, Operand, Region, Stmt, Table, Temp, Turns};
+use super::{Body, Expr, Operand, Region, Stmt, Table, TableColumn, Temp, Turns};
 use crate::graph::Op;
 
 /// Checks that every operand is defined before its use and once, that comparisons return masks and
@@ -120,14 +120,14 @@ impl Known {
         }
     }
 
-    fn has(&self, column: &Column, turns: usize) -> bool {
+    fn has(&self, column: &TableColumn, turns: usize) -> bool {
         match *column {
-            Column::Named(name) => self.columns.get(&name) == Some(&turns),
-            Column::Results { region, number, first, is_backward } => self.results.get(&region).is_some_and(|[all, own]| {
+            TableColumn::Named(name) => self.columns.get(&name) == Some(&turns),
+            TableColumn::Results { region, number, first, is_backward } => self.results.get(&region).is_some_and(|[all, own]| {
                 let last = if is_backward { first.checked_sub(turns - 1).map(|_| first) } else { Some(first + turns - 1) };
                 number < *own && last.is_some_and(|last| last < *all)
             }),
-            Column::Argument { first, stride, is_backward, .. } => !is_backward || first >= (turns - 1) * stride,
+            TableColumn::Argument { first, stride, is_backward, .. } => !is_backward || first >= (turns - 1) * stride,
         }
     }
 

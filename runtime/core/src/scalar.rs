@@ -160,6 +160,14 @@ pub(crate) fn within<S: Scalar>(x: S, most: S) -> S {
     S::select((-(x + most)).positive(), -most, x)
 }
 
+/// √x of x ≥ 0, with a derivative of 0 at 0.
+#[cfg(feature = "alloc")]
+#[inline(always)]
+pub(crate) fn root<S: Scalar>(x: S) -> S {
+    let is_positive = x.positive();
+    S::select(is_positive, S::select(is_positive, x, S::one()).sqrt(), S::zero())
+}
+
 /// The greater of two numbers.
 #[cfg(feature = "alloc")]
 pub(crate) fn greater<S: Scalar>(a: S, b: S) -> S {

@@ -447,20 +447,25 @@ fn derivatives_of_a_step_are_those_of_dual_numbers() {
     }
 }
 
+/// The states after each step of 2 ms, a row of torques each; returns ½|v|² at the end.
+fn rolled<S: Scalar>((robot, work): (&Model<S>, &mut Workspace<S>), [q, v, torques]: [&[S]; 3], path: &mut [S]) -> S {
+    let n = robot.nv();
+    let mut state = [q, v].concat();
+    let step = step::<S>("step_semi_implicit_euler").expect("a row");
+    S::for_each(torques.len() / n, torques, &mut state, path, |tau, state, now| {
+        let (q, v) = state.split_at(n);
+        step.call(robot, work, &[q, v, tau, &[S::from_f64(2e-3)]], now).expect("vectors made to measure");
+        state.copy_from_slice(now);
+    });
+    state[n..].iter().fold(S::zero(), |sum, v| sum + S::from_f64(0.5) * *v * *v)
+}
+
 user_function! {
     /// The states after each of twelve steps of 2 ms, and ½|v|² at the end: a loop over one step.
     struct Roll;
     fn roll<S>(robot, work, q: [Nq] "rad", v: [Nv] "rad/s", torques: [Of(12), Nv] "N·m")
         -> (path: [Of(12), Of(6)] "q and v", cost: [] "rad²/s²") {
-        let n = robot.nv();
-        let mut state = [q, v].concat();
-        let step = step::<S>("step_semi_implicit_euler").expect("a row");
-        S::for_each(12, torques, &mut state, path, |tau, state, now| {
-            let (q, v) = state.split_at(n);
-            step.call(robot, work, &[q, v, tau, &[S::from_f64(2e-3)]], now).expect("vectors made to measure");
-            state.copy_from_slice(now);
-        });
-        cost[0] = state[n..].iter().fold(S::zero(), |sum, v| sum + S::from_f64(0.5) * *v * *v);
+        cost[0] = rolled((robot, work), [q, v, torques], path);
     }
 }
 
@@ -469,15 +474,7 @@ user_function! {
     struct Long;
     fn long<S>(robot, work, q: [Nq] "rad", v: [Nv] "rad/s", torques: [Of(400), Nv] "N·m")
         -> (path: [Of(400), Of(6)] "q and v", cost: [] "rad²/s²") {
-        let n = robot.nv();
-        let mut state = [q, v].concat();
-        let step = step::<S>("step_semi_implicit_euler").expect("a row");
-        S::for_each(400, torques, &mut state, path, |tau, state, now| {
-            let (q, v) = state.split_at(n);
-            step.call(robot, work, &[q, v, tau, &[S::from_f64(2e-3)]], now).expect("vectors made to measure");
-            state.copy_from_slice(now);
-        });
-        cost[0] = state[n..].iter().fold(S::zero(), |sum, v| sum + S::from_f64(0.5) * *v * *v);
+        cost[0] = rolled((robot, work), [q, v, torques], path);
     }
 }
 

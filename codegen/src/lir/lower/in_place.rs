@@ -12,7 +12,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::tables::of_region;
-use crate::lir::{Column, Operand, Region, Stmt, Table, Temp, Turns};
+use crate::lir::{Operand, Region, Stmt, Table, TableColumn, Temp, Turns};
 
 /// The results of regions: of each value its region, its turn, and its number in the turn.
 type Made = HashMap<Temp, (u32, usize, usize)>;
@@ -22,7 +22,7 @@ type Made = HashMap<Temp, (u32, usize, usize)>;
 pub(crate) fn read_in_place(statements: &mut [Stmt], ends: &[Operand]) {
     let (mut made, mut kept) = (Made::new(), HashSet::new());
     for region in statements.iter_mut().filter_map(of_region) {
-        let mut found: HashMap<Temp, Column> = HashMap::new();
+        let mut found: HashMap<Temp, TableColumn> = HashMap::new();
         region.columns.retain(|(name, values)| match column(&made, values) {
             Some(column) => found.insert(*name, column).is_some(),
             None => true,
@@ -49,7 +49,7 @@ pub(crate) fn read_in_place(statements: &mut [Stmt], ends: &[Operand]) {
 }
 
 /// The results of one region that these values are, turn by turn.
-fn column(made: &Made, values: &[Operand]) -> Option<Column> {
+fn column(made: &Made, values: &[Operand]) -> Option<TableColumn> {
     let mut places = values.iter().map(|value| made.get(&value.temp()?).copied());
     let (region, first, number) = places.next()??;
     let (_, second, _) = places.next()??;
@@ -59,14 +59,14 @@ fn column(made: &Made, values: &[Operand]) -> Option<Column> {
         let place = value.temp().and_then(|temp| made.get(&temp));
         place.is_some_and(|(other, turn, own)| (*other, *own) == (region, number) && Some(*turn) == expected(k))
     };
-    values.iter().enumerate().all(fits).then_some(Column::Results { region, number, first, is_backward })
+    values.iter().enumerate().all(fits).then_some(TableColumn::Results { region, number, first, is_backward })
 }
 
 /// The columns of the table of a region that are such results; they are no part of its table then.
-fn own_columns(region: &mut Region, made: &Made) -> Vec<Column> {
+fn own_columns(region: &mut Region, made: &Made) -> Vec<TableColumn> {
     let Turns::Each { table: Table::Values(values), row, fixed, turns, .. } = &mut region.turns else { return Vec::new() };
     let width = row.len();
-    let found: Vec<Option<Column>> =
+    let found: Vec<Option<TableColumn>> =
         (0..width).map(|k| column(made, &(0..*turns).map(|turn| values[turn * width + k]).collect::<Vec<_>>())).collect();
     fixed.extend(row.iter().zip(&found).filter_map(|(temp, column)| Some((*temp, (*column)?))));
     *values = values.iter().enumerate().filter(|(k, _)| found[k % width].is_none()).map(|(_, value)| *value).collect();
@@ -75,15 +75,15 @@ fn own_columns(region: &mut Region, made: &Made) -> Vec<Column> {
     found.into_iter().flatten().collect()
 }
 
-fn region_of(column: &Column) -> Option<u32> {
-    if let Column::Results { region, .. } = column { Some(*region) } else { None }
+fn region_of(column: &TableColumn) -> Option<u32> {
+    if let TableColumn::Results { region, .. } = column { Some(*region) } else { None }
 }
 
 /// Reads these columns in place.
-fn replace(region: &mut Region, columns: &HashMap<Temp, Column>) {
+fn replace(region: &mut Region, columns: &HashMap<Temp, TableColumn>) {
     if let Turns::Each { fixed, .. } = &mut region.turns {
         for (_, column) in fixed {
-            if let Column::Named(name) = column {
+            if let TableColumn::Named(name) = column {
                 *column = columns.get(name).copied().unwrap_or(*column);
             }
         }

@@ -3,7 +3,7 @@
 use super::Lowering;
 use super::in_place::read_in_place;
 use crate::graph::{CAPTURED, CARRIED, Graph, Kind, Node, NodeId, Op, ROW};
-use crate::lir::{Array, Carried, Column, Expr, Operand, Region, Stmt, Stored, Table, Temp, Turns};
+use crate::lir::{Array, Carried, Expr, Operand, Region, Stmt, Stored, Table, TableColumn, Temp, Turns};
 
 impl Lowering<'_> {
     /// The number of the first value of the body of a region.
@@ -98,7 +98,7 @@ impl Lowering<'_> {
             return turns;
         }
         let column = |k: usize| self.column_of_argument(&values.iter().skip(k).step_by(width).copied().collect::<Vec<_>>());
-        let found: Vec<Option<Column>> = (0..width).map(column).collect();
+        let found: Vec<Option<TableColumn>> = (0..width).map(column).collect();
         fixed.extend(row.iter().zip(&found).filter_map(|(temp, column)| Some((*temp, (*column)?))));
         let mut stays = found.iter().map(Option::is_none);
         row.retain(|_| stays.next().unwrap_or(true));
@@ -108,12 +108,12 @@ impl Lowering<'_> {
     }
 
     /// The numbers of one argument that these values are, at equal distances.
-    fn column_of_argument(&self, values: &[NodeId]) -> Option<Column> {
+    fn column_of_argument(&self, values: &[NodeId]) -> Option<TableColumn> {
         let input =
             |id: &NodeId| Some(self.graph.node(*id)).filter(|node| node.op == Op::Input).map(|node| (node.args[0], node.args[1] as usize));
         let ((argument, first), (_, second)) = (input(values.first()?)?, input(values.get(1)?)?);
         let is_backward = second < first;
-        let column = Column::Argument { argument, first, stride: first.abs_diff(second), is_backward };
+        let column = TableColumn::Argument { argument, first, stride: first.abs_diff(second), is_backward };
         let reaches = !is_backward || first >= (values.len() - 1) * (first - second);
         let is_known = self.arguments.get(argument as usize).is_some_and(|length| *length > 1);
         let fits = is_known && reaches && values.iter().enumerate().all(|(k, id)| input(id) == Some((argument, column.place(k))));

@@ -8,7 +8,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::lir::{Column, Operand, Region, Stmt, Table, Temp, Turns};
+use crate::lir::{Operand, Region, Stmt, Table, TableColumn, Temp, Turns};
 
 impl Region {
     /// Moves the columns of tables in its body out of it, as far as their values are known before
@@ -43,7 +43,7 @@ impl Region {
                     self.columns.push((*temp, before));
                     *temp
                 });
-                fixed.push((*temp, Column::Named(name)));
+                fixed.push((*temp, TableColumn::Named(name)));
             }
             *values = values.iter().enumerate().filter(|(k, _)| stays[k % width]).map(|(_, value)| *value).collect();
             let mut stays = stays.iter();
@@ -73,7 +73,7 @@ fn rename(statement: &mut Stmt, names: &HashMap<Temp, Temp>) {
     let Some(region) = of_region(statement) else { return };
     if let Turns::Each { fixed, .. } = &mut region.turns {
         for (_, column) in fixed {
-            if let Column::Named(name) = column {
+            if let TableColumn::Named(name) = column {
                 *name = names.get(name).copied().unwrap_or(*name);
             }
         }

@@ -19,6 +19,7 @@ use crate::Scalar;
 use crate::algorithm::Placed;
 use crate::index::BodyId;
 use crate::model::Model;
+use crate::scalar::root;
 use crate::spatial::screw::Quaternion;
 use crate::spatial::{Placement, Twist, Vector3, rotate_back};
 
@@ -139,9 +140,7 @@ impl<S: Scalar> Moving<'_, S> {
             let all = linear.iter().chain(turn.iter());
             entries.iter_mut().zip(all).for_each(|(row, entry)| row.push((*at, *entry)));
         }
-        let square = violation.iter().fold(S::zero(), |sum, x| sum + *x * *x);
-        let is_apart = square.positive();
-        let size = S::select(is_apart, S::select(is_apart, square, S::one()).sqrt(), S::zero());
+        let size = root(violation.iter().fold(S::zero(), |sum, x| sum + *x * *x));
         for (k, entries) in entries.into_iter().enumerate() {
             let (reference, give) = anchor.soft.row_of(size, violation[k], rates[k], anchor.weights[k / 3]);
             rows.push(JointRow { entries, curvature: S::one() / give, reference: reference - drift[k], side: Side::Both });

@@ -20,7 +20,7 @@ use core::f64::consts::PI;
 
 use super::{Field, FrameForce, Slopes, Station};
 use crate::Scalar;
-use crate::scalar::greater;
+use crate::scalar::{greater, root};
 use crate::spatial::{Matrix3, Twist, Vector3, Wrench, rotate_back};
 
 pub(super) const FIELDS: &[Field] = &[
@@ -41,13 +41,6 @@ pub(super) struct Law;
 
 /// Below this speed, m/s, the velocity has no direction, as in MuJoCo.
 const LEAST: f64 = 1e-15;
-
-/// √x of x ≥ 0, with a derivative of 0 at 0.
-#[inline(always)]
-fn root<S: Scalar>(x: S) -> S {
-    let is_positive = x.positive();
-    S::select(is_positive, S::select(is_positive, x, S::one()).sqrt(), S::zero())
-}
 
 #[inline(always)]
 fn length<S: Scalar>(x: &Vector3<S>) -> S {

@@ -183,6 +183,12 @@ impl Field {
     const fn direction(self) -> Self {
         Self { is_direction: true, ..self }
     }
+
+    /// A quaternion (x, y, z, w) of any length, from parameter `AT` of the effect on.
+    const fn quaternion<const AT: usize>(self) -> Self {
+        let holds = |p: &[f64]| p[AT..AT + 4].iter().any(|x| *x != 0.0);
+        self.of(4).or(&[0.0, 0.0, 0.0, 1.0]).rule(holds, "a quaternion: four numbers that are not all 0").direction()
+    }
 }
 
 /// One row: an effect that a scene may call for.

@@ -2,6 +2,7 @@
 
 use super::{BallForce, Field, Force};
 use crate::Scalar;
+use crate::scalar::root;
 use crate::spatial::Vector3;
 use crate::spatial::screw::Quaternion;
 
@@ -14,11 +15,7 @@ pub(super) const FIELDS: &[Field] = &[
 pub(super) const BALL_FIELDS: &[Field] = &[
     Field::number("quadratic", "N·m/rad²", "torque per square of the angle").unless("cubic").part(),
     Field::number("cubic", "N·m/rad³", "torque per cube of the angle").unless("quadratic").part(),
-    Field::number("rest", "1", "quaternion (x, y, z, w) at which it is slack, of any length")
-        .of(4)
-        .or(&[0.0, 0.0, 0.0, 1.0])
-        .rule(|p| p[2..6].iter().any(|x| *x != 0.0), "a quaternion: four numbers that are not all 0")
-        .direction(),
+    Field::number("rest", "1", "quaternion (x, y, z, w) at which it is slack, of any length").quaternion::<2>(),
 ];
 
 pub(super) struct Law;
@@ -42,14 +39,6 @@ impl Force for Law {
     }
 }
 
-/// |φ|, with a derivative of 0 at φ = 0, where all of the law is 0.
-#[inline(always)]
-fn angle<S: Scalar>(phi: Vector3<S>) -> S {
-    let square = phi.dot(&phi);
-    let is_turned = square.positive();
-    S::select(is_turned, S::select(is_turned, square, S::one()).sqrt(), S::zero())
-}
-
 impl BallForce for Law {
     fn rest<S: Scalar>(p: &[S]) -> Quaternion<S> {
         Quaternion::from_array([p[2], p[3], p[4], p[5]])
@@ -58,13 +47,13 @@ impl BallForce for Law {
     // θ = |φ|: −(k₂ θ + k₃ θ²) φ
     #[inline(always)]
     fn torque<S: Scalar>(p: &[S], phi: Vector3<S>, _omega: Vector3<S>) -> Vector3<S> {
-        let theta = angle(phi);
+        let theta = root(phi.dot(&phi));
         let stiffness = p[0] * theta + p[1] * (theta * theta);
         phi.map(|x| -(stiffness * x))
     }
 
     fn energy<S: Scalar>(p: &[S], phi: Vector3<S>) -> S {
-        stored(p, angle(phi))
+        stored(p, root(phi.dot(&phi)))
     }
 }
 

@@ -12,11 +12,7 @@ pub(super) const FIELDS: &[Field] = &[
 
 pub(super) const BALL_FIELDS: &[Field] = &[
     Field::number("stiffness", "N·m/rad", "torque per unit of the angle").at_least_zero().factor(),
-    Field::number("rest", "1", "quaternion (x, y, z, w) at which it is slack, of any length")
-        .of(4)
-        .or(&[0.0, 0.0, 0.0, 1.0])
-        .rule(|p| p[1..5].iter().any(|x| *x != 0.0), "a quaternion: four numbers that are not all 0")
-        .direction(),
+    Field::number("rest", "1", "quaternion (x, y, z, w) at which it is slack, of any length").quaternion::<1>(),
 ];
 
 pub(super) struct Law;

@@ -2,6 +2,7 @@
 
 use super::{Field, FrameForce, Station};
 use crate::Scalar;
+use crate::scalar::root;
 use crate::spatial::screw::{Quaternion, log_rotation};
 use crate::spatial::{Vector3, Wrench, rotate_back};
 
@@ -13,34 +14,23 @@ pub(super) const FIELDS: &[Field] = &[
     Field::number("angular_quadratic", "N·m/rad²", "torque per square of the angle").part().or(&[0.0]),
     Field::number("angular_cubic", "N·m/rad³", "torque per cube of the angle").part().or(&[0.0]),
     Field::number("position", "m", "where the frame is slack, in the world frame").or(&[0.0; 3]).of(3),
-    Field::number("orientation", "1", "quaternion (x, y, z, w) at which the frame is slack, of any length")
-        .of(4)
-        .or(&[0.0, 0.0, 0.0, 1.0])
-        .rule(|p| p[9..13].iter().any(|x| *x != 0.0), "a quaternion: four numbers that are not all 0")
-        .direction(),
+    Field::number("orientation", "1", "quaternion (x, y, z, w) at which the frame is slack, of any length").quaternion::<9>(),
 ];
 
 pub(super) struct Law;
 
-/// |x|, with a derivative of 0 at x = 0.
-#[inline(always)]
-fn length<S: Scalar>(x: &Vector3<S>) -> S {
-    let square = x.dot(x);
-    let is_away = square.positive();
-    S::select(is_away, S::select(is_away, square, S::one()).sqrt(), S::zero())
-}
-
 /// −(k₁ + k₂ |x| + k₃ |x|²) x
 #[inline(always)]
 fn pull<S: Scalar>(k: &[S], x: &Vector3<S>) -> Vector3<S> {
-    let r = length(x);
+    let r = root(x.dot(x));
     let stiffness = k[0] + k[1] * r + k[2] * (r * r);
     x.map(|x| -(stiffness * x))
 }
 
 /// ∫ (k₁ + k₂ r + k₃ r²) r dr
 fn stored<S: Scalar>(k: &[S], x: &Vector3<S>) -> S {
-    let (r, square) = (length(x), x.dot(x));
+    let square = x.dot(x);
+    let r = root(square);
     let [half, third, quarter] = [0.5, 1.0 / 3.0, 0.25].map(S::from_f64);
     half * k[0] * square + third * k[1] * (square * r) + quarter * k[2] * (square * square)
 }

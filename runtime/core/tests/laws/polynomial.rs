@@ -102,14 +102,22 @@ fn left(g: &[Vec<f64>], a: &[f64]) -> Vec<f64> {
     (0..n * width).map(|k| g.iter().enumerate().map(|(i, row)| row[k / width] * a[i * width + k % width]).sum()).collect()
 }
 
+/// Random trees that have such a follower, which more than half of them have.
+fn for_each_reduced(count: u64, check: impl Fn(&Case, &Reduced, &mut Random)) {
+    let met = std::cell::Cell::new(0);
+    for_each_tree(count, Flavour { mimic: false, locked: false, ..Flavour::REGULAR }, |free, random| {
+        let Some(reduced) = Reduced::of(free, random) else { return };
+        met.set(met.get() + 1);
+        check(free, &reduced, random);
+    });
+    assert!(met.get() > share(count / 2), "only {} trees", met.get());
+}
+
 /// Every function of the reduced robot through G and Ġ, from those of the robot without the
 /// follower's law.
 #[test]
 fn functions_are_those_of_the_free_robot_through_the_jacobian() {
-    let mut met = std::cell::Cell::new(0);
-    for_each_tree(120, Flavour { mimic: false, locked: false, ..Flavour::REGULAR }, |free, random| {
-        let Some(reduced) = Reduced::of(free, random) else { return };
-        met.set(met.get() + 1);
+    for_each_reduced(120, |free, reduced, random| {
         let (full, model) = (&free.model, &reduced.case.model);
         let State { q: x, v: u, a: b, tau, .. } = reduced.case.state(random);
         let [g, rate] = reduced.jacobians(&x, &u);
@@ -157,17 +165,13 @@ fn functions_are_those_of_the_free_robot_through_the_jacobian() {
         let back = call(model, "inverse_dynamics", &[&x, &u, &found]);
         assert_near(&back, &tau, 1e-9, "torques of forward dynamics");
     });
-    assert!(*met.get_mut() > share(60), "only {} trees", met.get());
 }
 
 /// Dampers, friction, springs, stops and rotors on followers: forces are Gᵀ of those on the own
 /// coordinate, and derivatives are those of dual numbers through the whole function.
 #[test]
 fn effects_on_a_follower_act_by_the_slope_of_its_law() {
-    let mut met = std::cell::Cell::new(0);
-    for_each_tree(60, Flavour { mimic: false, locked: false, ..Flavour::REGULAR }, |free, random| {
-        let Some(reduced) = Reduced::of(free, random) else { return };
-        met.set(met.get() + 1);
+    for_each_reduced(60, |free, reduced, random| {
         let on = |effect, parameters: &[f64]| Applied {
             effect,
             on: reduced.follower.name.clone(),
@@ -198,7 +202,6 @@ fn effects_on_a_follower_act_by_the_slope_of_its_law() {
         let message = reduced.case.model.clone().with_effects(&[on(EffectId::motor, &[1.0, 1.0, 1.0, 0.8, 0.1])]).unwrap_err();
         assert!(message.to_string().contains("follows"), "{message}");
     });
-    assert!(*met.get_mut() > share(30), "only {} trees", met.get());
 }
 
 /// With effects on bodies too, and with chains of followers.
