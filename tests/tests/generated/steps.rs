@@ -5,6 +5,7 @@ use articulated::simulate::{IntegratorId, Settings, Simulation};
 use articulated_codegen::ledger::Entry;
 use articulated_codegen::lir::interpret::interpret;
 use articulated_codegen::{COptions, Options, Real, Request, Target, generate};
+use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, UserFunction, Workspace, difference, function, integrate};
 use articulated_core::description::{Base, Coupling, Origin};
 use articulated_core::dual::Dual;
